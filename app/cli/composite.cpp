@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -36,6 +37,8 @@ struct CompositeOptions {
 
 // Depths of a picture; NaN is nothing, as infinity is.
 ExrSamples read_depth(const std::string& path, const std::string& channel) {
+  if (!std::filesystem::exists(path))
+    throw Error(fmt::format("picture '{}': does not exist (name an EXR picture)", path));
   ExrSamples depth = read_exr_channel(path, channel);
   std::replace_if(
       depth.values.begin(), depth.values.end(), [](float z) { return std::isnan(z); },

@@ -37,12 +37,30 @@ void lift(CameraStation& station, const RayTable& table, const PathPlaces& path,
   station.eye = eye;
 }
 
+// Readers of rays count them; here they are cameras.
+std::string in_words_of_paths(std::string text) {
+  for (const std::string_view before : {"(", ": "}) {
+    const std::string ray = fmt::format("{}ray ", before);
+    if (const std::size_t at = text.rfind(ray); at != std::string::npos)
+      text.replace(at, ray.size(), fmt::format("{}camera ", before));
+  }
+  return text;
+}
+
+RayTable read_path(const std::string& file) {
+  try {
+    return read_rays(file, RayHeights::optional);
+  } catch (const Error& error) {
+    throw Error(in_words_of_paths(error.what()));
+  }
+}
+
 // One per row, in world metres.
 std::vector<CameraStation> stations_of(const RayTable& table, const PathPlaces& path) {
   std::vector<CameraStation> stations;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const RayRow& row = table.rows[i];
-    const std::string what = table.where(i);
+    const std::string what = in_words_of_paths(table.where(i));
     CameraStation station{path.places.world(row.origin, what), {}};
     if (table.aim == RayAim::direction) {
       station.target = station.eye + path.places.world_direction(row.aim);
@@ -66,7 +84,8 @@ void add_frame_options(Command& command, FrameOptions& o) {
                .help = "table of cameras: columns x,y[,z] of the eye and tx,ty[,tz] of the target, or dx,dy,dz "
                        "of the direction, in coordinates of --coords",
                .files = "csv npy",
-               .note = "without z --eye-above M over the ground; the output is frame-####.png",
+               .note = "with --coords lonlat also lon,lat and tlon,tlat; without z --eye-above M over the ground; the "
+                       "output is frame-####.png",
                .topic = Topic::flight});
   command.add(&o.turntable, {.names = "--turntable",
                              .help = "one orbit around the scene, clockwise from --view; the output is frame-####.png",
@@ -104,8 +123,10 @@ std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& vie
     }
     return cameras;
   }
-  const RayTable table = read_rays(o.path, RayHeights::optional);
+  const RayTable table = read_path(o.path);
   if (table.rows.empty()) throw Error(fmt::format("path '{}': has no rows; one camera each is expected", o.path));
+  if (table.lonlat && path.places.frame().coordinates() != Coordinates::lonlat)
+    throw Error(fmt::format("path '{}': has columns lon and lat (give --coords lonlat)", o.path));
   if (table.has_z == static_cast<bool>(path.above_surface)) {
     throw Error(fmt::format("path '{}': {}", o.path,
                             table.has_z ? "has heights of the eye, which --eye-above replaces (leave out the column z)"

@@ -14,6 +14,7 @@
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
+#include "scarp/render/surface/ramp.h"
 #include "scarp/source/colour_image.h"
 #include "scarp/source/colour_relief_file.h"
 #include "scarp/source/ramp_file.h"
@@ -305,6 +306,10 @@ void settle_look(const LookOptions& o, const MarchSettings& march_settings, Pict
     }
     picture.ramp_stops = std::make_shared<RampStops>(ramp_of_row(rgb));
   } else {
+    const auto& names = ramp_names();
+    if (!o.ramp.empty() && std::find(names.begin(), names.end(), o.ramp) == names.end())
+      throw Error(
+          fmt::format("--ramp '{}': expected {}, or a .cpt, .txt, .clr or .png file", o.ramp, fmt::join(names, ", ")));
     picture.ramp = o.ramp;
   }
   if (!o.ramp_range.empty()) {

@@ -156,7 +156,7 @@ FigureOptions figure_options() {
 }  // namespace
 
 const PictureFormat& preview_format_of(const std::string& path) {
-  const PictureFormat& format = picture_format_of(path);
+  const PictureFormat& format = picture_format_of(path, true);
   if (!format.margins)
     throw Error(
         fmt::format("--preview '{}': {} has no margins for a legend (name it *.png or *.pdf)", path, format.name));

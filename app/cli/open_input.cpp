@@ -12,6 +12,10 @@
 #include "app/cli/progress.h"
 #include "app/cli/scene_input.h"
 #include "scarp/base/error.h"
+#include "scarp/march/function/function_table.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/march/shape/shape_table.h"
+#include "scarp/march/voxel/voxel_table.h"
 #include "scarp/scene/file/example_functions.h"
 #include "scarp/source/read_raster.h"
 
@@ -41,7 +45,21 @@ void choose_exaggeration(const Raster& raster, FieldOptions& settings, std::vect
   }
 }
 
+// Throws Error for a march of other inputs. Unknown names are left to the lookup.
+template <class Table>
+void require_march_of(const Table& table, std::string_view inputs, const std::string& march) {
+  const auto in = [&](const auto& entries) {
+    return std::any_of(entries.begin(), entries.end(), [&](const MarchEntry& one) { return one.name == march; });
+  };
+  if (in(table)) return;
+  if (!in(height_marches()) && !in(function_marches()) && !in(voxel_marches()) && !in(shape_marches())) return;
+  std::string names;
+  for (const MarchEntry& one : table) names += fmt::format("{}{}", names.empty() ? "" : ", ", one.name);
+  throw Error(fmt::format("march '{}': is not for {} (available: {})", march, inputs, names));
+}
+
 OpenedInput terrain(const InputOptions& options) {
+  require_march_of(height_marches(), "terrain", options.march);
   const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
   require_device_march(options.device, march);
   Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
@@ -62,6 +80,7 @@ OpenedInput terrain(const InputOptions& options) {
 OpenedInput voxels(const InputOptions& options, const std::string& ramp) {
   VoxelFileOptions voxels;
   voxels.march = options.march;
+  require_march_of(voxel_marches(), "voxels", options.march);
   // An unknown name is found before the file is read.
   if (!options.march.empty()) find_voxel_march(options.march);
   voxels.surface_colours = options.vox.surface_colours;
@@ -81,6 +100,7 @@ OpenedInput scene_file(const InputOptions& options) {
 }
 
 OpenedInput function(const InputOptions& options) {
+  require_march_of(function_marches(), "functions", options.march);
   const FunctionMarchEntry& march = find_function_march(options.march.empty() ? kFunctionMarch : options.march);
   HeightFunction function(read_function(options.function.function));
   OpenedInput opened{Scene(scene_function(function, march, options.march_settings))};

@@ -34,7 +34,7 @@ void require_library(const PictureFormat& format, const std::string& output) {
 
 }  // namespace
 
-const PictureFormat& picture_format_of(const std::string& output) {
+const PictureFormat& picture_format_of(const std::string& output, bool with_margins) {
   const std::string extension = extension_of(output);
   std::string all;
   for (const PictureFormat& format : kFormats) {
@@ -44,7 +44,8 @@ const PictureFormat& picture_format_of(const std::string& output) {
         return format;
       }
     }
-    all += fmt::format("{}*.{} ({})", all.empty() ? "" : ", ", words_of(format.extensions)[0], format.name);
+    if (format.margins || !with_margins)
+      all += fmt::format("{}*.{} ({})", all.empty() ? "" : ", ", words_of(format.extensions)[0], format.name);
   }
   throw Error(fmt::format("output '{}': unknown picture format (name it {})", output, all));
 }

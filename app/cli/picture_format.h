@@ -20,8 +20,9 @@ struct PictureFormat {
   bool margins = true;          ///< may be larger than the picture
 };
 
-/// Throws Error listing the extensions if there is no such format, and if this build lacks its library.
-const PictureFormat& picture_format_of(const std::string& output);
+/// Throws Error listing the extensions if there is no such format, and if this build lacks its library. `with_margins`:
+/// lists only formats with margins.
+const PictureFormat& picture_format_of(const std::string& output, bool with_margins = false);
 
 /// "png jpg jpeg tif tiff pdf exr".
 std::string picture_extensions();

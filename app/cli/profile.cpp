@@ -58,7 +58,8 @@ void draw(const MapInput& input, const ProfileOptions& options, const SightLine&
       throw Error(fmt::format("--size '{}': expected WIDTHxHEIGHT in pixels, 200 to 8192 each", options.size));
   figure.width = static_cast<int>(size[0]);
   figure.height = static_cast<int>(size[1]);
-  for (const ProfilePoint& p : points) figure.points.push_back({p.distance, p.ground, p.sight, p.visible});
+  for (const ProfilePoint& p : points)
+    figure.points.push_back({p.distance, p.ground, p.sight, p.visible, p.after_hole});
   const dvec2 from = input.place_of(line.from().col, line.from().row),
               to = input.place_of(line.to().col, line.to().row);
   figure.title = fmt::format("{:.10g}, {:.10g} to {:.10g}, {:.10g}: {}", from.x, from.y, to.x, to.y,

@@ -34,6 +34,8 @@ void settle_output(RenderOptions& options) {
                     "(leave --look out, or name the output *.png)",
                     options.look));
   }
+  if (options.format->map && options.frames.several())
+    throw Error(fmt::format("output '{}': frames are pictures, not maps (name it frame-####.png)", options.output));
   if (options.format->map && !options.top) {
     throw Error(
         fmt::format("output '{}': a {} is a map (add --top, or name it *.png)", options.output, options.format->name));

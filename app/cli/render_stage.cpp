@@ -52,6 +52,7 @@ void RenderStage::open() {
   stop_if_interrupted();
   if (options_.top && options_.size.empty()) fit_size_to_scene(map_box(), options_.picture);
   facts_.heights = input_.heights;
+  facts_.area = !options_.area.empty();
   if (kind_ == InputKind::function) facts_.function_reach = options_.march_settings.function.reach;
   finish_look(options_.look_options, input_.across, input_.heights, input_.exaggeration, options_.picture);
   build_s_ = watch.lap();

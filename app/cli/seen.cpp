@@ -106,7 +106,7 @@ std::string of_reach(const Scene& scene, const Camera& camera, const BlankFacts&
 }
 
 // Where the scene is in the picture.
-std::string of_view(const Scene& scene, const Camera& camera, int width, int height) {
+std::string of_view(const Scene& scene, const Camera& camera, int width, int height, bool area) {
   if (scene.endless() || scene.wraps()) {
     return camera.forward().z >= 0 ? "the camera looks at the sky (lower --target)" : "";
   }
@@ -114,11 +114,12 @@ std::string of_view(const Scene& scene, const Camera& camera, int width, int hei
   if (box.in_front == 0) return "the scene is behind the eye (--target)";
   const dvec2 size(width, height);
   if (box.high.x < 0 || box.high.y < 0 || box.low.x > size.x || box.low.y > size.y)
-    return "the camera looks past the scene (--target)";
+    return area ? "--area is beside the scene" : "the camera looks past the scene (--target)";
   const dvec2 extent = glm::min(box.high, size) - glm::max(box.low, dvec2(0.0));
   // The box itself covers few pixels; a surface in it still fewer.
   constexpr double kSmall = 4 * kLeastSeen;
   if (box.in_front == 8 && extent.x * extent.y < kSmall * size.x * size.y) {
+    if (area) return "--area has little of the scene in it";
     const dvec3 sides = scene.box().high - scene.box().low;
     return fmt::format("the scene is {} m away and {} m wide (move the eye closer, or use a smaller --fov)",
                        metres_text(way_to(scene.box(), camera.eye())),
@@ -191,7 +192,8 @@ std::string why_blank(const Scene& scene, const Camera& camera, const PictureSet
   if (why.empty()) why = of_holes(scene);
   if (why.empty()) why = of_reach(scene, camera, facts);
   if (why.empty()) why = of_steepness(scene);
-  if (why.empty()) why = of_view(scene, camera, picture.width, picture.height);
+  if (why.empty()) why = of_view(scene, camera, picture.width, picture.height, facts.area);
+  if (why.empty() && facts.area) why = "--area has hardly any surfaces in it";
   if (why.empty()) why = "the camera looks past all surfaces, or along them (--view, --eye, --target)";
   return fmt::format("{:.2g} % of the pixels show a surface of the scene: {}", 100 * seen.surfaces, why);
 }

@@ -31,6 +31,7 @@ SeenShares seen_shares(const Scene& scene, const Camera& camera, const PictureSe
 struct BlankFacts {
   ReliefRange heights{};  ///< of the ground, exaggerated
   bool one_colour = false;
+  bool area = false;          ///< --area chose the view
   double function_reach = 0;  ///< metres, of rays over functions; 0: no function
 };
 

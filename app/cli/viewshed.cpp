@@ -31,7 +31,8 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kNodata = 255;
-constexpr double kNoHeight = -9999;  // nodata of heights and angles
+constexpr double kNoHeight = -9999;                                  // nodata of heights and angles
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();  // pixels before nodata is written
 constexpr const char* kMethod =
     "exact lines of sight; ground linear at crossings of grid lines; grazing is visible (scarp viewshed)";
 
@@ -43,7 +44,7 @@ constexpr const char* kFooter = R"(Modes:
   angle    degrees above the horizontal at which an observer sees the target, the largest of all
            observers that see it (r.viewshed of GRASS: add 90)
 Pixels without a sample, or outside every observer's limits, are nodata; those of `angle` also where
-the target is hidden.
+the target is hidden. Visible pixels must differ from all others; others may be equal.
 
 Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
 -f -q, with the output as last word.)";
@@ -54,8 +55,7 @@ struct ViewshedOptions : MapOptions {
   SightHeights heights;
   double min_distance = 0;
   std::optional<double> max_distance, nodata;
-  int visible = 1, hidden = 0;
-  std::optional<double> out_of_range;
+  int visible = 1, hidden = 0, out_of_range = -1;  // -1: nodata
   RasterOutput raster_output;
 };
 
@@ -146,32 +146,83 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
 
 using Codes = std::vector<std::uint8_t>;
 
+// Pixel values of `visible`.
+struct PixelValues {
+  int hidden, visible, out_of_range, nodata;
+
+  std::vector<MapClass> classes() const {
+    const bool one_blank = out_of_range == nodata;
+    std::vector<MapClass> classes;
+    if (hidden != nodata)
+      classes.push_back({hidden, out_of_range == hidden ? "hidden or out of range" : "hidden", {205, 205, 205, 255}});
+    classes.push_back({visible, "visible", {44, 150, 60, 255}});
+    if (!one_blank && out_of_range != hidden) classes.push_back({out_of_range, "out of range", {235, 235, 235, 255}});
+    const std::string blank = one_blank ? "no sample or out of range" : "no sample";
+    classes.push_back({nodata, hidden == nodata ? "hidden, or " + blank : blank, {255, 255, 255, 0}});
+    return classes;
+  }
+};
+
+// Throws Error where visible pixels would be equal to others.
+PixelValues pixel_values(const ViewshedOptions& options) {
+  PixelValues values{options.hidden, options.visible, 0, kNodata};
+  if (options.nodata) {
+    if (!(*options.nodata >= 0 && *options.nodata <= 255 && *options.nodata == std::floor(*options.nodata)))
+      throw Error(fmt::format("--nodata-value {:.10g}: expected a whole number from 0 to 255 for --mode visible",
+                              *options.nodata));
+    values.nodata = static_cast<int>(*options.nodata);
+  } else {
+    while (values.nodata == options.visible || values.nodata == options.hidden || values.nodata == options.out_of_range)
+      --values.nodata;
+  }
+  values.out_of_range = options.out_of_range >= 0 ? options.out_of_range : values.nodata;
+  const auto require_other = [&](int value, std::string_view option) {
+    if (value == values.visible)
+      throw Error(fmt::format(
+          "--visible-value {0} and {1} {0}: visible pixels must differ from all others (change one)", value, option));
+  };
+  require_other(values.hidden, "--hidden-value");
+  require_other(values.nodata, "--nodata-value");
+  require_other(values.out_of_range, "--out-of-range-value");
+  return values;
+}
+
 std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
   std::vector<Viewpoint> views;
   for (const Observer& one : observers) views.emplace_back(one.field, one.node, one.settings);
   return views;
 }
 
-// Pixels of `visible`: the best that any observer has of a node.
-Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const RowBand& rows,
-                     const Progress& progress) {
-  const auto hole = static_cast<std::uint8_t>(options.nodata.value_or(kNodata));
-  const auto out = static_cast<std::uint8_t>(options.out_of_range.value_or(hole));
-  const auto hidden = static_cast<std::uint8_t>(options.hidden), visible = static_cast<std::uint8_t>(options.visible);
+struct VisiblePixels {
   Codes pixels;
+  std::size_t visible = 0, hidden = 0;  // number of targets within the limits
+};
+
+// Pixels of `visible`: the best that any observer has of a node.
+VisiblePixels visible_pixels(const std::vector<Observer>& observers, const PixelValues& values, const RowBand& rows,
+                             const Progress& progress) {
+  VisiblePixels result;
+  const auto add = [&](Seen seen) {
+    const int value_of[] = {values.hidden, values.visible, values.out_of_range, values.nodata};
+    result.pixels.push_back(static_cast<std::uint8_t>(value_of[static_cast<std::size_t>(seen)]));
+    result.visible += seen == Seen::visible;
+    result.hidden += seen == Seen::hidden;
+  };
   if (observers.size() == 1) {
-    const std::uint8_t value_of[] = {hidden, visible, out, hole};
     const Observer& one = observers.front();
     const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
-    pixels.reserve(codes.size());
-    for (const Seen code : codes) pixels.push_back(value_of[static_cast<std::size_t>(code)]);
-    return pixels;
+    result.pixels.reserve(codes.size());
+    for (const Seen code : codes) add(code);
+    return result;
   }
   const auto counts = observer_count_rows(views_of(observers), rows, progress);
-  pixels.reserve(counts.size());
+  result.pixels.reserve(counts.size());
   for (const std::uint16_t count : counts)
-    pixels.push_back(count == kCountHole ? hole : count == kCountOutOfRange ? out : count > 0 ? visible : hidden);
-  return pixels;
+    add(count == kCountHole         ? Seen::hole
+        : count == kCountOutOfRange ? Seen::out_of_range
+        : count > 0                 ? Seen::visible
+                                    : Seen::hidden);
+  return result;
 }
 
 std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const RowBand& rows,
@@ -182,36 +233,61 @@ std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers
   return counts;
 }
 
-std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, float nodata,
-                                const RowBand& rows, const Progress& progress) {
+// Throws Error for a nodata value that pixels with a sample may have.
+double nodata_of_numbers(const ViewshedOptions& options, const HeightField& field) {
+  if (options.mode == "visible" || options.mode == "count" || !options.nodata) return kNoHeight;
+  const double nodata = *options.nodata, relief = field.max_height() - field.min_height();
+  const auto [low, high] = options.mode == "angle" ? std::pair(-90.0, 90.0)
+                           : options.mode == "dem" ? std::pair<double, double>(field.min_height(), field.max_height())
+                                                   : std::pair(0.0, relief);
+  if (nodata >= low && nodata <= high)
+    throw Error(
+        fmt::format("--nodata-value {:.10g}: is also a value of --mode {} (choose one outside {:.10g} to {:.10g})",
+                    nodata, options.mode, low, high));
+  return nodata;
+}
+
+// Returns NaN where there is nothing.
+std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, const RowBand& rows,
+                                const Progress& progress) {
   std::vector<float> pixels;
   for (const Observer& one : observers) {
     const auto least = least_visible_rows(one.field, one.node, one.settings, rows, progress);
     const Viewpoint view(one.field, one.node, one.settings);
-    if (pixels.empty()) pixels.assign(least.size(), nodata);
+    if (pixels.empty()) pixels.assign(least.size(), kNothing);
     const int cols = one.field.cols();
     parallel_for(rows.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
         const Node node{static_cast<int>(i % cols), rows.first + static_cast<int>(i / cols)};
         const float height = least_height(view.ground(), node, least[i], datum);
-        if (!std::isnan(height)) pixels[i] = pixels[i] == nodata ? height : std::min(pixels[i], height);
+        pixels[i] = std::fmin(pixels[i], height);  // NaN gives way
       }
     });
   }
   return pixels;
 }
 
-std::vector<float> angle_pixels(const std::vector<Observer>& observers, float nodata, const RowBand& rows,
-                                const Progress& progress) {
+// Likewise.
+std::vector<float> angle_pixels(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
   std::vector<float> pixels;
   for (const Observer& one : observers) {
     const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
     const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
-    if (pixels.empty()) pixels.assign(angles.size(), nodata);
-    for (std::size_t i = 0; i < angles.size(); ++i)
-      if (!std::isnan(angles[i])) pixels[i] = pixels[i] == nodata ? angles[i] : std::max(pixels[i], angles[i]);
+    if (pixels.empty()) pixels.assign(angles.size(), kNothing);
+    for (std::size_t i = 0; i < angles.size(); ++i) pixels[i] = std::fmax(pixels[i], angles[i]);  // NaN gives way
   }
   return pixels;
+}
+
+// Writes nodata in place of NaN. Returns how often.
+std::size_t mark_nothing(std::vector<float>& pixels, float nodata) {
+  std::size_t count = 0;
+  for (float& pixel : pixels) {
+    if (!std::isnan(pixel)) continue;
+    pixel = nodata;
+    ++count;
+  }
+  return count;
 }
 
 std::string mode_of(const std::string& typed) {
@@ -228,15 +304,14 @@ double share_of(double part, double whole) { return whole > 0 ? 100 * part / who
 void run(ViewshedOptions options, const Command& command) {
   command.require_effect({});
   options.mode = mode_of(options.mode);
-  if (const double nodata = options.nodata.value_or(kNodata);
-      options.mode == "visible" && !(nodata >= 0 && nodata <= 255 && nodata == std::floor(nodata)))
-    throw Error(
-        fmt::format("--nodata-value {:.10g}: expected a whole number from 0 to 255 for --mode visible", nodata));
+  const std::optional<PixelValues> values =
+      options.mode == "visible" ? std::optional(pixel_values(options)) : std::nullopt;
   settle_output(options.raster_output, options);
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
   keep_inputs(options.output, input.files());
+  const double number_nodata = nodata_of_numbers(options, input.field());
   const std::vector<Observer> observers = observers_of(input, options);
 
   const RowBand rows = rows_of_part(input, options.raster_output);
@@ -270,39 +345,30 @@ void run(ViewshedOptions options, const Command& command) {
                           {"CURVATURE_COEFFICIENT", fmt::format("{:.10g}", curvature.coefficient)},
                           {"DIAMETER", fmt::format("{:.10g} m", curvature.diameter)}});
   const Progress progress = terminal_progress("viewshed");
-  Codes codes;
+  VisiblePixels seen;
   std::vector<std::uint16_t> counts;
   std::vector<float> numbers;
   std::string what;
-  if (options.mode == "visible") {
-    codes = visible_pixels(observers, options, rows, progress);
-    const int nodata = static_cast<int>(options.nodata.value_or(kNodata));
-    map.bands.push_back({"visible",
-                         "",
-                         std::span<const std::uint8_t>(codes),
-                         nodata,
-                         {{options.hidden, "hidden", {205, 205, 205, 255}},
-                          {options.visible, "visible", {44, 150, 60, 255}},
-                          {nodata, "no sample or out of range", {255, 255, 255, 0}}}});
-    const auto count = [&](int code) { return static_cast<double>(std::count(codes.begin(), codes.end(), code)); };
-    what = fmt::format("{:.3g} % visible", share_of(count(options.visible), nodes - count(nodata)));
+  if (values) {
+    seen = visible_pixels(observers, *values, rows, progress);
+    map.bands.push_back({"visible", "", std::span<const std::uint8_t>(seen.pixels), values->nodata, values->classes()});
+    what = fmt::format("{:.3g} % visible",
+                       share_of(static_cast<double>(seen.visible), static_cast<double>(seen.visible + seen.hidden)));
   } else if (options.mode == "count") {
     counts = counted_pixels(observers, rows, progress);
     map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kCountHole});
     what = fmt::format("{} observers", observers.size());
   } else if (options.mode == "angle") {
-    const double nodata = options.nodata.value_or(kNoHeight);
-    numbers = angle_pixels(observers, static_cast<float>(nodata), rows, progress);
-    map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), nodata});
-    const auto hidden = std::count(numbers.begin(), numbers.end(), static_cast<float>(nodata));
+    numbers = angle_pixels(observers, rows, progress);
+    const std::size_t hidden = mark_nothing(numbers, static_cast<float>(number_nodata));
+    map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), number_nodata});
     what = fmt::format("{:.3g} % visible", share_of(nodes - static_cast<double>(hidden), nodes));
   } else {
     const bool dem = options.mode == "dem";
-    const double nodata = options.nodata.value_or(kNoHeight);
-    numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), rows,
-                           progress);
+    numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress);
+    mark_nothing(numbers, static_cast<float>(number_nodata));
     map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
-                         std::span<const float>(numbers), nodata});
+                         std::span<const float>(numbers), number_nodata});
     what = "least visible heights";
   }
   write_raster_map(options.output, map, terminal_progress("write"));
@@ -376,7 +442,7 @@ void add_viewshed(Program& program) {
   command.add(&o.nodata, {.names = "--nodata-value",
                           .help = "pixel value without a sample",
                           .range = {-1e30, 1e30},
-                          .fallback = "255; heights and angles: -9999",
+                          .fallback = "255, or the largest value left; heights and angles: -9999",
                           .rules = {marked}});
   add_raster_output_options(command, o.raster_output);
   add_map_options(command, o);

@@ -14,6 +14,7 @@
 #include "app/cli/vox_input.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
+#include "scarp/accel/voxel_bytes.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/replace_file.h"
@@ -47,13 +48,24 @@ VoxelGrid with_margin(const VoxelGrid& grid, int margin) {
   return larger;
 }
 
+// `size` includes the margin.
+void require_size(const std::string& input, const ivec3& size, int axis) {
+  const int cols = size[axis == 0 ? 1 : 0], rows = size[axis == 2 ? 1 : 2];
+  if (std::max(cols, rows) > kMostCells)
+    throw Error(
+        fmt::format("{}: the layer with its margin is {} x {} voxels (limited to {} per side; try another "
+                    "--axis, --margin or --model)",
+                    input, cols, rows, kMostCells));
+  if (size[axis] > kMaxAcceleratedSide)
+    throw Error(
+        fmt::format("{}: the model with its margin has {} layers (limited to {}; try another --axis or --model)", input,
+                    size[axis], kMaxAcceleratedSide));
+}
+
 template <class Radius>
 std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius) {
   const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
   const int cols = grid.size()[across], rows = grid.size()[up];
-  if (std::max(cols, rows) > kMostCells)
-    throw Error(
-        fmt::format("section: the layer is {} x {} voxels; pictures are made of {} at most", cols, rows, kMostCells));
   const auto voxel = [&](int col, int row) {
     ivec3 v(0);
     v[axis] = at, v[across] = col, v[up] = rows - 1 - row;
@@ -114,12 +126,7 @@ void run(const SectionOptions& options) {
     throw Error(fmt::format("--at {}: the box around the model's voxels has layers 0 to {} along {}", at, side - 1,
                             options.axis));
   }
-  const ivec3 size = model.grid().size() + 2 * options.margin;
-  try {
-    require_accelerable(size, "section");
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", options.input, error.what()));
-  }
+  require_size(options.input, model.grid().size() + 2 * options.margin, axis);
   const VoxelGrid grid = with_margin(model.grid(), options.margin);
   std::string svg;
   if (options.radii == "spheres") {

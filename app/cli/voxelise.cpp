@@ -20,6 +20,9 @@
 #include "scarp/base/parallel.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/voxel_colours.h"
+#ifdef SCARP_EMBREE
+#include "scarp/scene/mesh/scene_mesh.h"
+#endif
 #include "scarp/scene/file/to_vdb.h"
 #include "scarp/scene/file/to_vox.h"
 #include "scarp/scene/voxelised.h"
@@ -68,6 +71,18 @@ double side_of(const VoxeliseOptions& options, InputKind kind, const Scene& scen
   return std::max({size.x, size.y, size.z}) / std::max(1, (options.count > 0 ? options.count : kUsualCount) - 1);
 }
 
+[[noreturn]] void refuse_empty(const std::string& name, const Scene& scene, double side) {
+#ifdef SCARP_EMBREE
+  for (const SceneFieldPtr& field : scene.fields()) {
+    if (const auto edges = mesh_edges(*field); edges && edges->open > 0)
+      throw Error(
+          fmt::format("'{}': the mesh is open and has no inside: {} of {} edges belong to an odd number of triangles",
+                      name, edges->open, edges->all));
+  }
+#endif
+  throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones", name, side));
+}
+
 void run(const VoxeliseOptions& options, const Command& command) {
   const std::string extension = extension_of(options.output);
   if (extension != ".vox" && extension != ".binvox" && extension != ".vdb") {
@@ -92,9 +107,7 @@ void run(const VoxeliseOptions& options, const Command& command) {
   const Progress progress = terminal_progress("voxelise");
   const VoxelGrid grid = ground ? voxelised_ground(*ground, lattice, progress)
                                 : voxelised(input.scene, lattice, voxel_colours(materials), progress);
-  if (grid.solid_count() == 0)
-    throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones",
-                            options.inputs.front(), side));
+  if (grid.solid_count() == 0) refuse_empty(name, input.scene, side);
   bool exact_colours = true;
   if (extension == ".vox") {
     write_vox(options.output, vox_file_of(grid, lattice.box.low, exact_colours));

@@ -27,8 +27,9 @@ struct SightCrossing {
 };
 
 /// Calls visit(crossing) for the crossings of one axis that count, outwards from the start, until it returns false.
-template <class Visit>
-void visit_sight(const SightLine& line, int axis, const Visit& visit, const LineRange& range = {}) {
+/// Calls skip(Crossing) for those beside nodata.
+template <class Visit, class Skip>
+void visit_sight(const SightLine& line, int axis, const Visit& visit, const Skip& skip, const LineRange& range) {
   const auto steps = [](double cells) { return std::llround(cells * static_cast<double>(kSubcells)); };
   const std::int64_t x = steps(line.from().col), y = steps(line.from().row);
   const GridLine grid{x, y, steps(line.to().col) - x, steps(line.to().row) - y, kSubcells};
@@ -37,9 +38,11 @@ void visit_sight(const SightLine& line, int axis, const Visit& visit, const Line
       grid, axis, field.cols(), field.rows(), true,
       [&](const Crossing& at) {
         const auto first = line.ground().lowered(at.first);
-        if (!first) return true;
         const auto second = at.w1 > 0 ? line.ground().lowered(at.second) : first;
-        if (!second) return true;
+        if (!first || !second) {
+          skip(at);
+          return true;
+        }
         const CrossingTerms terms{*first,        static_cast<double>(at.w0),
                                   *second,       static_cast<double>(at.w1),
                                   line.eye(),    static_cast<double>(kSubcells * (at.length - at.steps)),
@@ -47,6 +50,11 @@ void visit_sight(const SightLine& line, int axis, const Visit& visit, const Line
         return visit(SightCrossing{at, terms});
       },
       range);
+}
+template <class Visit>
+void visit_sight(const SightLine& line, int axis, const Visit& visit, const LineRange& range = {}) {
+  visit_sight(
+      line, axis, visit, [](const Crossing&) {}, range);
 }
 
 }  // namespace scarp

@@ -106,7 +106,8 @@ class Drawing {
     colour(kGround);
     for (std::size_t begin = 0; begin < points.size();) {
       std::size_t end = begin;
-      while (end < points.size() && std::isfinite(points[end].ground)) ++end;
+      while (end < points.size() && std::isfinite(points[end].ground) && (end == begin || !points[end].after_hole))
+        ++end;
       if (end > begin) {
         cairo_move_to(cr_, x(points[begin].distance), floor);
         for (std::size_t i = begin; i < end; ++i) cairo_line_to(cr_, x(points[i].distance), y(points[i].ground));
@@ -114,11 +115,11 @@ class Drawing {
         cairo_close_path(cr_);
         cairo_fill(cr_);
       }
-      begin = end + 1;
+      begin = std::max(end, begin + 1);
     }
     for (std::size_t i = 1; i < points.size(); ++i) {
       const auto &a = points[i - 1], &b = points[i];
-      if (!std::isfinite(a.ground) || !std::isfinite(b.ground)) continue;
+      if (!std::isfinite(a.ground) || !std::isfinite(b.ground) || b.after_hole) continue;
       colour(b.visible && a.visible ? kSeen : kHidden);
       cairo_set_line_width(cr_, 2.5);
       cairo_set_line_cap(cr_, CAIRO_LINE_CAP_ROUND);

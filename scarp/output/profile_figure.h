@@ -11,10 +11,11 @@ namespace scarp {
 
 /// One point along the profile.
 struct ProfileFigurePoint {
-  double distance = 0;  ///< metres
-  double ground = 0;    ///< metres above sea; NaN: a hole
-  double sight = 0;     ///< line of sight, metres above sea
-  bool visible = true;  ///< whether the observer sees the ground here
+  double distance = 0;      ///< metres
+  double ground = 0;        ///< metres above sea; NaN: a hole
+  double sight = 0;         ///< line of sight, metres above sea
+  bool visible = true;      ///< whether the observer sees the ground here
+  bool after_hole = false;  ///< whether there is a hole between this point and the one before
 };
 
 struct ProfileFigure {

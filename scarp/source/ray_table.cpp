@@ -19,12 +19,18 @@ namespace {
 
 std::string_view needed(RayHeights heights) {
   return heights == RayHeights::required ? "required: x,y,z and either dx,dy,dz or tx,ty,tz"
-                                         : "required: x,y[,z] and either dx,dy,dz or tx,ty[,tz]";
+                                         : "required: x,y[,z] and either dx,dy,dz or tx,ty[,tz]; or lon,lat[,z] and "
+                                           "either dx,dy,dz or tlon,tlat[,tz]";
 }
 
 enum Column : std::size_t { x, y, z, dx, dy, dz, tx, ty, tz, t_min, t_max, start_col, start_row, column_count };
 constexpr std::array<std::string_view, column_count> kNames = {
     "x", "y", "z", "dx", "dy", "dz", "tx", "ty", "tz", "t_min", "t_max", "start_col", "start_row"};
+constexpr auto kNamesInDegrees = [] {
+  auto names = kNames;
+  names[x] = "lon", names[y] = "lat", names[tx] = "tlon", names[ty] = "tlat";
+  return names;
+}();
 
 std::string place_of(std::int64_t line, std::size_t row) {
   return line > 0 ? fmt::format("line {} (ray {})", line, row) : fmt::format("ray {}", row);
@@ -53,14 +59,19 @@ class CsvHeader {
  public:
   CsvHeader(std::span<const std::string_view> fields, RayHeights heights) : fields_(fields.size()), heights_(heights) {
     places_.fill(kNone);
+    if (heights == RayHeights::optional) {
+      lonlat_ =
+          std::any_of(fields.begin(), fields.end(), [](std::string_view field) { return trimmed(field) == "lon"; });
+    }
+    const auto& names = this->names();
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const std::string_view name = trimmed(fields[i]);
-      const auto known = std::find(kNames.begin(), kNames.end(), name);
-      if (known == kNames.end()) {
+      const auto known = std::find(names.begin(), names.end(), name);
+      if (known == names.end()) {
         carried_.push_back(i);
         continue;
       }
-      std::size_t& place = places_[static_cast<std::size_t>(known - kNames.begin())];
+      std::size_t& place = places_[static_cast<std::size_t>(known - names.begin())];
       if (place != kNone) throw Error(fmt::format("duplicate column '{}'", name));
       place = i;
     }
@@ -82,6 +93,8 @@ class CsvHeader {
   }
 
   RayAim aim() const { return aim_; }
+  bool lonlat() const { return lonlat_; }
+  const std::array<std::string_view, column_count>& names() const { return lonlat_ ? kNamesInDegrees : kNames; }
   bool has(Column column) const { return places_[column] != kNone; }
   std::size_t operator[](Column column) const { return places_[column]; }
   std::size_t fields() const { return fields_; }
@@ -92,7 +105,7 @@ class CsvHeader {
 
   void require(std::initializer_list<Column> columns) const {
     for (const Column column : columns) {
-      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", kNames[column], needed(heights_)));
+      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", names()[column], needed(heights_)));
     }
   }
 
@@ -101,12 +114,14 @@ class CsvHeader {
   std::size_t fields_;
   RayHeights heights_;
   RayAim aim_ = RayAim::direction;
+  bool lonlat_ = false;
 };
 
 // Without rows.
 RayTable table_of(const CsvHeader& header) {
   RayTable table;
   table.aim = header.aim();
+  table.lonlat = header.lonlat();
   table.has_z = header.has(z);
   table.has_target_z = header.has(tz);
   return table;
@@ -125,9 +140,9 @@ class CsvRow {
   std::string place() const { return place_of(rows_.line(), number_); }
   double number(Column column) const {
     double value = 0;
-    if (text(column).empty()) refuse(fmt::format("column '{}' is empty (expected a number)", kNames[column]));
+    if (text(column).empty()) refuse(fmt::format("column '{}' is empty (expected a number)", header_.names()[column]));
     if (!parse_field(text(column), value)) {
-      refuse(fmt::format("'{}' in column '{}' is not a number", shown_field(text(column)), kNames[column]));
+      refuse(fmt::format("'{}' in column '{}' is not a number", shown_field(text(column)), header_.names()[column]));
     }
     return value;
   }
@@ -138,7 +153,7 @@ class CsvRow {
   int whole(Column column) const {
     int value = 0;
     if (!parse_field(text(column), value)) {
-      refuse(fmt::format("'{}' in column '{}' is not an integer", shown_field(text(column)), kNames[column]));
+      refuse(fmt::format("'{}' in column '{}' is not an integer", shown_field(text(column)), header_.names()[column]));
     }
     return value;
   }

@@ -33,7 +33,8 @@ enum class RayAim : std::uint8_t {
   target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max is given
 };
 
-/// Whether a table must have the columns z and tz. Where they are missing, z is 0.
+/// Whether a table must have the columns z and tz. Where they are missing, z is 0. Tables without required heights may
+/// have columns lon, lat, tlon, tlat in place of x, y, tx, ty.
 enum class RayHeights : std::uint8_t { required, optional };
 
 /// One ray of the table.
@@ -51,6 +52,7 @@ struct RayRow {
 struct RayTable {
   std::string path;  ///< as opened, for messages
   RayAim aim = RayAim::direction;
+  bool lonlat = false;                     ///< x and y are from columns lon and lat
   bool has_z = true, has_target_z = true;  ///< whether the columns z and tz exist; see RayHeights
   std::vector<RayRow> rows;
   TextColumns carried;  ///< the other columns; one row per ray

@@ -225,6 +225,19 @@ TEST(Profile, HidesWhatIsBehindTheRidge) {
   for (const ProfilePoint& p : points) EXPECT_EQ(p.visible, p.col <= 5) << p.col;
 }
 
+TEST(Profile, MarksHoles) {
+  const auto field = field_of(11, 3, 10, [](int col, int) { return col == 4 || col == 5 ? std::nan("") : 0.; });
+  for (const double row : {1., 0.5}) {
+    const auto points = profile(SightLine(field, {0, row, 2}, {10, row, 2}, kFlat));
+    EXPECT_EQ(points.size(), 9u);
+    for (const ProfilePoint& p : points) EXPECT_EQ(p.after_hole, p.col == 6) << p.col;
+  }
+  // An end on a hole.
+  const auto points = profile(SightLine(field, {0, 1, 2}, {5, 1, 2, HeightDatum::sea}, kFlat));
+  ASSERT_EQ(points.size(), 5u);
+  for (const ProfilePoint& p : points) EXPECT_EQ(p.after_hole, p.col == 5) << p.col;
+}
+
 TEST(Viewshed, SeesAllOfAPlaneFromAboveIt) {
   const auto field = field_of(40, 30, 5, [](int col, int row) { return 2. * col + row; });
   for (const double height : {0., 2.})

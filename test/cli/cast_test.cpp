@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
+#include "cli/csv_rows.h"
 #include "cli/program.h"
 #include "scarp/march/march_settings.h"
 
@@ -18,34 +18,8 @@ namespace {
 
 using test::run;
 using Names = std::vector<std::string>;
-using Row = std::map<std::string, std::string>;
-
-// Of a CSV without quotes.
-std::vector<Row> rows_of(const std::string& csv) {
-  const auto fields = [](const std::string& line) {
-    Names result(1);
-    for (const char c : line) {
-      if (c == ',') {
-        result.emplace_back();
-      } else {
-        result.back() += c;
-      }
-    }
-    return result;
-  };
-  std::istringstream in(csv);
-  std::string line;
-  std::getline(in, line);
-  const Names names = fields(line);
-  std::vector<Row> rows;
-  while (std::getline(in, line)) {
-    const Names values = fields(line);
-    EXPECT_EQ(values.size(), names.size()) << line;
-    Row& row = rows.emplace_back();
-    for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) row[names[i]] = values[i];
-  }
-  return rows;
-}
+using test::Row;
+using test::rows_of;
 
 double number(const Row& row, const std::string& column) { return std::strtod(row.at(column).c_str(), nullptr); }
 
@@ -458,17 +432,6 @@ TEST_F(Cast, NotesSayWhyNothingWasHit) {
   }
 }
 
-TEST_F(Cast, RaysStartOnTheSurface) {
-  hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
-  // Along the plane: touching is a hit for a free ray, none for one that starts on it.
-  const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
-                           rays("x,y,z,dx,dy,dz,start_col,start_row\n15,15,0,1,0,0,,\n15,15,0,1,0,0,1,1\n")});
-  const auto rows = rows_of(result.out);
-  ASSERT_EQ(rows.size(), 2u) << result.err;
-  EXPECT_EQ(rows[0].at("status"), "hit");
-  EXPECT_EQ(rows[1].at("status"), "miss");
-}
-
 TEST_F(Cast, FilesAndStreams) {
   const std::string table = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
   const Names arguments = {"cast", hills(), "--crs", "local", "--rays"};
@@ -543,6 +506,8 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   expect_rays_refused(good, "not shared", {"--wrap", "shared"});
   expect_rays_refused(good, "above 0", {"--exaggeration", "0"});
   expect_rays_refused(good, "unknown", {"--march", "quick"});
+  expect_rays_refused(good, "march 'sphere-trace': is not for terrain (available: exhaustive, max-mip",
+                      {"--march", "sphere-trace"});
   expect_rays_refused(good, "correct --raster-crs or --bounds", {"--raster-crs", "EPSG:4326"});
   hills();
   rays(good);

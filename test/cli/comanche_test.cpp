@@ -85,6 +85,8 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
       {{"--ground", "lava"}, "--ground 'lava': expected ramp or natural"},
       {{"--ramp", scratch.path("gap.cpt")}, "line 2: begins at 20, but the previous line ends at 10"},
       {{"--ramp", scratch.path("down.cpt")}, "line 1: 10 to 5 does not ascend"},
+      {{"--ramp", "path.csv"}, "--ramp 'path.csv': expected viridis, "},
+      {{"--ramp", "path.csv"}, "or a .cpt, .txt, .clr or .png file"},
       {{"--ramp", scratch.path("none.cpt")}, "none.cpt: cannot be opened"},
       {{"--ramp", scratch.path("none.png")}, "none.png: does not exist"},
       {{"--overlay", scratch.path("unplaced.png")}, "overlay is not georeferenced, but the raster is"},
@@ -103,7 +105,7 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
     EXPECT_TRUE(is_one_line(result.err)) << result.err;
   }
   for (const auto& [path, says] :
-       {std::pair("empty.csv", "has no rows"), {"words.csv", "line 2"}, {"none.csv", "none.csv"}}) {
+       {std::pair("empty.csv", "has no rows"), {"words.csv", "line 2 (camera 0)"}, {"none.csv", "none.csv"}}) {
     const auto result = test::run({"render", dem, "-o", scratch.path("f##.png"), "--path", scratch.path(path)});
     EXPECT_EQ(result.status, 1);
     EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
@@ -280,6 +282,8 @@ TEST(Composite, TheNearerPixelIsSeen) {
   const auto result = test::run({"composite", ours, scratch.path("small.exr"), "-o", scratch.path("x.png")});
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("4 x 4 pixels"), std::string::npos) << result.err;
+  const auto missing = test::run({"composite", scratch.path("a.png"), ours, "-o", scratch.path("x.png")});
+  EXPECT_NE(missing.err.find("a.png': does not exist (name an EXR picture)"), std::string::npos) << missing.err;
 }
 
 // Nothing is as far away as the sky: a plate is seen before it, and another renderer's sky hides nothing.

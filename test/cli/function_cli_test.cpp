@@ -149,6 +149,9 @@ TEST_F(Functions, AreSampledIntoAnElevationModel) {
 
 TEST_F(Functions, SayInOneLineWhatIsWrong) {
   expect_refusal({"info", "--function", "moon"}, "neither a file that can be read nor one of hills");
+  expect_refusal({"render", "--function", "hills", "--march", "max-mip", "-o", out("a.png")},
+                 "march 'max-mip': is not for functions (available: ");
+  expect_refusal({"render", "--function", "hills", "--march", "quick", "-o", out("a.png")}, "march 'quick': unknown");
   expect_refusal({"info", "--function", "hills", "--extent", "-1"}, "--extent '-1': expected a number above 0");
   expect_refusal({"info", "--function", "hills", "--band", "2"}, "--band applies to terrain only");
   expect_refusal({"info", "--function", "hills", "a.tif"}, "'a.tif': --function replaces files");

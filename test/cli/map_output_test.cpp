@@ -181,6 +181,7 @@ TEST_F(MapOutput, FormatsAreThoseOfTheTable) {
   refused("a.bmp", {},
           "unknown picture format (name it *.png (PNG), *.jpg (JPEG), *.pdf (PDF), *.tif (GeoTIFF), *.exr");
   refused("a.tif", {}, "a GeoTIFF is a map (add --top, or name it *.png)");
+  refused("a-##.tif", {"--turntable"}, "frames are pictures, not maps (name it frame-####.png)");
   refused("a.png", {"--dpi", "300"}, "--dpi applies to .pdf files only");
   EXPECT_EQ(scratch_.files(), Names{"dem.tif"});
   EXPECT_EQ(render(dem_, "a.JPEG", {"--size", "80x60"}).status, 0);

@@ -120,6 +120,55 @@ TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
   expect_refused({"viewshed", "-ox", "500105", dem_, path("c.tif")}, "give both");
 }
 
+TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
+  const Names view = on_dem("viewshed") +
+                     Names{"--observer", "500105,5000105", "--max-distance", "150", "--cc", "0", "-o", path("a.tif")};
+  struct Seen {
+    double nodata;
+    float visible, hidden, beyond;
+    std::string share;
+  };
+  const auto seen = [&](const Names& more) {
+    const auto result = run(view + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto dataset = open(path("a.tif"));
+    const Pixels pixels = pixels_of(*dataset);
+    const double nodata = dataset->GetRasterBand(1)->GetNoDataValue();
+    EXPECT_EQ(pixels.at(0, 0), nodata);
+    const auto end = result.out.find(" % visible");
+    return Seen{nodata, pixels.at(5, 5), pixels.at(22, 9), pixels.at(29, 19),
+                result.out.substr(result.out.rfind(' ', end - 1) + 1, end - result.out.rfind(' ', end - 1) - 1)};
+  };
+  const Seen plain = seen({});
+  EXPECT_EQ(plain.nodata, 255);
+  EXPECT_EQ(plain.beyond, 255);
+  const Seen recoded = seen({"-vv", "255"});
+  EXPECT_EQ(recoded.nodata, 254);
+  EXPECT_EQ(recoded.visible, 255);
+  EXPECT_EQ(recoded.hidden, 0);
+  EXPECT_EQ(recoded.beyond, 254);
+  EXPECT_EQ(recoded.share, plain.share);
+  const Seen crowded = seen({"-vv", "255", "-iv", "253", "-ov", "254"});
+  EXPECT_EQ(crowded.nodata, 252);
+  EXPECT_EQ(crowded.beyond, 254);
+  EXPECT_EQ(crowded.share, plain.share);
+  // As gdal_viewshed has them: hidden and out of range are one value.
+  const Seen theirs = seen({"-vv", "255", "-iv", "0", "-ov", "0", "-a_nodata", "0"});
+  EXPECT_EQ(theirs.nodata, 0);
+  EXPECT_EQ(theirs.visible, 255);
+  EXPECT_EQ(theirs.hidden, 0);
+  EXPECT_EQ(theirs.beyond, 0);
+  EXPECT_EQ(theirs.share, plain.share);
+  fs::remove(path("a.tif"));
+  expect_refused(view + Names{"--visible-value", "7", "--hidden-value", "7"}, "--visible-value 7 and --hidden-value 7");
+  expect_refused(view + Names{"-vv", "0"}, "--visible-value 0 and --hidden-value 0");
+  expect_refused(view + Names{"-vv", "9", "-ov", "9"}, "--visible-value 9 and --out-of-range-value 9");
+  expect_refused(view + Names{"-vv", "9", "-a_nodata", "9"}, "--visible-value 9 and --nodata-value 9");
+  expect_refused(view + Names{"--mode", "ground", "--nodata-value", "0"}, "is also a value of --mode ground");
+  expect_refused(view + Names{"--mode", "angle", "--nodata-value=-90"}, "is also a value of --mode angle");
+  expect_refused(view + Names{"--mode", "dem", "--nodata-value", "50"}, "is also a value of --mode dem");
+}
+
 TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
   const std::string table = scratch_.write("towers.csv", "name,x,y,z\na,500105,5000105,2\nb,500285,5000105,2\n");
   ASSERT_EQ(run(on_dem("viewshed") + Names{"--observers", table, "--mode", "count", "-o", path("count.tif")}).status,
@@ -296,6 +345,22 @@ TEST_F(MapsCli, ProfileIsATableOrAFigure) {
   EXPECT_NE(text_of(path("p.svg")).find("<svg"), std::string::npos);
   ASSERT_EQ(run(line + Names{"-o", path("p.png"), "--size", "400x300"}).status, 0);
   EXPECT_EQ(text_of(path("p.png")).substr(1, 3), "PNG");
+  // There are no samples in the middle of this line: only paper above that part of the axis.
+  const auto ground_at = [&](const std::string& name, double share) {
+    const auto picture = open(name);
+    const Pixels red = pixels_of(*picture, 1), blue = pixels_of(*picture, 3);
+    const int col = static_cast<int>(share * red.cols);
+    int ground = 0;
+    for (int row = 0; row < red.rows; ++row) ground += red.at(col, row) > blue.at(col, row) + 20;
+    return ground;
+  };
+  std::string table = "ncols 30\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -1\n";
+  for (int i = 0; i < 60; ++i) table += i % 30 > 12 && i % 30 < 18 ? "-1 " : "50 ";
+  const std::string holes = scratch_.write("holes.asc", table);
+  ASSERT_EQ(run({"profile", holes, "--from", "5,5,2", "--to", "295,5,2", "-o", path("h.png")}).status, 0);
+  EXPECT_GT(ground_at(path("h.png"), 0.3), 0);
+  EXPECT_EQ(ground_at(path("h.png"), 0.5), 0);
+  EXPECT_GT(ground_at(path("h.png"), 0.7), 0);
 #endif
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
 }
@@ -329,7 +394,8 @@ TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
   fs::remove(path("g.pdf"));
   const Names shadow = on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.tif"), "--preview"};
   expect_refused(shadow + Names{path("x.exr")}, "no margins");
-  expect_refused(shadow + Names{path("x.png.txt")}, "unknown picture format");
+  expect_refused(shadow + Names{path("x.png.txt")},
+                 "unknown picture format (name it *.png (PNG), *.jpg (JPEG), *.pdf (PDF))");
   expect_refused(shadow + Names{path("./x.tif")}, "x.tif");
   expect_refused(shadow + Names{path("none/x.png")}, "none");
   expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("y.png"), "--preview", path("./y.png")},

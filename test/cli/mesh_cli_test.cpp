@@ -88,6 +88,20 @@ TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
   EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
 }
 
+TEST_F(MeshOption, OpenMeshesHaveNoVoxels) {
+  const auto refusal = [&](const std::string& mesh, const std::string& voxel) {
+    const auto result = run({"voxelise", mesh, "--voxel", voxel, "-o", scratch_.path("v.binvox")});
+    EXPECT_NE(result.status, 0);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    return result.err;
+  };
+  EXPECT_NE(refusal(roof_, "1").find("roof.obj': the mesh is open and has no inside: 4 of 5 edges"), std::string::npos);
+  const std::string closed =
+      scratch_.write("closed.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  EXPECT_NE(refusal(closed, "100").find("no voxel of 100 m has its middle inside"), std::string::npos);
+  EXPECT_EQ(run({"voxelise", closed, "--voxel", "1", "-o", scratch_.path("v.binvox")}).status, 0);
+}
+
 TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
   expect_refusal({"--mesh-at", "1,2"}, "--mesh-at has no effect without --mesh FILE");
   expect_refusal({"--mesh", roof_, "--mesh-up", "x"}, "--mesh-up 'x': expected y or z");

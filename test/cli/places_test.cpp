@@ -120,6 +120,23 @@ TEST_F(Places, OfPathsFollowTheGround) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(text_of(scratch_.path("frame-1.png")), picture({"--eye", "100,100,104", "--target", "100,150,100"}));
   EXPECT_EQ(text_of(scratch_.path("frame-2.png")), picture({"--eye", "180,100,128", "--target", "100,150,100"}));
+  // In degrees, under the names that other tables have.
+  const std::string degrees = scratch_.write("degrees.asc", valley("xllcorner 10\nyllcorner 50\n", "0.001"));
+  const auto cross = [&](const std::string& header, const std::string& coordinates) {
+    const std::string table = scratch_.write("degrees.csv", header + "\n10.002,50.002,300,10.01,50.01,100\n");
+    return run({"render", degrees, "--crs", "EPSG:4326", "-o", frames, "--size", "24x18", "--aa", "1", "--overwrite",
+                "--path", table, "--coords", coordinates});
+  };
+  ASSERT_EQ(cross("x,y,z,tx,ty,tz", "lonlat").status, 0);
+  const std::string expected = text_of(scratch_.path("frame-0.png"));
+  fs::remove(scratch_.path("frame-0.png"));
+  const auto named = cross("lon,lat,z,tlon,tlat,tz", "lonlat");
+  ASSERT_EQ(named.status, 0) << named.err;
+  EXPECT_EQ(text_of(scratch_.path("frame-0.png")), expected);
+  EXPECT_NE(cross("lon,lat,z,tlon,tlat,tz", "map").err.find("has columns lon and lat (give --coords lonlat)"),
+            std::string::npos);
+  EXPECT_NE(cross("lon,lat,z,tlon,tlat,tz\n,,,,,", "lonlat").err.find("column 'lon' is empty"), std::string::npos);
+  EXPECT_NE(cross("lon,y,z,tlon,tlat,tz", "lonlat").err.find("no column 'lat'"), std::string::npos);
   const std::string plain = "x,y,z,dx,dy,dz\n20,100,150,1,0,0\n";
   EXPECT_NE(flight(plain, {"--eye-above", "4"}).err.find("which --eye-above replaces"), std::string::npos);
   EXPECT_NE(flight("x,y,dx,dy,dz\n20,100,1,0,0\n", {}).err.find("has no column 'z' (give --eye-above M)"),

@@ -66,6 +66,8 @@ TEST_F(Seen, WhereTheEyeIs) {
   expect_warning("is behind the eye", file, {"--eye", "1000,-500,900", "--target", "1000,-900,800"});
   expect_warning("looks past the scene", file, {"--eye", "1000,-500,900", "--target", "9000,-400,900"});
   expect_warning("m away and 2300 m wide", file, {"--view", "205,35,60"});
+  expect_warning(": --area is beside the scene", file, {"--top", "--area", "5000,5000,6000,6000"});
+  expect_warning(": --area has little of the scene in it", file, {"--top", "--area", "-90000,-90000,90000,90000"});
 }
 
 TEST_F(Seen, WhatStandsInTheWay) {

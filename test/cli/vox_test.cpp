@@ -337,6 +337,23 @@ TEST_F(CliVox, TooLargeASceneIsNamed) {
   expect_refused({"info", model_}, named);
 }
 
+TEST_F(CliVox, SectionsOfLargeModelsAreRefused) {
+  const std::string model = scratch_.write("long.raw", std::string(600, 'a'));
+  const auto err = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"section", model, "--volume", "600x1x1:u8", "-o", path("out.svg")};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto result = run(words);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    return result.err;
+  };
+  EXPECT_NE(err({}).find("long.raw: the layer with its margin is 608 x 9 voxels (limited to 256 per side; try another"),
+            std::string::npos);
+  EXPECT_NE(
+      err({"--axis", "x"}).find("long.raw: the model with its margin has 608 layers (limited to 512; try another"),
+      std::string::npos);
+}
+
 TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
   const std::string out = path("out.png");
   expect_refused({"render", model_, "-o", out, "--rounded", "0.6"}, "0 to 0.5");

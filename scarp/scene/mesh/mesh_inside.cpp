@@ -19,22 +19,6 @@ bool before(const vec3& a, const vec3& b) { return std::tie(a.x, a.y, a.z) < std
 
 Edge in_order(const vec3& a, const vec3& b) { return before(b, a) ? Edge{b, a} : Edge{a, b}; }
 
-bool is_closed(std::span<const vec3> corners) {
-  std::vector<Edge> edges;
-  edges.reserve(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    edges.push_back(in_order(corners[i], corners[i % 3 == 2 ? i - 2 : i + 1]));
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return before(a.first, b.first) || (a.first == b.first && before(a.second, b.second));
-  });
-  for (auto begin = edges.begin(); begin != edges.end();) {
-    const auto end = std::find_if(begin, edges.end(), [&](const Edge& edge) { return edge != *begin; });
-    if ((end - begin) % 2 != 0) return false;
-    begin = end;
-  }
-  return true;
-}
-
 // Whether the edge passes the point in the east.
 bool is_east(const vec3& a, const vec3& b, const dvec3& p) {
   const auto [from, to] = in_order(a, b);
@@ -53,7 +37,25 @@ double height(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& p) {
 
 }  // namespace
 
-MeshInside::MeshInside(std::span<const vec3> corners) : corners_(corners), closed_(is_closed(corners)) {
+MeshEdges count_edges(std::span<const vec3> corners) {
+  std::vector<Edge> edges;
+  edges.reserve(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    edges.push_back(in_order(corners[i], corners[i % 3 == 2 ? i - 2 : i + 1]));
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return before(a.first, b.first) || (a.first == b.first && before(a.second, b.second));
+  });
+  MeshEdges count;
+  for (auto begin = edges.begin(); begin != edges.end();) {
+    const auto end = std::find_if(begin, edges.end(), [&](const Edge& edge) { return edge != *begin; });
+    ++count.all;
+    count.open += (end - begin) % 2 != 0;
+    begin = end;
+  }
+  return count;
+}
+
+MeshInside::MeshInside(std::span<const vec3> corners) : corners_(corners), closed_(count_edges(corners).open == 0) {
   if (!closed_) return;
   std::vector<WorldBox> boxes;
   for (std::size_t i = 0; i < corners.size(); i += 3) {

@@ -11,15 +11,19 @@
 #include <span>
 
 #include "scarp/scene/box_tree.h"
+#include "scarp/scene/mesh/scene_mesh.h"
 
 namespace scarp {
+
+/// Counts the edges of triangles, three corners each. Corners are the same where their coordinates are.
+MeshEdges count_edges(std::span<const vec3> corners);
 
 class MeshInside {
  public:
   /// `corners`, three per triangle, must outlive it.
   explicit MeshInside(std::span<const vec3> corners);
 
-  /// Whether every edge belongs to an even number of triangles. Corners are the same where their coordinates are.
+  /// Whether every edge belongs to an even number of triangles.
   bool closed() const { return closed_; }
   /// The nearest triangle above a point inside the mesh; nullopt outside, and everywhere if the mesh is not closed.
   std::optional<std::uint32_t> above(const dvec3& p) const;

@@ -84,6 +84,7 @@ class MeshField final : public SceneField {
   std::string_view kind() const override { return "mesh"; }
   std::string_view march() const override { return "embree"; }
   std::int64_t elements() const override { return static_cast<std::int64_t>(triangles_); }
+  MeshEdges edges() const { return count_edges(std::span(positions_).first(3 * triangles_)); }
   std::optional<WorldBox> box() const override { return box_; }
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
@@ -334,5 +335,10 @@ class MeshField final : public SceneField {
 }  // namespace
 
 SceneFieldPtr scene_mesh(const TriangleMesh& mesh) { return std::make_shared<MeshField>(mesh); }
+
+std::optional<MeshEdges> mesh_edges(const SceneField& field) {
+  const auto* mesh = dynamic_cast<const MeshField*>(&field);
+  return mesh ? std::optional(mesh->edges()) : std::nullopt;
+}
 
 }  // namespace scarp

@@ -13,6 +13,9 @@
 // the mesh's size. t, u and v are computed in double from the triangle that was found.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include "scarp/scene/placement.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/source/mesh_file.h"
@@ -32,6 +35,14 @@ constexpr double kMeshRounding = 0x1p-18;
 ///
 /// Throws Error: no triangles, corners that are not finite, out of memory.
 SceneFieldPtr scene_mesh(const TriangleMesh& mesh);
+
+/// Edges of a mesh. It is closed, and has an inside, if none is open.
+struct MeshEdges {
+  std::size_t all = 0;
+  std::size_t open = 0;  ///< that belong to an odd number of triangles
+};
+/// Returns nullopt for other kinds of field.
+std::optional<MeshEdges> mesh_edges(const SceneField& field);
 
 /// Where a mesh stands.
 struct MeshPlacement {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Rows of the tables that `scarp` prints.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace scarp::test {
+
+/// Values by column.
+using Row = std::map<std::string, std::string>;
+
+/// Of a CSV without quotes.
+inline std::vector<Row> rows_of(const std::string& csv) {
+  const auto fields = [](const std::string& line) {
+    std::vector<std::string> result(1);
+    for (const char c : line) {
+      if (c == ',') {
+        result.emplace_back();
+      } else {
+        result.back() += c;
+      }
+    }
+    return result;
+  };
+  std::istringstream in(csv);
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> names = fields(line);
+  std::vector<Row> rows;
+  while (std::getline(in, line)) {
+    const std::vector<std::string> values = fields(line);
+    EXPECT_EQ(values.size(), names.size()) << line;
+    Row& row = rows.emplace_back();
+    for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) row[names[i]] = values[i];
+  }
+  return rows;
+}
+
+}  // namespace scarp::test
