@@ -37,30 +37,12 @@ void lift(CameraStation& station, const RayTable& table, const PathPlaces& path,
   station.eye = eye;
 }
 
-// Readers of rays count them; here they are cameras.
-std::string in_words_of_paths(std::string text) {
-  for (const std::string_view before : {"(", ": "}) {
-    const std::string ray = fmt::format("{}ray ", before);
-    if (const std::size_t at = text.rfind(ray); at != std::string::npos)
-      text.replace(at, ray.size(), fmt::format("{}camera ", before));
-  }
-  return text;
-}
-
-RayTable read_path(const std::string& file) {
-  try {
-    return read_rays(file, RayHeights::optional);
-  } catch (const Error& error) {
-    throw Error(in_words_of_paths(error.what()));
-  }
-}
-
 // One per row, in world metres.
 std::vector<CameraStation> stations_of(const RayTable& table, const PathPlaces& path) {
   std::vector<CameraStation> stations;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const RayRow& row = table.rows[i];
-    const std::string what = in_words_of_paths(table.where(i));
+    const std::string what = table.where(i);
     CameraStation station{path.places.world(row.origin, what), {}};
     if (table.aim == RayAim::direction) {
       station.target = station.eye + path.places.world_direction(row.aim);
@@ -123,7 +105,7 @@ std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& vie
     }
     return cameras;
   }
-  const RayTable table = read_path(o.path);
+  const RayTable table = read_rays(o.path, RayRows::cameras);
   if (table.rows.empty()) throw Error(fmt::format("path '{}': has no rows; one camera each is expected", o.path));
   if (table.lonlat && path.places.frame().coordinates() != Coordinates::lonlat)
     throw Error(fmt::format("path '{}': has columns lon and lat (give --coords lonlat)", o.path));

@@ -233,20 +233,6 @@ std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers
   return counts;
 }
 
-// Throws Error for a nodata value that pixels with a sample may have.
-double nodata_of_numbers(const ViewshedOptions& options, const HeightField& field) {
-  if (options.mode == "visible" || options.mode == "count" || !options.nodata) return kNoHeight;
-  const double nodata = *options.nodata, relief = field.max_height() - field.min_height();
-  const auto [low, high] = options.mode == "angle" ? std::pair(-90.0, 90.0)
-                           : options.mode == "dem" ? std::pair<double, double>(field.min_height(), field.max_height())
-                                                   : std::pair(0.0, relief);
-  if (nodata >= low && nodata <= high)
-    throw Error(
-        fmt::format("--nodata-value {:.10g}: is also a value of --mode {} (choose one outside {:.10g} to {:.10g})",
-                    nodata, options.mode, low, high));
-  return nodata;
-}
-
 // Returns NaN where there is nothing.
 std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, const RowBand& rows,
                                 const Progress& progress) {
@@ -279,10 +265,13 @@ std::vector<float> angle_pixels(const std::vector<Observer>& observers, const Ro
   return pixels;
 }
 
-// Writes nodata in place of NaN. Returns how often.
-std::size_t mark_nothing(std::vector<float>& pixels, float nodata) {
+// Writes nodata in place of NaN. Returns how often. Throws Error if a pixel with something has that value.
+std::size_t mark_nothing(std::vector<float>& pixels, double written) {
+  const auto nodata = static_cast<float>(written);
   std::size_t count = 0;
   for (float& pixel : pixels) {
+    if (pixel == nodata)
+      throw Error(fmt::format("--nodata-value {:.10g}: is also a value of the map (choose another)", written));
     if (!std::isnan(pixel)) continue;
     pixel = nodata;
     ++count;
@@ -311,7 +300,7 @@ void run(ViewshedOptions options, const Command& command) {
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
   keep_inputs(options.output, input.files());
-  const double number_nodata = nodata_of_numbers(options, input.field());
+  const double number_nodata = options.nodata.value_or(kNoHeight);
   const std::vector<Observer> observers = observers_of(input, options);
 
   const RowBand rows = rows_of_part(input, options.raster_output);
@@ -360,13 +349,13 @@ void run(ViewshedOptions options, const Command& command) {
     what = fmt::format("{} observers", observers.size());
   } else if (options.mode == "angle") {
     numbers = angle_pixels(observers, rows, progress);
-    const std::size_t hidden = mark_nothing(numbers, static_cast<float>(number_nodata));
+    const std::size_t hidden = mark_nothing(numbers, number_nodata);
     map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), number_nodata});
     what = fmt::format("{:.3g} % visible", share_of(nodes - static_cast<double>(hidden), nodes));
   } else {
     const bool dem = options.mode == "dem";
     numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress);
-    mark_nothing(numbers, static_cast<float>(number_nodata));
+    mark_nothing(numbers, number_nodata);
     map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
                          std::span<const float>(numbers), number_nodata});
     what = "least visible heights";

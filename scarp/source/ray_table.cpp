@@ -17,10 +17,10 @@
 namespace scarp {
 namespace {
 
-std::string_view needed(RayHeights heights) {
-  return heights == RayHeights::required ? "required: x,y,z and either dx,dy,dz or tx,ty,tz"
-                                         : "required: x,y[,z] and either dx,dy,dz or tx,ty[,tz]; or lon,lat[,z] and "
-                                           "either dx,dy,dz or tlon,tlat[,tz]";
+std::string_view needed(RayRows are) {
+  return are == RayRows::rays ? "required: x,y,z and either dx,dy,dz or tx,ty,tz"
+                              : "required: x,y[,z] and either dx,dy,dz or tx,ty[,tz]; or lon,lat[,z] and "
+                                "either dx,dy,dz or tlon,tlat[,tz]";
 }
 
 enum Column : std::size_t { x, y, z, dx, dy, dz, tx, ty, tz, t_min, t_max, start_col, start_row, column_count };
@@ -32,8 +32,9 @@ constexpr auto kNamesInDegrees = [] {
   return names;
 }();
 
-std::string place_of(std::int64_t line, std::size_t row) {
-  return line > 0 ? fmt::format("line {} (ray {})", line, row) : fmt::format("ray {}", row);
+std::string place_of(RayRows are, std::int64_t line, std::size_t row) {
+  const std::string_view one = are == RayRows::rays ? "ray" : "camera";
+  return line > 0 ? fmt::format("line {} ({} {})", line, one, row) : fmt::format("{} {}", one, row);
 }
 
 // Checks a row from any source; calls `place` only for errors.
@@ -57,9 +58,9 @@ void check(const RayRow& row, RayAim aim, const Place& place) {
 // Maps fields of a row to columns.
 class CsvHeader {
  public:
-  CsvHeader(std::span<const std::string_view> fields, RayHeights heights) : fields_(fields.size()), heights_(heights) {
+  CsvHeader(std::span<const std::string_view> fields, RayRows are) : fields_(fields.size()), are_(are) {
     places_.fill(kNone);
-    if (heights == RayHeights::optional) {
+    if (are == RayRows::cameras) {
       lonlat_ =
           std::any_of(fields.begin(), fields.end(), [](std::string_view field) { return trimmed(field) == "lon"; });
     }
@@ -83,8 +84,8 @@ class CsvHeader {
     } else {
       require({dx, dy, dz});
     }
-    if (heights == RayHeights::required) require({z});
-    if (heights == RayHeights::required && targets) require({tz});
+    if (are == RayRows::rays) require({z});
+    if (are == RayRows::rays && targets) require({tz});
     if (has(start_col) != has(start_row)) {
       throw Error(fmt::format("no column '{}', required with '{}'", kNames[has(start_col) ? start_row : start_col],
                               kNames[has(start_col) ? start_col : start_row]));
@@ -92,6 +93,7 @@ class CsvHeader {
     aim_ = targets ? RayAim::target : RayAim::direction;
   }
 
+  RayRows are() const { return are_; }
   RayAim aim() const { return aim_; }
   bool lonlat() const { return lonlat_; }
   const std::array<std::string_view, column_count>& names() const { return lonlat_ ? kNamesInDegrees : kNames; }
@@ -105,14 +107,14 @@ class CsvHeader {
 
   void require(std::initializer_list<Column> columns) const {
     for (const Column column : columns) {
-      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", names()[column], needed(heights_)));
+      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", names()[column], needed(are_)));
     }
   }
 
   std::array<std::size_t, column_count> places_{};
   std::vector<std::size_t> carried_;
   std::size_t fields_;
-  RayHeights heights_;
+  RayRows are_;
   RayAim aim_ = RayAim::direction;
   bool lonlat_ = false;
 };
@@ -120,6 +122,7 @@ class CsvHeader {
 // Without rows.
 RayTable table_of(const CsvHeader& header) {
   RayTable table;
+  table.are = header.are();
   table.aim = header.aim();
   table.lonlat = header.lonlat();
   table.has_z = header.has(z);
@@ -137,7 +140,7 @@ class CsvRow {
     }
   }
 
-  std::string place() const { return place_of(rows_.line(), number_); }
+  std::string place() const { return place_of(header_.are(), rows_.line(), number_); }
   double number(Column column) const {
     double value = 0;
     if (text(column).empty()) refuse(fmt::format("column '{}' is empty (expected a number)", header_.names()[column]));
@@ -233,10 +236,10 @@ std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64
   return static_cast<std::size_t>(header.shape[0]);
 }
 
-RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays, RayHeights heights) {
+RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays, RayRows are) {
   std::vector<std::string_view> names;
   for (const NpyField& field : header.fields) names.push_back(field.name);
-  const CsvHeader columns(names, heights);
+  const CsvHeader columns(names, are);
   std::array<NumberReader, column_count> readers{};
   for (std::size_t c = 0; c < column_count; ++c) {
     if (!columns.has(static_cast<Column>(c))) continue;
@@ -258,7 +261,7 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
     const auto whole = [&](Column column) {
       const double value = number(column);
       if (value != std::floor(value) || !(std::abs(value) <= std::numeric_limits<int>::max())) {
-        throw Error(fmt::format("{}: {} in field '{}' is not an integer", place_of(0, i), value, kNames[column]));
+        throw Error(fmt::format("{}: {} in field '{}' is not an integer", place_of(are, 0, i), value, kNames[column]));
       }
       return static_cast<int>(value);
     };
@@ -271,15 +274,16 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
       row.start = RayStart::on_surface;
       row.start_cell = {whole(start_col), whole(start_row)};
     }
-    check(row, table.aim, [&] { return place_of(0, i); });
+    check(row, table.aim, [&] { return place_of(are, 0, i); });
   }
   return table;
 }
 
-RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays) {
+RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays, RayRows are) {
   const NumberReader reader = reader_of(header.kind, header.bytes);
   const auto columns = static_cast<std::size_t>(header.shape[1]), bytes = static_cast<std::size_t>(header.bytes);
   RayTable table;
+  table.are = are;
   table.rows.resize(rays);
   for (std::size_t i = 0; i < rays; ++i) {
     const auto number = [&](std::size_t column) {
@@ -293,7 +297,7 @@ RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays
       row.t_min = number(6);
       row.t_max = number(7);
     }
-    check(row, table.aim, [&] { return place_of(0, i); });
+    check(row, table.aim, [&] { return place_of(are, 0, i); });
   }
   return table;
 }
@@ -301,17 +305,17 @@ RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays
 }  // namespace
 
 std::string RayTable::where(std::size_t row) const {
-  return fmt::format("{}: {}", path, place_of(rows[row].line, row));
+  return fmt::format("{}: {}", path, place_of(are, rows[row].line, row));
 }
 
-RayTable parse_ray_csv(std::string_view bytes, RayHeights heights) {
+RayTable parse_ray_csv(std::string_view bytes, RayRows are) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("UTF-16 text (save it as UTF-8)");
   CsvRows rows(bytes);
-  if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", needed(heights)));
+  if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", needed(are)));
   if (double number = 0; parse_field(trimmed(rows.fields().front()), number)) {
-    throw Error(fmt::format("first line contains numbers instead of a header ({})", needed(heights)));
+    throw Error(fmt::format("first line contains numbers instead of a header ({})", needed(are)));
   }
-  const CsvHeader header(rows.fields(), heights);
+  const CsvHeader header(rows.fields(), are);
   RayTable table = table_of(header);
   for (const std::size_t i : header.carried()) table.carried.names.emplace_back(trimmed(rows.fields()[i]));
   while (rows.next()) {
@@ -321,7 +325,7 @@ RayTable parse_ray_csv(std::string_view bytes, RayHeights heights) {
   return table;
 }
 
-RayTable parse_ray_npy(std::string_view bytes, RayHeights heights) {
+RayTable parse_ray_npy(std::string_view bytes, RayRows are) {
   const NpyHeader header = parse_npy_table_header(bytes);
   const auto& shape = header.shape;
   const std::string_view behind = bytes.substr(static_cast<std::size_t>(header.data_begin));
@@ -329,7 +333,7 @@ RayTable parse_ray_npy(std::string_view bytes, RayHeights heights) {
     if (shape.size() != 1) {
       throw Error(fmt::format("array of structures of shape ({}) (one dimension required)", fmt::join(shape, ", ")));
     }
-    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes), heights);
+    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes), are);
   }
   if (header.kind != 'f' || (header.bytes != 4 && header.bytes != 8)) {
     throw Error(fmt::format("unsupported type '{}' (supported: float32, float64)", header.descr));
@@ -338,14 +342,14 @@ RayTable parse_ray_npy(std::string_view bytes, RayHeights heights) {
     throw Error(fmt::format("array of shape ({}) (must be (N, 6) or (N, 8): x,y,z,dx,dy,dz[,t_min,t_max])",
                             fmt::join(shape, ", ")));
   }
-  return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes));
+  return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes), are);
 }
 
-RayTable read_rays(const std::string& path, RayHeights heights) {
+RayTable read_rays(const std::string& path, RayRows are) {
   try {
     const std::string bytes = table_bytes(path);
     const bool npy = bytes.starts_with("\x93NUMPY") || (path.ends_with(".npy") && !bytes.empty());
-    RayTable table = npy ? parse_ray_npy(bytes, heights) : parse_ray_csv(bytes, heights);
+    RayTable table = npy ? parse_ray_npy(bytes, are) : parse_ray_csv(bytes, are);
     table.path = path;
     return table;
   } catch (const Error& error) {

@@ -33,9 +33,9 @@ enum class RayAim : std::uint8_t {
   target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max is given
 };
 
-/// Whether a table must have the columns z and tz. Where they are missing, z is 0. Tables without required heights may
-/// have columns lon, lat, tlon, tlat in place of x, y, tx, ty.
-enum class RayHeights : std::uint8_t { required, optional };
+/// What the rows of a table are. Tables of rays must have the columns z and tz. In tables of cameras these are 0 where
+/// they are missing, and columns lon, lat, tlon, tlat may stand in place of x, y, tx, ty.
+enum class RayRows : std::uint8_t { rays, cameras };
 
 /// One ray of the table.
 struct RayRow {
@@ -51,27 +51,28 @@ struct RayRow {
 /// The rays of a table.
 struct RayTable {
   std::string path;  ///< as opened, for messages
+  RayRows are = RayRows::rays;
   RayAim aim = RayAim::direction;
   bool lonlat = false;                     ///< x and y are from columns lon and lat
-  bool has_z = true, has_target_z = true;  ///< whether the columns z and tz exist; see RayHeights
+  bool has_z = true, has_target_z = true;  ///< whether the columns z and tz exist
   std::vector<RayRow> rows;
   TextColumns carried;  ///< the other columns; one row per ray
 
-  /// For messages: "a.csv: line 8 (ray 6)"; lines count from 1, rays from 0.
+  /// For messages: "a.csv: line 8 (ray 6)", or (camera 6); lines count from 1, the others from 0.
   std::string where(std::size_t row) const;
 };
 
 /// Throws Error with line and ray but without the file's name: missing columns, duplicate columns or both direction and
 /// target; rows of a different length than the header, fields that are not finite numbers, zero directions; unclosed
 /// quotes; an empty text. A header alone is a table without rays.
-RayTable parse_ray_csv(std::string_view bytes, RayHeights heights = RayHeights::required);
+RayTable parse_ray_csv(std::string_view bytes, RayRows are = RayRows::rays);
 
 /// Parses the bytes of a .npy file. Throws Error without the file's name: another type or shape, truncated bytes, and
 /// values that parse_ray_csv() rejects.
-RayTable parse_ray_npy(std::string_view bytes, RayHeights heights = RayHeights::required);
+RayTable parse_ray_npy(std::string_view bytes, RayRows are = RayRows::rays);
 
 /// Reads a file, or standard input if `path` is "-". Detects .npy by its first bytes; everything else is CSV. Throws
 /// Error naming the file.
-RayTable read_rays(const std::string& path, RayHeights heights = RayHeights::required);
+RayTable read_rays(const std::string& path, RayRows are = RayRows::rays);
 
 }  // namespace scarp

@@ -105,19 +105,18 @@ TEST(RayCsv, QuotesHoldSeparatorsQuotesAndLineEnds) {
 }
 
 TEST(RayCsv, HeightsMayBeLeftOut) {
-  const RayTable targets = parse_ray_csv("x,y,tx,ty\n1,2,3,4\n", RayHeights::optional);
+  const RayTable targets = parse_ray_csv("x,y,tx,ty\n1,2,3,4\n", RayRows::cameras);
   EXPECT_FALSE(targets.has_z || targets.has_target_z);
   EXPECT_EQ(targets.rows.at(0).origin, dvec3(1, 2, 0));
   EXPECT_EQ(targets.rows.at(0).aim, dvec3(3, 4, 0));
-  const RayTable with_z = parse_ray_csv("x,y,z,dx,dy,dz\n1,2,3,0,0,-1\n", RayHeights::optional);
+  const RayTable with_z = parse_ray_csv("x,y,z,dx,dy,dz\n1,2,3,0,0,-1\n", RayRows::cameras);
   EXPECT_TRUE(with_z.has_z);
-  const auto refusal = [](const char* text, RayHeights heights) {
+  const auto refusal = [](const char* text, RayRows heights) {
     return test::refusal([&] { static_cast<void>(parse_ray_csv(text, heights)); });
   };
-  EXPECT_NE(refusal("x,y,tx,ty\n1,2,3,4\n", RayHeights::required).find("no column 'z'"), std::string::npos);
-  EXPECT_NE(refusal("x,y,z,tx,ty\n1,2,3,4,5\n", RayHeights::required).find("no column 'tz'"), std::string::npos);
-  EXPECT_NE(refusal("x,tx,ty\n1,3,4\n", RayHeights::optional).find("no column 'y' (required: x,y[,z]"),
-            std::string::npos);
+  EXPECT_NE(refusal("x,y,tx,ty\n1,2,3,4\n", RayRows::rays).find("no column 'z'"), std::string::npos);
+  EXPECT_NE(refusal("x,y,z,tx,ty\n1,2,3,4,5\n", RayRows::rays).find("no column 'tz'"), std::string::npos);
+  EXPECT_NE(refusal("x,tx,ty\n1,3,4\n", RayRows::cameras).find("no column 'y' (required: x,y[,z]"), std::string::npos);
 }
 
 TEST(RayCsv, AHeaderAloneIsATableWithoutRays) { EXPECT_TRUE(parse_ray_csv(kHeader).rows.empty()); }
