@@ -33,8 +33,8 @@ enum class RayAim : std::uint8_t {
   target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max is given
 };
 
-/// What the rows of a table are. Tables of rays must have the columns z and tz. Tables of cameras may lack them, which
-/// counts as 0, and may have columns lon, lat, tlon, tlat in place of x, y, tx, ty.
+/// The kind of a table: rays or cameras. Tables of rays must have the columns z and tz. Tables of cameras may lack
+/// them, which counts as 0, and may have columns lon, lat, tlon, tlat in place of x, y, tx, ty.
 enum class RayRows : std::uint8_t { rays, cameras };
 
 /// One ray of the table.
