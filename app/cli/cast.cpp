@@ -115,40 +115,31 @@ Places places_of(const CastOptions& options, const OpenedInput& input) {
 }
 
 // Returns how far in metres a ray from the surface starts above or below it. Throws Error, without file and line, if it
-// does not start over its cell.
-double off_surface(const Ray& ray, const HeightField& field, Coordinates coordinates) {
+// starts over none of its cell and the cells around it: a hit on a border that was rounded is over one of those.
+double off_surface(const Ray& ray, const HeightField& field) {
   const GridRay grid = field.grid_from_world(ray);
-  const HeightFieldSettings& cells = field.settings();
-  // Hits of another cast may be exactly on the border. Coordinates and the ways of their rays are at most half the
-  // equator. Roundings: 8 where a march crosses a line (numerics.md), 2 of the hit point, 8 from local to map and back,
-  // 2 to the grid. PROJ's inverse projections stop at 1e-10 radians.
-  constexpr double kFarthest_m = 20037508.5, kRoundings = 20, kUnit = 0x1p-53, kProj_m = 6378137 * 1e-10;
-  const double rounding_m = kRoundings * kUnit * kFarthest_m + (coordinates == Coordinates::lonlat ? kProj_m : 0);
+  const dvec3 at = grid.origin + grid.direction * ray.t_min;
+  const ivec3 cell(ray.start_cell.col, ray.start_cell.row, 0), count(field.cell_cols(), field.cell_rows(), 0);
   double place[2];
   for (int axis = 0; axis < 2; ++axis) {
-    const int cell = axis == 0 ? ray.start_cell.col : ray.start_cell.row,
-              count = axis == 0 ? field.cell_cols() : field.cell_rows();
-    const double side = axis == 0 ? cells.cell_x : cells.cell_y, begin = grid.origin[axis],
-                 way = grid.direction[axis] * ray.t_min;
-    place[axis] = begin + way - cell;
-    if (field.wraps()) place[axis] -= count * std::round((place[axis] - 0.5) / count);
-    const double rounding = rounding_m / side + kRoundings * kUnit * (std::abs(begin) + std::abs(way) + count);
-    if (!(place[axis] >= -rounding && place[axis] <= 1 + rounding)) {
-      const dvec3 at = grid.origin + grid.direction * ray.t_min;
+    place[axis] = at[axis] - cell[axis];
+    if (field.wraps()) place[axis] -= count[axis] * std::round((place[axis] - 0.5) / count[axis]);
+    if (!(place[axis] >= -1 && place[axis] <= 2)) {
       throw Error(
           fmt::format("it starts at column {:.10g}, row {:.10g} of the samples, which is not in the cell of start_col "
-                      "{} and start_row {}",
-                      at.x, at.y, ray.start_cell.col, ray.start_cell.row));
+                      "{} and start_row {}, nor next to it",
+                      at.x, at.y, cell.x, cell.y));
     }
   }
   const CellHeights heights = *field.cell_heights(ray.start_cell);
   const double u = std::clamp(place[0], 0.0, 1.0), v = std::clamp(place[1], 0.0, 1.0);
-  return std::abs(ray.at(ray.t_min).z - field.height_from_sample(height_in_cell(cells.surface, heights, u, v)));
+  return std::abs(ray.at(ray.t_min).z -
+                  field.height_from_sample(height_in_cell(field.settings().surface, heights, u, v)));
 }
 
-// Checks all rays. Those that start on a surface start on the only terrain of the scene; returns a note if they do not,
-// by their heights.
-std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene, Coordinates coordinates) {
+// Checks all rays. Those that start on a surface start on the only terrain of the scene; returns a note if one starts
+// farther above or below it than the side of a cell.
+std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
   constexpr std::string_view kPrefix = "ray: ";
   double farthest = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -160,8 +151,7 @@ std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene
     rays[i].start_object = scene.terrain_object();
     try {
       validate(rays[i], scene);
-      if (rays[i].start == RayStart::on_surface)
-        farthest = std::max(farthest, off_surface(rays[i], *scene.terrain(), coordinates));
+      if (rays[i].start == RayStart::on_surface) farthest = std::max(farthest, off_surface(rays[i], *scene.terrain()));
     } catch (const Error& error) {
       // Here the ray has a name.
       std::string_view text = error.what();
@@ -169,10 +159,9 @@ std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene
       throw Error(fmt::format("{}: {}", table.where(i), text));
     }
   }
-  constexpr double kNoticed = 0.01;  // of a cell
   if (farthest == 0) return {};
   const HeightFieldSettings& cells = scene.terrain()->settings();
-  if (!(farthest > kNoticed * std::min(cells.cell_x, cells.cell_y))) return {};
+  if (farthest <= std::min(cells.cell_x, cells.cell_y)) return {};
   return fmt::format(
       "rays with start_col and start_row start on the surface, but z is up to {:.3g} m away from it; it counts as the "
       "height of the surface there",
@@ -378,8 +367,7 @@ void run(CastOptions options, const Command& command) {
   stop_if_interrupted();
   const Scene whole = mesh.with_mesh(std::move(input.scene), places);
   notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());
-  if (std::string note = check(table, rays, whole, frame.coordinates()); !note.empty())
-    notes.push_back(std::move(note));
+  if (std::string note = check(table, rays, whole); !note.empty()) notes.push_back(std::move(note));
   stop_if_interrupted();
 
   const SceneOnDevice there = scene_on_device(options.device, whole);

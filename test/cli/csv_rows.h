@@ -16,7 +16,7 @@ namespace scarp::test {
 /// Values by column.
 using Row = std::map<std::string, std::string>;
 
-/// Of a CSV without quotes.
+/// Returns the rows of a CSV without quotes.
 inline std::vector<Row> rows_of(const std::string& csv) {
   const auto fields = [](const std::string& line) {
     std::vector<std::string> result(1);
