@@ -85,7 +85,7 @@ class AheadWalk {
       std::uint32_t waiting = 0;
       if (level > 2) {
         waiting = blocks(fixed, level, nx, ny) & ahead;
-      } else if (cells(fixed, nx, ny, answer, t_clear)) {
+      } else if (cells(fixed, nx, ny, answer)) {
         return answer;
       }
       bool up = false;
@@ -216,7 +216,7 @@ class AheadWalk {
   }
 
   // The cells of a block of level 2. Returns true if `answer` is known.
-  HWY_NOINLINE bool cells(const Fixed& f, std::int32_t nx, std::int32_t ny, Ahead& answer, double& t_clear) {
+  HWY_NOINLINE bool cells(const Fixed& f, std::int32_t nx, std::int32_t ny, Ahead& answer) {
     const std::int32_t col = (4 * nx ^ a_.mirror_x[0]) & ~3, first_row = (4 * ny ^ a_.mirror_y[0]) & ~3;
     const T* data = grid_.data + first_row * grid_.row_stride + col;
     std::ptrdiff_t stride = grid_.row_stride;
