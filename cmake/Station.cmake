@@ -16,7 +16,8 @@ function(scarp_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                            -ffp-contract=off)
   if(SCARP_WERROR)
-    target_compile_options(${target} PRIVATE -Werror)
+    # Not where g++ follows an optional through functions that it has put into one another.
+    target_compile_options(${target} PRIVATE -Werror $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>)
   endif()
   if(SCARP_SANITIZE)
     # What is found ends the program: undefined behaviour that is only printed fails no test.
@@ -31,16 +32,38 @@ function(scarp_compile_options target)
   endif()
 endfunction()
 
-# scarp_unity(target FILES [ALONE FILE...]): compiles that many files of the target as one: headers take most of the time.
-# `-D SCARP_UNITY=OFF` compiles file by file and finds what a file forgets to include; ./dev test --long does so.
-# ALONE: files whose local names clash with others'; those with options of their own are compiled alone, too.
-function(scarp_unity target files)
-  cmake_parse_arguments(arg "" "" "ALONE" ${ARGN})
+# scarp_unity(target [MOST FILES] [ALONE FILE...]): compiles that many files of the target (12) as one: headers take most of the
+# time. Files for Vulkan, whose headers are the largest, are batches of their own. Call it when the target has all its files.
+# `-D SCARP_UNITY=OFF` compiles file by file and finds missing includes; ./dev test --long does so.
+# ALONE: files whose local names clash with others'. Files with options of their own are compiled alone, too.
+function(scarp_unity target)
+  cmake_parse_arguments(arg "" "MOST" "ALONE" ${ARGN})
   if(NOT SCARP_UNITY)
     return()
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
-  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  if(NOT arg_MOST)
+    set(arg_MOST 12)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(all ${target} SOURCES)
+  list(FILTER all INCLUDE REGEX "\\.cpp$")
+  list(FILTER all EXCLUDE REGEX "_simd\\.cpp$")
+  list(REMOVE_ITEM all ${arg_ALONE})
+  set(vulkan ${all})
+  list(FILTER vulkan INCLUDE REGEX "_vk\\.cpp$")
+  list(FILTER all EXCLUDE REGEX "_vk\\.cpp$")
+  foreach(kind all vulkan)
+    set(count 0)
+    foreach(source IN LISTS ${kind})
+      math(EXPR batch "${count} / ${arg_MOST} + 1")
+      math(EXPR count "${count} + 1")
+      set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${kind}_${batch})
+    endforeach()
+  endforeach()
+  # To g++, what a file has in its anonymous namespace is in a header then.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
 endfunction()
 
 # scarp_quick(FILE or TARGET...): compiles these without optimisation in the debug build with sanitizers, where that takes a half to a

@@ -32,9 +32,9 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kNodata = 255;
-constexpr const char* kFooter = R"(Pixels:
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+constexpr int kShadowNodata = 255;
+constexpr const char* kShadowFooter = R"(Pixels:
   0  lit
   1  self-shaded: the ground itself faces away from the sun
   2  cast shadow: ground farther away hides the sun
@@ -57,7 +57,8 @@ struct Sun {
 };
 
 std::string place_text(double azimuth, double altitude) {
-  return fmt::format("azimuth {:.4f}, altitude {:.4f} degrees", azimuth * kDegrees, altitude * kDegrees);
+  return fmt::format("azimuth {:.4f}, altitude {:.4f} degrees", azimuth * kDegreesPerRadian,
+                     altitude * kDegreesPerRadian);
 }
 
 dvec2 centre_of(const MapInput& input) { return {(input.field().cols() - 1) / 2.0, (input.field().rows() - 1) / 2.0}; }
@@ -81,7 +82,7 @@ SunSpread sun_spread(const MapInput& input, const std::string& text, bool refrac
     const auto at = input.lonlat_of(col, row);
     if (!at)
       throw Error(fmt::format("{}: --time needs a raster with a CRS (give --raster-crs, or --sun)", input.path()));
-    return sky.at({at->x / kDegrees, at->y / kDegrees, height}, refraction);
+    return sky.at({at->x / kDegreesPerRadian, at->y / kDegreesPerRadian, height}, refraction);
   };
   SunSpread spread{position(last_col / 2, last_row / 2)};
   const SunPosition& sun = spread.centre;
@@ -110,7 +111,8 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
     }
     const auto& [azimuth, altitude] = spread.centre;
     if (const double highest = options.per_cell ? spread.highest : altitude; highest <= 0)
-      throw Error(fmt::format("--time '{}': the sun is {:.2f} degrees below the horizon", text, -highest * kDegrees));
+      throw Error(
+          fmt::format("--time '{}': the sun is {:.2f} degrees below the horizon", text, -highest * kDegreesPerRadian));
     lowest = std::min(lowest, spread.lowest);
     error = std::max(error, spread.error);
     if (!options.per_cell) {
@@ -130,7 +132,7 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
     input.notes.push_back(
         fmt::format("one sun for the whole raster, that at its centre; it is up to {:.3g} degrees off in the corners "
                     "(--sun-per-cell)",
-                    error * kDegrees));
+                    error * kDegreesPerRadian));
 }
 #endif
 
@@ -143,7 +145,7 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& 
     const auto n = numbers_from(text, ',', 2, 2, "--sun", kForm);
     if (!(n[1] > 0 && n[1] <= 90) || std::abs(n[0]) > 360)
       throw Error(fmt::format("--sun '{}': expected {}", text, kForm));
-    const double azimuth = n[0] / kDegrees, altitude = n[1] / kDegrees;
+    const double azimuth = n[0] / kDegreesPerRadian, altitude = n[1] / kDegreesPerRadian;
     suns.push_back(
         {{azimuth - grid_north_of(input), altitude}, fmt::format("sun {}", text), place_text(azimuth, altitude)});
   }
@@ -226,17 +228,17 @@ void run(ShadowOptions options, const Command& command) {
     const auto shades = shades_of(ground, suns[i], rows, progress);
     codes[i].reserve(shades.size());
     for (const Shade shade : shades)
-      codes[i].push_back(shade == Shade::hole ? kNodata : static_cast<std::uint8_t>(shade));
+      codes[i].push_back(shade == Shade::hole ? kShadowNodata : static_cast<std::uint8_t>(shade));
     lit += static_cast<double>(std::count(codes[i].begin(), codes[i].end(), 0));
-    with_sample += nodes - static_cast<double>(std::count(codes[i].begin(), codes[i].end(), kNodata));
+    with_sample += nodes - static_cast<double>(std::count(codes[i].begin(), codes[i].end(), kShadowNodata));
     map.bands.push_back({suns[i].name,
                          "",
                          std::span<const std::uint8_t>(codes[i]),
-                         kNodata,
+                         kShadowNodata,
                          {{0, "lit", {255, 246, 214, 255}},
                           {1, "self-shaded", {136, 134, 158, 255}},
                           {2, "cast shadow", {52, 56, 92, 255}},
-                          {kNodata, "no sample", {255, 255, 255, 0}}}});
+                          {kShadowNodata, "no sample", {255, 255, 255, 0}}}});
   }
   write_raster_map(options.output, map, terminal_progress("write"));
   if (preview) preview->write(map, rows, "grey");
@@ -277,7 +279,7 @@ void add_shadow(Program& program) {
   add_surface_option(command, o.surface);
   add_raster_output_options(command, o.raster_output);
   add_map_options(command, o);
-  command.footer(kFooter);
+  command.footer(kShadowFooter);
   command.example("scarp shadow dem.tif --sun 135,20 -o shadow.tif");
   command.example("scarp shadow dem.tif --time 2026-06-21T09:00+02:00 --time 2026-06-21T18:00+02:00 -o shadow.tif");
   command.runs([options, &command] {

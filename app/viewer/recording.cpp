@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kFirst = "scarp-view";
 constexpr std::array<std::string_view, 6> kKinds = {"move", "button", "key", "wheel", "option", "compare"};
-constexpr int kMostSide = 16384;
+constexpr int kLongestSide = 16384;
 constexpr double kMostPlace = 1e6;  // pixels or steps: no mouse is farther away
 
 // "march NAME", "look NAME", or nothing.
@@ -47,7 +47,8 @@ Recording read_recording(const std::string& file) {
       std::string first;
       char by = 0;
       if (!(words >> first >> recording.width >> by >> recording.height) || first != kFirst || by != 'x' ||
-          recording.width < 1 || recording.height < 1 || recording.width > kMostSide || recording.height > kMostSide)
+          recording.width < 1 || recording.height < 1 || recording.width > kLongestSide ||
+          recording.height > kLongestSide)
         fail("'scarp-view WIDTHxHEIGHT'");
       continue;
     }

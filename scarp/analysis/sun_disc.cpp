@@ -7,15 +7,15 @@
 namespace scarp {
 namespace {
 
-constexpr int kStrips = 16;
+constexpr int kDiscStrips = 16;
 
 // Area of the unit disc below a height of -1 to 1, as a share.
 double area_below(double y) { return 0.5 + (y * std::sqrt(1 - y * y) + std::asin(y)) / std::numbers::pi; }
 
-std::array<SunStrip, kStrips> make_strips() {
-  std::array<SunStrip, kStrips> strips{};
-  for (int i = 0; i < kStrips; ++i) {
-    const double low = 2.0 * i / kStrips - 1, high = 2.0 * (i + 1) / kStrips - 1;
+std::array<SunStrip, kDiscStrips> make_strips() {
+  std::array<SunStrip, kDiscStrips> strips{};
+  for (int i = 0; i < kDiscStrips; ++i) {
+    const double low = 2.0 * i / kDiscStrips - 1, high = 2.0 * (i + 1) / kDiscStrips - 1;
     strips[static_cast<std::size_t>(i)] = {(low + high) / 2 * kSunDiameter / 2,
                                            static_cast<float>(area_below(high) - area_below(low))};
   }

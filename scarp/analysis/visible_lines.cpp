@@ -13,7 +13,7 @@
 namespace scarp {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kMachineEpsilon = std::numeric_limits<double>::epsilon();
 
 // The crossings of a line with the grid lines of one axis, in doubles. Grid lines are exact.
 struct AxisCrossings {
@@ -45,9 +45,9 @@ class VisibleLine {
     axes_[0] = axis_crossings(from.col, to.col, from.row, to.row);
     axes_[1] = axis_crossings(from.row, to.row, from.col, to.col);
     // A place is a sum of two roundings of numbers below the field's sides, and a factor with two.
-    place_error_ = 4 * kEpsilon * std::max(grid.cols, grid.rows);
+    place_error_ = 4 * kMachineEpsilon * std::max(grid.cols, grid.rows);
     // Each of at most eight operations is off by half a unit of terms no larger than these.
-    ends_error_ = 8 * kEpsilon * (std::abs(line.eye()) + std::abs(line.target()));
+    ends_error_ = 8 * kMachineEpsilon * (std::abs(line.eye()) + std::abs(line.target()));
   }
 
   bool is_visible() {
@@ -96,7 +96,7 @@ class VisibleLine {
       const double ray = line_.eye() + steps * lines.per_line * (line_.target() - line_.eye());
       const double over = g0 + part * (g1 - g0) - ray;
       const double error =
-          ends_error_ + 8 * kEpsilon * (std::abs(g0) + std::abs(g1)) + place_error_ * std::abs(g1 - g0);
+          ends_error_ + 8 * kMachineEpsilon * (std::abs(g0) + std::abs(g1)) + place_error_ * std::abs(g1 - g0);
       if (over > error || (over >= -error && blocks(axis, k))) return false;
     }
     return true;

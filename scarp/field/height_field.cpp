@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-void require(bool good, std::string_view what, double value, std::string_view range) {
+void require_setting(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("height field: {} is {} (must be {})", what, value, range));
 }
 
@@ -69,7 +69,7 @@ constexpr SampleType type_of() {
   return SampleType::float32;
 }
 
-double lerp(double a, double b, double f) { return a + f * (b - a); }
+double between(double a, double b, double f) { return a + f * (b - a); }
 
 // Rows in memory: `stride` samples apart, negative from the last one up.
 void require_rows(const void* samples, int cols, int rows, std::ptrdiff_t stride) {
@@ -102,11 +102,11 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
     throw Error(fmt::format("height field: {} x {} samples (at least 1 x 1 required)", cols, rows));
   require_rows(data, cols, rows, row_stride);
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  require(positive(settings.cell_x), "cell_x", settings.cell_x, "finite and above 0");
-  require(positive(settings.cell_y), "cell_y", settings.cell_y, "finite and above 0");
-  require(positive(settings.scale), "scale", settings.scale, "finite and above 0");
-  require(std::isfinite(settings.offset), "offset", settings.offset, "finite");
-  require(positive(settings.exaggeration), "exaggeration", settings.exaggeration, "finite and above 0");
+  require_setting(positive(settings.cell_x), "cell_x", settings.cell_x, "finite and above 0");
+  require_setting(positive(settings.cell_y), "cell_y", settings.cell_y, "finite and above 0");
+  require_setting(positive(settings.scale), "scale", settings.scale, "finite and above 0");
+  require_setting(std::isfinite(settings.offset), "offset", settings.offset, "finite");
+  require_setting(positive(settings.exaggeration), "exaggeration", settings.exaggeration, "finite and above 0");
   require_reach(type, cols, rows, settings);
   per_cell_x_ = 1 / settings.cell_x;
   per_cell_y_ = 1 / settings.cell_y;
@@ -292,8 +292,8 @@ dvec2 HeightField::gradient(Cell cell, double u, double v) const {
   // With triangles the slope is that of one side of the cell.
   const bool south_east = u + v > 1;
   const bool flat = settings_.surface == Surface::triangles;
-  const double along_row = lerp(h.h10 - h.h00, h.h11 - h.h01, flat ? south_east : v);
-  const double along_col = lerp(h.h01 - h.h00, h.h11 - h.h10, flat ? south_east : u);
+  const double along_row = between(h.h10 - h.h00, h.h11 - h.h01, flat ? south_east : v);
+  const double along_col = between(h.h01 - h.h00, h.h11 - h.h10, flat ? south_east : u);
   // Rows run southwards: the slope to the north is the negative slope along rows.
   return {along_row * metres * per_cell_x_, -along_col * metres * per_cell_y_};
 }

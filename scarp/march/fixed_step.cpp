@@ -11,7 +11,7 @@ namespace scarp {
 namespace {
 
 template <class Probe>
-Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
+Hit fixed_step_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const FixedStepSettings& settings = all.fixed_step;
   const Ray& ray = probe.ray();
   const bool on_surface = ray.start == RayStart::on_surface;
@@ -54,13 +54,13 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
 
 Hit march_fixed_step(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
   return march_over(target, ray, stats,
-                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+                    [&](const auto& probe, MarchStats& counted) { return fixed_step_over(probe, settings, counted); });
 }
 
 Hit march_fixed_step(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                      FunctionUse use) {
   return march_over(function, ray, use, settings.function.reach, stats,
-                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+                    [&](const auto& probe, MarchStats& counted) { return fixed_step_over(probe, settings, counted); });
 }
 
 }  // namespace scarp

@@ -15,7 +15,8 @@ namespace scarp {
 namespace {
 
 template <class Probe>
-Hit march(const Probe& probe, const LipschitzSettings& settings, const ShrinkFactor& shrink, MarchStats& stats) {
+Hit lipschitz_over(const Probe& probe, const LipschitzSettings& settings, const ShrinkFactor& shrink,
+                   MarchStats& stats) {
   const Ray& ray = probe.ray();
   const bool on_surface = ray.start == RayStart::on_surface;
   Underground ground(probe.from_outside());
@@ -74,7 +75,7 @@ Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSetti
   require(target, settings.lipschitz.shrink == 0 ? HeightPart::pyramid_and_slope : HeightPart::pyramid);
   const ShrinkFactor shrink = shrink_factor(settings.lipschitz, target.slope);
   return march_over(target, ray, stats, [&](const auto& probe, MarchStats& counted) {
-    return march(probe, settings.lipschitz, shrink, counted);
+    return lipschitz_over(probe, settings.lipschitz, shrink, counted);
   });
 }
 
@@ -83,7 +84,7 @@ Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchS
   // Reduced by more than its three rounding errors.
   const ShrinkFactor shrink = shrink_factor(settings.lipschitz, function.bound_everywhere(use).slope, 0x1p-50);
   return march_over(function, ray, use, settings.function.reach, stats, [&](const auto& probe, MarchStats& counted) {
-    return march(probe, settings.lipschitz, shrink, counted);
+    return lipschitz_over(probe, settings.lipschitz, shrink, counted);
   });
 }
 

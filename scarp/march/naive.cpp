@@ -11,7 +11,7 @@ namespace scarp {
 namespace {
 
 template <class Probe>
-Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
+Hit naive_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const NaiveSettings settings = all.naive;
   // Distances count from the ray's start, in t: an unnormalised direction changes the unit of t and nothing else.
   const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
@@ -49,13 +49,13 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
 
 Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
   return march_over(target, ray, stats,
-                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+                    [&](const auto& probe, MarchStats& counted) { return naive_over(probe, settings, counted); });
 }
 
 Hit march_naive(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                 FunctionUse use) {
   return march_over(function, ray, use, settings.function.reach, stats,
-                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+                    [&](const auto& probe, MarchStats& counted) { return naive_over(probe, settings, counted); });
 }
 
 }  // namespace scarp

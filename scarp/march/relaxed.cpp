@@ -11,7 +11,7 @@ namespace scarp {
 namespace {
 
 template <class Probe>
-Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
+Hit relaxed_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const RelaxedSettings& settings = all.relaxed;
   const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
   const double near = all.sampling.tolerance * probe.per_metre(), blind = probe.blind_step();
@@ -51,13 +51,13 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
 
 Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
   return march_over(target, ray, stats,
-                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+                    [&](const auto& probe, MarchStats& counted) { return relaxed_over(probe, settings, counted); });
 }
 
 Hit march_relaxed(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                   FunctionUse use) {
   return march_over(function, ray, use, settings.function.reach, stats,
-                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+                    [&](const auto& probe, MarchStats& counted) { return relaxed_over(probe, settings, counted); });
 }
 
 }  // namespace scarp

@@ -23,7 +23,7 @@ namespace scarp {
 namespace {
 
 // Rows per write call; limits the memory for conversion to half. OpenEXR compresses 16 rows at a time.
-constexpr int kRows = 256;
+constexpr int kRowsAtOnce = 256;
 
 Error cannot_write(const std::string& path, std::string_view why) {
   return Error(fmt::format("{}: cannot be written: {} (is the disk full?)", path, why));
@@ -77,8 +77,8 @@ Imf::Slice slice(Imf::PixelType type, const T* first_of_row, int row, int width,
 
 void write_rows(Imf::OutputFile& out, const ExrView& picture) {
   std::vector<std::vector<half>> halves(picture.channels.size());
-  for (int row = 0; row < picture.height; row += kRows) {
-    const int rows = std::min(kRows, picture.height - row);
+  for (int row = 0; row < picture.height; row += kRowsAtOnce) {
+    const int rows = std::min(kRowsAtOnce, picture.height - row);
     const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width);
     const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(picture.width);
     Imf::FrameBuffer buffer;

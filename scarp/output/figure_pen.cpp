@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "scarp/base/error.h"
 
 namespace scarp {
@@ -12,6 +14,12 @@ constexpr double kPaper = 0.82;                  // opacity of the background be
 constexpr double kHalo = 0.8, kHaloWidth = 0.3;  // opacity, and width in text heights
 
 }  // namespace
+
+cairo_status_t write_bytes(void* stream, const unsigned char* bytes, unsigned int count) {
+  auto& out = *static_cast<std::ofstream*>(stream);
+  out.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+  return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
 
 void require_good(cairo_surface_t* surface, cairo_t* context) {
   for (const cairo_status_t status : {cairo_surface_status(surface), cairo_status(context)}) {

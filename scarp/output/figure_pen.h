@@ -24,6 +24,9 @@ using CairoContext = std::unique_ptr<cairo_t, CairoDeleter>;
 /// Throws Error "figure: ..." if the surface or the context has failed.
 void require_good(cairo_surface_t* surface, cairo_t* context);
 
+/// Cairo's callback that writes to a std::ofstream.
+cairo_status_t write_bytes(void* stream, const unsigned char* bytes, unsigned int count);
+
 /// Returns an image surface with these pixels, in Cairo's order of bytes.
 CairoSurface image_surface(const RgbView& picture);
 

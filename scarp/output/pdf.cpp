@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kPointsPerInch = 72;
 
-cairo_status_t write_bytes(void* stream, const unsigned char* bytes, unsigned int count) {
-  auto& out = *static_cast<std::ofstream*>(stream);
-  out.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(count));
-  return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
 }  // namespace
 
 void write_pdf(ReplaceFile& file, const std::string& path, const RgbView& picture, const Figure& figure,

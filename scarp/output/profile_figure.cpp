@@ -182,12 +182,6 @@ class Drawing {
   FigureRect box_;
 };
 
-cairo_status_t write_bytes(void* stream, const unsigned char* bytes, unsigned int count) {
-  auto& out = *static_cast<std::ofstream*>(stream);
-  out.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(count));
-  return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
 }  // namespace
 
 void write_profile_figure(ReplaceFile& file, const std::string& path, const ProfileFigure& figure) {

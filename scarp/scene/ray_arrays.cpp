@@ -15,7 +15,7 @@ namespace {
 
 // Few enough to stay in a cache of second level per thread, many enough for all threads.
 constexpr std::size_t kRaysAtOnce = 1 << 16;
-constexpr std::int64_t kRaysPerCopy = 8192;
+constexpr std::int64_t kRaysPerColumn = 8192;
 
 void require_length(std::size_t length, std::size_t rays, const char* name, bool optional) {
   if (length == rays || (optional && length == 0)) return;
@@ -78,7 +78,7 @@ void for_each_piece(const RayArrays& rays, const Scene& scene, const Answer& ans
   std::vector<Ray> piece;
   for (std::size_t first = 0; first < count; first += kRaysAtOnce) {
     piece.resize(std::min(kRaysAtOnce, count - first));
-    parallel_for(static_cast<std::int64_t>(piece.size()), kRaysPerCopy, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(static_cast<std::int64_t>(piece.size()), kRaysPerColumn, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
         piece[i] = ray_at(rays, first + i);
     });
@@ -116,7 +116,7 @@ void cast(const Scene& scene, const RayArrays& rays, const HitArrays& hits) {
   for_each_piece(rays, scene, [&](std::size_t first, std::span<const Ray> piece) {
     answers.resize(piece.size());
     scene.closest_hits(piece, answers);
-    parallel_for(static_cast<std::int64_t>(piece.size()), kRaysPerCopy, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(static_cast<std::int64_t>(piece.size()), kRaysPerColumn, [&](std::int64_t begin, std::int64_t end) {
       for (auto j = static_cast<std::size_t>(begin); j < static_cast<std::size_t>(end); ++j)
         put(scene, piece[j], answers[j], hits, first + j);
     });

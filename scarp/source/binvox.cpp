@@ -14,7 +14,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::string_view kMagic = "#binvox";
+constexpr std::string_view kBinvoxMagic = "#binvox";
 constexpr std::size_t kLongestLine = 256;  // in a header
 constexpr int kMostLines = 64;
 
@@ -117,16 +117,16 @@ Binvox parse_content(std::string_view bytes) {
 void Binvox::clear() { bits.assign((volume(size) + 63) / 64, 0); }
 
 Binvox parse_binvox(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) {
+  if (!bytes.starts_with(kBinvoxMagic)) {
     throw Error(fmt::format("not a binvox file: begins with {} instead of '#binvox'",
-                            printable(bytes.substr(0, kMagic.size()))));
+                            printable(bytes.substr(0, kBinvoxMagic.size()))));
   }
   return advising("write it again with binvox", [&] { return parse_content(bytes); });
 }
 
 Binvox read_binvox(const std::string& path) {
   try {
-    return parse_binvox(whole_file(path, kMagic));
+    return parse_binvox(whole_file(path, kBinvoxMagic));
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));
   }

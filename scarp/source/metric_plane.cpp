@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr double kEarthShare = 0.05;  // as gdal_viewshed has it: other bodies have no refraction by default
 
 bool read_crs(const Georeference& geo, OGRSpatialReference& crs) {
@@ -29,12 +29,12 @@ class Positions {
  public:
   Positions(const Georeference& geo, const OGRSpatialReference& crs) : geo_(geo) {
     geod_init(&geodesic_, crs.GetSemiMajor(), crs.GetInvFlattening() > 0 ? 1 / crs.GetInvFlattening() : 0);
-    degrees_per_unit_ = crs.IsGeographic() ? crs.GetAngularUnits() * kDegrees : 0;
+    degrees_per_unit_ = crs.IsGeographic() ? crs.GetAngularUnits() * kDegreesPerRadian : 0;
     if (crs.IsGeographic()) return;
     const std::unique_ptr<OGRSpatialReference> base(crs.CloneGeogCS());
     if (!base) throw Error("the CRS has no geographic base");
     base->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    base->SetAngularUnits(SRS_UA_DEGREE, 1 / kDegrees);
+    base->SetAngularUnits(SRS_UA_DEGREE, 1 / kDegreesPerRadian);
     transform_.reset(OGRCreateCoordinateTransformation(&crs, base.get()));
     if (!transform_) throw Error("the CRS cannot be transformed to longitude and latitude");
   }
@@ -53,7 +53,7 @@ class Positions {
   std::pair<double, double> metres(const LonLat& from, const LonLat& to) const {
     double distance = 0, azimuth = 0;
     geod_inverse(&geodesic_, from.lat, from.lon, to.lat, to.lon, &distance, &azimuth, nullptr);
-    return {distance * std::sin(azimuth / kDegrees), distance * std::cos(azimuth / kDegrees)};
+    return {distance * std::sin(azimuth / kDegreesPerRadian), distance * std::cos(azimuth / kDegreesPerRadian)};
   }
 
  private:

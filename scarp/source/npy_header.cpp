@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr const char* kNested =
     "has a field that is an array or a structure itself; fields of plain numbers are needed";
 constexpr int kLargestStructure = 1 << 20;  // bytes; sums of field sizes stay far from overflow
@@ -181,7 +181,8 @@ NpyHeader parse(std::string_view bytes, bool structures) {
 }  // namespace
 
 std::int64_t npy_data_begin(std::string_view preamble) {
-  if (preamble.substr(0, kMagic.size()) != kMagic) throw Error("not a .npy array: does not begin with \\x93NUMPY");
+  if (preamble.substr(0, kNpyMagic.size()) != kNpyMagic)
+    throw Error("not a .npy array: does not begin with \\x93NUMPY");
   if (preamble.size() < kNpyPreambleBytes) refuse("truncated");
   const std::uint32_t major = byte(preamble, 6);
   if (major < 1 || major > 3)

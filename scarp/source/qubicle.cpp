@@ -11,7 +11,7 @@ namespace scarp {
 namespace {
 
 constexpr std::int32_t kVersion = 0x00000101, kRun = 2, kEndOfSlice = 6;
-constexpr int kFarthest = 1 << 24;  // voxels from the origin, as in .vox files
+constexpr int kFarthestVoxel = 1 << 24;  // voxels from the origin, as in .vox files
 
 struct Header {
   bool blue_first, right_handed, compressed;
@@ -112,8 +112,8 @@ VoxelPart parse_matrix(const Header& header, VoxBytes& bytes, std::size_t& liste
   }
   for (int axis = 0; axis < 3; ++axis) {
     position[axis] = bytes.number();
-    if (position[axis] > kFarthest || position[axis] < -kFarthest)
-      throw Error(fmt::format("position {} (limited to {} voxels)", position[axis], kFarthest));
+    if (position[axis] > kFarthestVoxel || position[axis] < -kFarthestVoxel)
+      throw Error(fmt::format("position {} (limited to {} voxels)", position[axis], kFarthestVoxel));
   }
   Matrix matrix(header, size, position, listed);
   header.compressed ? matrix.parse_runs(bytes) : matrix.parse_plain(bytes);

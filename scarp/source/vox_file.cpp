@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::string_view kMagic = "VOX ";
+constexpr std::string_view kVoxMagic = "VOX ";
 constexpr std::size_t kHeaderBytes = 20;  // up to the children of MAIN
 constexpr int kMaxSide = 256;
 constexpr std::string_view kSaveAgain = "save it again in MagicaVoxel";
@@ -147,16 +147,16 @@ class Parser {
 int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
   if (bytes.empty()) throw Error("empty file (0 bytes)");
   refuse_lfs_pointer(bytes);
-  if (bytes.substr(0, kMagic.size()) != kMagic) {
+  if (bytes.substr(0, kVoxMagic.size()) != kVoxMagic) {
     std::string begin;
-    for (const char byte : bytes.substr(0, kMagic.size()))
+    for (const char byte : bytes.substr(0, kVoxMagic.size()))
       begin += fmt::format("{}{:02x}", begin.empty() ? "" : " ", static_cast<unsigned char>(byte));
     throw Error(fmt::format("not a MagicaVoxel file: begins with the bytes {} instead of 'VOX '", begin));
   }
   if (bytes.size() < kHeaderBytes)
     throw Error(fmt::format("truncated: {} bytes, but the header alone needs {} ({})", bytes.size(), kHeaderBytes,
                             kFetchAgain));
-  VoxBytes header(bytes.substr(kMagic.size()));
+  VoxBytes header(bytes.substr(kVoxMagic.size()));
   const int version = header.number();
   if (version != 150 && version != 200)
     throw Error(fmt::format("unsupported version {} (supported: 150, 200)", version));

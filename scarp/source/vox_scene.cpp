@@ -18,7 +18,7 @@ namespace scarp {
 namespace {
 
 constexpr std::size_t kMostInstances = std::size_t{1} << 20;
-constexpr int kFarthest = 1 << 24;
+constexpr int kFarthestNode = 1 << 24;
 
 LatticeRotation turn_of(const VoxAttributes& frame) {
   const auto text = find_attribute(frame, "_r");
@@ -41,8 +41,8 @@ ivec3 move_of(const VoxAttributes& frame) {
     if (end == std::string_view::npos)
       throw Error(fmt::format("translation is {} (expected 'x y z')", printable(*text)));
     move[axis] = whole_number(rest.substr(0, end), "coordinate of a translation");
-    if (std::abs(std::int64_t{move[axis]}) > kFarthest)
-      throw Error(fmt::format("translation by {} voxels (limited to {})", move[axis], kFarthest));
+    if (std::abs(std::int64_t{move[axis]}) > kFarthestNode)
+      throw Error(fmt::format("translation by {} voxels (limited to {})", move[axis], kFarthestNode));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return move;
@@ -198,8 +198,8 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
       below.place.turn = visit.place.turn * own.turn;
       below.place.move += visit.place.turn(own.move);
       const ivec3 away = glm::abs(below.place.move);
-      if (std::max({away.x, away.y, away.z}) > kFarthest)
-        throw Error(fmt::format("scene: node {} is more than {} voxels away (move it closer)", node.id, kFarthest));
+      if (std::max({away.x, away.y, away.z}) > kFarthestNode)
+        throw Error(fmt::format("scene: node {} is more than {} voxels away (move it closer)", node.id, kFarthestNode));
       stack.push_back(below);
     } else if (const auto* group = std::get_if<VoxGroup>(&node.content)) {
       if (group->children.size() > kMostInstances)

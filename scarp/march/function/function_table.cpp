@@ -46,7 +46,7 @@ constexpr FunctionMarchEntry lipschitz_local() {
   return entry;
 }
 
-constexpr std::array kTable = {
+constexpr std::array kFunctionTable = {
     function_march<march_naive>(kNaiveEntry),
     function_march<march_fixed_step>(kFixedStepEntry),
     function_march<march_relaxed>(kRelaxedEntry),
@@ -56,7 +56,7 @@ constexpr std::array kTable = {
 
 }  // namespace
 
-std::span<const FunctionMarchEntry> function_marches() { return kTable; }
+std::span<const FunctionMarchEntry> function_marches() { return kFunctionTable; }
 const FunctionMarchEntry& find_function_march(std::string_view name) { return find_entry(function_marches(), name); }
 
 }  // namespace scarp

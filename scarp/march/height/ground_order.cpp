@@ -14,7 +14,7 @@ constexpr std::size_t kFewRays = 1 << 12;
 // per second, by class), with 67 million it pays always (1.2 to 1.5 times).
 constexpr std::int64_t kSmallField = 1 << 23;
 constexpr int kTilesPerSide = 256;
-constexpr std::int64_t kRaysPerPiece = 1 << 14;
+constexpr std::int64_t kRaysPerSortedPiece = 1 << 14;
 constexpr int kPairs = 512;  // of successive rays, looked at to tell whether they are in order already
 constexpr int kNearTiles = 2;
 
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> ground_order(const HeightField& field, std::span<cons
   const Tiles tiles(field);
   if (in_order_already(tiles, rays)) return {};
   std::vector<std::uint16_t> keys(rays.size());
-  parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerSortedPiece, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       keys[i] = morton(tiles.tile(rays[i]));
     }

@@ -81,7 +81,7 @@ constexpr HeightMarchEntry exhaustive() {
   return entry;
 }
 
-constexpr std::array kTable = {
+constexpr std::array kHeightTable = {
     exhaustive(),
     max_mip(),
     height_march<march_max_mip_bisect>(
@@ -100,7 +100,7 @@ constexpr std::array kTable = {
 
 }  // namespace
 
-std::span<const HeightMarchEntry> height_marches() { return kTable; }
+std::span<const HeightMarchEntry> height_marches() { return kHeightTable; }
 const HeightMarchEntry& find_height_march(std::string_view name) { return find_entry(height_marches(), name); }
 
 }  // namespace scarp

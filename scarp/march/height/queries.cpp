@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kRaysPerPiece = 256;
+constexpr std::int64_t kRaysPerScalarPiece = 256;
 constexpr std::int64_t kRaysPerVectorPiece = 2048;  // at the end of a piece vectors have lanes without rays
 constexpr std::size_t kFewForVectors = 32;
 constexpr std::size_t kRaysAtOnce = 1 << 22;  // what is put in order together
@@ -54,7 +54,7 @@ void for_each_piece(const HeightField& field, std::span<const Ray> rays, std::in
 // Ray by ray, by answer(i).
 template <class Answer>
 void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Answer& answer) {
-  for_each_piece(field, rays, kRaysPerPiece,
+  for_each_piece(field, rays, kRaysPerScalarPiece,
                  [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {
                    for (std::size_t i = 0; i < count; ++i) {
                      // In another order than they lie, rays have to be sent for early.
@@ -69,7 +69,7 @@ template <class Result, class Answer>
 void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<Result> results, const Answer& answer) {
   // A thousand rays are work for several threads, too.
   const auto some = static_cast<std::int64_t>(rays.size() / 8);
-  const std::int64_t piece = std::clamp(some, kRaysPerPiece, kRaysPerVectorPiece);
+  const std::int64_t piece = std::clamp(some, kRaysPerScalarPiece, kRaysPerVectorPiece);
   for_each_piece(field, rays, piece, [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {
     if (order.empty()) return answer(rays.subspan(first, count), results.subspan(first, count));
     std::vector<Ray> ordered(count);

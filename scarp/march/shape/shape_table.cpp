@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::array kTable = {
+constexpr std::array kShapeTable = {
     ShapeMarchEntry{
         {.name = "sphere-trace",
          .guarantee = Guarantee::conservative,
@@ -24,7 +24,7 @@ constexpr std::array kTable = {
 
 }  // namespace
 
-std::span<const ShapeMarchEntry> shape_marches() { return kTable; }
+std::span<const ShapeMarchEntry> shape_marches() { return kShapeTable; }
 const ShapeMarchEntry& find_shape_march(std::string_view name) { return find_entry(shape_marches(), name); }
 
 }  // namespace scarp

@@ -20,7 +20,7 @@ constexpr double kBeyond = 1 + 0x1p-10;
 // Length factor of the next segment after a free one, and after one that is not.
 constexpr double kGrowth = 2, kShrink = 0.4;
 // Length of a segment relative to the previous ball.
-constexpr double kAhead = 4;
+constexpr double kCertainAhead = 4;
 // Balls that grow by less, along a face for example, do not advance quickly enough.
 constexpr double kGrowing = 1.125;
 // Number of those before a segment, whose bound costs as much as about 8 values.
@@ -200,11 +200,11 @@ class Trace {
     while (t < t_exit_) {
       if (used_up()) return {Ended::exhausted, t, t};
       const double free = (sign * value(t) - rounding(t)) / speed_;
-      const bool grows = kAhead * free > kGrowing * length;
+      const bool grows = kCertainAhead * free > kGrowing * length;
       if (free > least_at(t) && (grows || --patience >= 0)) {
         if (grows) patience = kPatience;
         t += free;
-        length = kAhead * free;
+        length = kCertainAhead * free;
         continue;
       }
       if (length == 0) length = t_exit_ - t;

@@ -35,10 +35,10 @@ constexpr std::uint32_t kHitsWords[] = {
 #include "scarp/march/voxel/voxel_proxies.comp.inc"
 };
 
-constexpr std::uint32_t kThreads = 64;        // of a workgroup
-constexpr std::uint32_t kRowOfGroups = 1024;  // a dispatch has at most 65,535 along one side
-constexpr std::uint32_t kCorners = 36;        // vertices of a box
-constexpr std::int64_t kRaysPerPiece = 4096;
+constexpr std::uint32_t kPictureThreads = 64;  // of a workgroup
+constexpr std::uint32_t kRowOfGroups = 1024;   // a dispatch has at most 65,535 along one side
+constexpr std::uint32_t kCorners = 36;         // vertices of a box
+constexpr std::int64_t kPixelsPerPiece = 4096;
 constexpr double kRoomOfVoxel = 0x1p-14;  // as in voxel_proxies.vert
 
 dvec3 row_of(const glm::dmat3& m, int i) { return {m[0][i], m[1][i], m[2][i]}; }
@@ -97,7 +97,8 @@ ShaderProgram fragments_of(std::uint32_t march, bool words, bool int64, bool ent
           2};
 }
 ShaderProgram hits_of(std::uint32_t levels) {
-  return {"scarp/march/voxel/voxel_proxies.comp", "", kHitsWords, sizeof(glsl::VoxelProxies), {kThreads, levels}};
+  return {
+      "scarp/march/voxel/voxel_proxies.comp", "", kHitsWords, sizeof(glsl::VoxelProxies), {kPictureThreads, levels}};
 }
 
 }  // namespace
@@ -149,7 +150,8 @@ struct DeviceVoxelPictures::Impl {
     commands.copy(memory->target, 0, memory->first);
     commands.copy(memory->target, 1, memory->second);
     commands.barrier();
-    const std::uint32_t groups = (push.count + kThreads - 1) / kThreads, row = std::min(groups, kRowOfGroups);
+    const std::uint32_t groups = (push.count + kPictureThreads - 1) / kPictureThreads,
+                        row = std::min(groups, kRowOfGroups);
     commands.dispatch(hits(std::bit_ceil(objects.levels())), push, {row, (groups + row - 1) / row, 1});
     commands.run();
     found.resize(rays.size());
@@ -187,7 +189,7 @@ std::vector<std::size_t> DeviceVoxelPictures::draw(const DeviceVoxelObjects& obj
   Impl& all = *impl_;
   all.rays.resize(pixels);
   std::vector<std::uint8_t> left(pixels);
-  parallel_for(static_cast<std::int64_t>(pixels), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(static_cast<std::int64_t>(pixels), kPixelsPerPiece, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       const PreparedVoxelRay prepared = prepared_voxel_ray(rays[i], nullptr);
       all.rays[i] = prepared.ray;

@@ -32,7 +32,7 @@ bool occluded_voxel_exhaustive(const VoxelTarget& target, const QuantisedRay& ra
   return static_cast<bool>(march_voxel_exhaustive(target, ray));
 }
 
-constexpr std::array kTable = {
+constexpr std::array kVoxelTable = {
     voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, occluded_voxel_exhaustive, nullptr,
                 "tests solid voxels one by one, in exact arithmetic; the reference for voxel marches; slow"),
     voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
@@ -53,7 +53,7 @@ constexpr std::array kTable = {
 
 }  // namespace
 
-std::span<const VoxelMarchEntry> voxel_marches() { return kTable; }
+std::span<const VoxelMarchEntry> voxel_marches() { return kVoxelTable; }
 const VoxelMarchEntry& find_voxel_march(std::string_view name) { return find_entry(voxel_marches(), name); }
 
 }  // namespace scarp
