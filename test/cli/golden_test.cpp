@@ -87,6 +87,15 @@ TEST_P(GoldenPicture, IsAsItWas) {
   expect_golden(picture, wanted.name, wanted.max_difference);
 }
 
+// The picture that ./dev demo has just made in a clean clone (./dev test names it), against the one that the README
+// shows.
+TEST(GoldenDemo, MatchesThePictureOfTheReadme) {
+  const char* picture = std::getenv("SCARP_DEMO_PICTURE");
+  if (!picture || !*picture) GTEST_SKIP() << "SCARP_DEMO_PICTURE names no picture; ./dev test sets it";
+  test::expect_golden(picture, fs::path(SCARP_SOURCE_DIR) / "doc" / "images" / "jacksboro.png", kMaxDifference,
+                      (fs::path(SCARP_FAILED_IMAGES) / "demo").string());
+}
+
 #ifdef SCARP_VULKAN
 // The very pictures of the CPU.
 TEST_P(GoldenPicture, IsTheSameOnADevice) {
