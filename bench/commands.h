@@ -226,11 +226,12 @@ struct VolumesOptions {
 };
 void run_volumes(const VolumesOptions& options, const ReportOptions& report);
 
-/// `voxel-leaks`: all voxel marches on very many rays.
+/// `voxel-leaks`: all voxel marches on very many rays, at grids and then, as many, at scenes.
 struct VoxelLeaksOptions {
   std::int64_t rays = 10'000'000;
   std::uint64_t seed = 1;
-  int judge_every = 64;  ///< one in so many is also answered by voxel-exhaustive
+  int judge_every = 64;    ///< one in so many is also answered by voxel-exhaustive
+  std::string of = "all";  ///< "grids": single ones; "scenes": of turned objects
 };
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
 

@@ -494,6 +494,9 @@ int run(int argc, char** argv) {
       ->add_option("--judge-every", voxel_leaks.judge_every, "one in so many is also answered by voxel-exhaustive")
       ->check(CLI::Range(1, 1 << 30))
       ->capture_default_str();
+  voxel_leaks_command->add_option("--of", voxel_leaks.of, "grids, scenes of turned objects, or all")
+      ->check(CLI::IsMember({"grids", "scenes", "all"}))
+      ->capture_default_str();
   add_json_option(*voxel_leaks_command, report);
 
   ScenesOptions scenes;

@@ -84,7 +84,7 @@ struct SimtVoxels::Impl {
   VoxelObjects objects;
   std::vector<VoxelTarget> targets;
   std::vector<VoxelObjects::Placed> placed;
-  std::vector<glm::dmat3> turns;
+  std::vector<VoxelObjects::PlacedTurn> turns;
   std::vector<glsl::ScarpBoxNode> nodes;
   BoxTree::Parts tree;
   glsl::uint march;
@@ -171,17 +171,20 @@ struct TurnedRay {
   glsl::uint back = 0;
   double t_per_s = 0;
 
-  void set(std::uint32_t to, const glm::dmat3& grid_from_world, const dvec3& direction) {
+  void set(std::uint32_t to, const glm::dmat3& grid_from_world, glsl::uint ties, const dvec3& direction) {
     note_block(SimtBlock::turned);
     turn = to;
     given = grid_from_world * direction;
-    back = 0;
+    back = ties & glsl::kScarpTieBits;
     for (int axis = 0; axis < 3; ++axis) {
       inverse[axis] = glsl::scarp_exact_inverse(given[axis]);
-      if (given[axis] < 0) back |= 1u << axis;
+      back |= glsl::scarp_voxel_back(axis, given[axis], ties);
     }
     const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
-    for (int axis = 0; axis < 3; ++axis) speed[axis] = glsl::scarp_voxel_speed(given[axis], per_longest);
+    for (int axis = 0; axis < 3; ++axis) {
+      speed[axis] = glsl::scarp_voxel_speed(given[axis], per_longest);
+      back |= glsl::scarp_voxel_inexact(given[axis], per_longest, speed[axis]);
+    }
     t_per_s = glsl::scarp_voxel_t_per_s(per_longest);
   }
 };
@@ -194,18 +197,18 @@ struct ObjectRay {
 
   ObjectRay(const TurnedRay& ray, const dvec3& origin, double t_min, double t_max, const VoxelBox& box) {
     note_block(SimtBlock::object);
-    glsl::ScarpVoxelClip clip{t_min, t_max, -1};
+    glsl::ScarpVoxelClip clip{t_min, t_max, -1, false};
     for (int axis = 0; axis < 3; ++axis) {
-      met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], box.low[axis],
-                                   box.high[axis], false, 0, clip) &&
+      met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], 0, ray.speed[axis], ray.back,
+                                   box.low[axis], box.high[axis], false, 0, clip) &&
             met;
     }
     met = met && clip.t <= clip.t_out;
     if (!met) return;
     for (int axis = 0; axis < 3; ++axis) {
       glsl::ScarpVoxelPlace at;
-      met = glsl::scarp_voxel_place(axis, origin[axis], ray.given[axis], ray.speed[axis], box.low[axis], box.high[axis],
-                                    false, 0, clip, at) &&
+      met = glsl::scarp_voxel_place(axis, origin[axis], ray.given[axis], ray.speed[axis], ray.back, box.low[axis],
+                                    box.high[axis], false, 0, clip, at) &&
             met;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
@@ -249,8 +252,8 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
       }
       if (child == kNoChild) continue;
       const VoxelObjects::Placed& object = all.placed[child & ~glsl::kScarpBoxLeaf];
-      const glm::dmat3& turn = all.turns[object.turn];
-      if (turned.turn != object.turn) turned.set(object.turn, turn, ray.direction);
+      const auto& [turn, ties, room] = all.turns[object.turn];
+      if (turned.turn != object.turn) turned.set(object.turn, turn, ties[0], ray.direction);
       const VoxelTarget& target = all.targets[object.model];
       ObjectRay begun(turned, turn * (ray.origin - object.origin), ray.t_min, t_max, target.box);
       if (!begun.met) continue;

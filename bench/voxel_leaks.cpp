@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench voxel-leaks`: very many rays at voxel grids. All marches have to give the same voxel, face and t, ray by
-// ray and in vectors, and one ray in some is answered by the judge, too.
+// ray and in vectors, and one ray in some is answered by the judge, too. Then rays at scenes of turned objects, each of
+// which is judged in one grid into which all objects are written.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +12,11 @@
 
 #include "bench/commands.h"
 #include "bench/random.h"
+#include "bench/voxel_scene_judge.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/scene/voxel_model.h"
+#include "scarp/scene/voxel_objects.h"
 
 namespace scarp::bench {
 namespace {
@@ -111,12 +114,20 @@ struct Together {
   }
 };
 
-}  // namespace
+// The first wrong ray.
+struct FirstWrong {
+  std::mutex mutex;
+  std::string text;
 
-void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report) {
+  void tell(std::string_view what) {
+    const std::lock_guard lock(mutex);
+    if (text.empty()) text = what;
+  }
+};
+
+std::array<Counts, kRayKinds> leaks_of_grids(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
   const auto exact = voxel_marches().subspan(1);
   std::array<Counts, kRayKinds> total;
-  std::string first_wrong;
   std::mutex mutex;
   const std::int64_t grids = (options.rays + kRaysPerGrid - 1) / kRaysPerGrid;
   parallel_for(grids, 4, [&](std::int64_t begin, std::int64_t end) {
@@ -129,8 +140,7 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
       const auto tell = [&](std::int64_t i) {
         const auto kind = static_cast<std::size_t>(i % kRayKinds);
         ++counts[kind].wrong;
-        const std::lock_guard lock(mutex);
-        if (first_wrong.empty()) first_wrong = fmt::format("grid {}, ray {} ({})", index, i, kRayNames[kind]);
+        first_wrong.tell(fmt::format("grid {}, ray {} ({})", index, i, kRayNames[kind]));
       };
       Together together;
       const auto ask_together = [&] {
@@ -171,22 +181,82 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
       total[i].wrong += counts[i].wrong;
     }
   });
+  return total;
+}
 
+constexpr std::int64_t kRaysPerScene = 512;
+constexpr std::array<const char*, 2> kSceneNames = {"turned objects: exact directions", "turned objects: others"};
+
+// Judged: all but rays whose quantised direction passes an edge on either side.
+std::array<Counts, 2> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
+  std::array<Counts, 2> total;
+  std::mutex mutex;
+  const std::int64_t scenes = (options.rays + kRaysPerScene - 1) / kRaysPerScene;
+  parallel_for(scenes, 4, [&](std::int64_t begin, std::int64_t end) {
+    std::array<Counts, 2> counts;
+    std::vector<LatticeRay> lattice(kRaysPerScene);
+    std::vector<Ray> rays(kRaysPerScene);
+    std::vector<Hit> hits(kRaysPerScene);
+    std::vector<std::uint8_t> blocked(kRaysPerScene);
+    for (std::int64_t index = begin; index < end; ++index) {
+      Random random(options.seed, ~static_cast<std::uint64_t>(index));
+      const VoxelSceneJudge judge(random, {});
+      const VoxelObjects objects(judge.placed());
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        lattice[i] = VoxelSceneJudge::random_ray(random);
+        rays[i] = judge.world_ray(lattice[i]);
+      }
+      objects.closest_hits(rays, hits);
+      objects.occluded(rays, blocked);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        Counts& count = counts[lattice[i].exact ? 0 : 1];
+        const LatticeAnswer expected = judge.answer(lattice[i]);
+        const Hit hit = objects.closest_hit(rays[i]);
+        ++count.rays;
+        count.hits += hit ? 1 : 0;
+        count.judged += expected.decided ? 1 : 0;
+        if (judge.agrees(lattice[i], expected, hit) && hit == hits[i] && static_cast<bool>(hit) == (blocked[i] != 0) &&
+            static_cast<bool>(hit) == objects.occluded(rays[i]))
+          continue;
+        ++count.wrong;
+        first_wrong.tell(fmt::format("scene {}, ray {}", index, i));
+      }
+    }
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < total.size(); ++i) {
+      total[i].rays += counts[i].rays;
+      total[i].hits += counts[i].hits;
+      total[i].judged += counts[i].judged;
+      total[i].wrong += counts[i].wrong;
+    }
+  });
+  return total;
+}
+
+}  // namespace
+
+void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"rays", "count", "hits", "judged", "wrong"}};
   std::int64_t wrong = 0;
-  for (std::size_t i = 0; i < total.size(); ++i) {
-    const Counts& c = total[i];
+  FirstWrong first_wrong;
+  const auto add = [&](const char* name, const Counts& c) {
     wrong += c.wrong;
-    rows.push_back(
-        {{"kind", kRayNames[i]}, {"rays", c.rays}, {"hits", c.hits}, {"judged", c.judged}, {"wrong", c.wrong}});
-    lines.push_back(
-        {kRayNames[i], short_number(c.rays), short_number(c.hits), short_number(c.judged), short_number(c.wrong)});
+    rows.push_back({{"kind", name}, {"rays", c.rays}, {"hits", c.hits}, {"judged", c.judged}, {"wrong", c.wrong}});
+    lines.push_back({name, short_number(c.rays), short_number(c.hits), short_number(c.judged), short_number(c.wrong)});
+  };
+  if (options.of != "scenes") {
+    const auto of_grids = leaks_of_grids(options, first_wrong);
+    for (std::size_t i = 0; i < of_grids.size(); ++i) add(kRayNames[i], of_grids[i]);
+  }
+  if (options.of != "grids") {
+    const auto of_scenes = leaks_of_scenes(options, first_wrong);
+    for (std::size_t i = 0; i < of_scenes.size(); ++i) add(kSceneNames[i], of_scenes[i]);
   }
   print_table(lines, 1);
   write_json(report, rows);
   if (wrong > 0)
-    throw Error(fmt::format("voxel-leaks: {} rays were answered differently; the first: {}", wrong, first_wrong));
+    throw Error(fmt::format("voxel-leaks: {} rays were answered differently; the first: {}", wrong, first_wrong.text));
 }
 
 }  // namespace scarp::bench

@@ -51,9 +51,11 @@ struct ScarpVoxelObject {
   uint none;
 };
 
-/// Rows of grid_from_world.
+/// Rows of grid_from_world, VoxelRay::room, and a byte of VoxelTies (march/voxel/voxel_ray.h) for each frame of a ray.
 struct ScarpVoxelTurn {
   dvec3 rows[3];
+  double room;
+  uint ties[16];
 };
 
 /// A node of the hierarchy over the objects, as BoxTree has it: four boxes relative to the middle of all, and their

@@ -21,7 +21,7 @@ struct Cell {
 enum class VoxelFace : std::uint8_t { low_x, high_x, low_y, high_y, low_z, high_z, inside };
 
 /// Where a ray starts.
-enum class RayStart {
+enum class RayStart : std::uint8_t {
   free,        ///< anywhere; a ray that touches the surface hits it
   on_surface,  ///< on the surface of `start_cell`: above it by definition; later hits must be strictly below
 };
@@ -35,6 +35,7 @@ struct Ray {
   double t_min = 0.0;                                      ///< finite; may be negative
   double t_max = std::numeric_limits<double>::infinity();  ///< >= t_min; may be infinite
   RayStart start = RayStart::free;
+  std::uint8_t frame = 0;  ///< how its space stands in the world, for ties of voxels (voxel_ray.h); set by scenes
   Cell start_cell{};  ///< on_surface: height fields: the cell that contains the point at t_min; meshes: Hit::cell of
                       ///< the hit
   std::uint32_t start_object = 0;  ///< on_surface, scenes: index of the object on whose surface the ray starts

@@ -16,6 +16,7 @@
 #include "scarp/base/error.h"
 #include "scarp/scene/box_tree_editor.h"
 #include "scarp/scene/object_boxes.h"
+#include "scarp/scene/scene_answers.h"
 
 namespace scarp {
 namespace {
@@ -179,7 +180,7 @@ std::uint32_t LiveScene::Editor::add(const Scene& part, const Placement& placeme
     state.free_objects.pop_back();
   } else {
     state.objects.emplace_back(), state.boxes.emplace_back();
-    state.scene.objects_.emplace_back(), state.scene.in_place_.emplace_back();
+    state.scene.objects_.emplace_back(), state.scene.in_place_.emplace_back(), state.scene.frames_.emplace_back();
   }
   state.scene.objects_[number] = object;
   state.objects[number].exists = true;
@@ -251,6 +252,7 @@ void LiveScene::State::update_boxes(std::uint32_t index) {
   const Placement& placement = scene.objects_[index].placement;
   const Field& field = fields[scene.objects_[index].field];
   scene.in_place_[index] = placement.identity();
+  scene.frames_[index] = frame_of(placement);
 
   const auto in_world = [&](const std::optional<WorldBox>& box) {
     return box ? world_box(placement, *box) : WorldBox{};

@@ -69,6 +69,7 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const auto& [field, material, placement, mask] = objects_[i];
     in_place_.push_back(placement.identity());
+    frames_.push_back(frame_of(placement));
     if (field_extents[field]) box_ = around(box_, world_box(placement, *field_extents[field]));
     if (!field_boxes[field]) {
       beside_tree_.push_back(i);

@@ -223,6 +223,7 @@ class Scene {
   std::shared_ptr<SceneBackEnd> back_end_;  // null: the fields' own marches
   std::vector<SceneObject> objects_;
   std::vector<std::uint8_t> in_place_;      // per object: 1 if its placement is the identity
+  std::vector<std::uint8_t> frames_;        // per object: Ray::frame of rays in its space
   std::vector<std::uint32_t> beside_tree_;  // objects that every ray is traced against, before the tree
   BoxTree tree_;                            // the other objects that are not empty
   WorldBox box_;

@@ -2,6 +2,7 @@
 // Private to the station: shared by single-ray and batch queries of a scene.
 #pragma once
 
+#include "scarp/march/voxel/voxel_ray.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {
@@ -23,6 +24,11 @@ struct Scene::StartedRay {
   const Hit* from_on(std::uint32_t object) const { return from && from->object == object ? from : nullptr; }
 };
 
+/// Returns Ray::frame of rays in the space of a field that stands there.
+inline std::uint8_t frame_of(const Placement& placement) {
+  return static_cast<std::uint8_t>(VoxelTies(transpose(placement.turn)).bits);
+}
+
 /// Whether a query by rules, or without, sees an object.
 inline bool sees(const SceneRules* rules, const SceneObject& object) {
   return !rules || (rules->mask & object.mask) != 0;
@@ -38,6 +44,7 @@ inline void Scene::make_local(const StartedRay& started, std::uint32_t object, c
     local = started.ray;
   } else {
     local = objects_[object].placement.field_from_world(started.ray);
+    local.frame = frames_[object];
   }
   if (!started.own || started.ray.start_object != object) local.start = RayStart::free;
   if (!best) return;

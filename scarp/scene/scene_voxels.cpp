@@ -29,7 +29,8 @@ class VoxelField final : public SceneField {
 
   std::string_view kind() const override { return "voxels"; }
   std::string_view march() const override { return march_; }
-  std::optional<WorldBox> box() const override { return objects_.box(); }
+  std::optional<WorldBox> box() const override { return objects_.reach(); }
+  std::optional<WorldBox> extent() const override { return objects_.box(); }
 
   // A ray alone does not say on which voxel it begins: without `from` all rays are free.
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {

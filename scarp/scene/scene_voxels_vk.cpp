@@ -42,9 +42,13 @@ DeviceVoxelObjects placed_on(const Device& device, const DeviceVoxels& grids, co
   for (const VoxelObjects::Placed& placed : voxels.placed())
     objects.push_back({placed.origin, placed.model, placed.turn, placed.part, 0});
   std::vector<glsl::ScarpVoxelTurn> turns;
-  for (const glm::dmat3& turn : voxels.turns()) {
-    const glm::dmat3 rows = transpose(turn);
-    turns.push_back({{rows[0], rows[1], rows[2]}});
+  for (const VoxelObjects::PlacedTurn& turn : voxels.turns()) {
+    const glm::dmat3 rows = transpose(turn.grid_from_world);
+    glsl::ScarpVoxelTurn& to = turns.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) to.rows[axis] = rows[axis];
+    to.room = turn.room;
+    for (std::size_t frame = 0; frame < turn.ties.size(); ++frame)
+      to.ties[frame / 4] |= std::uint32_t{turn.ties[frame]} << (8 * (frame % 4));
   }
   const BoxTree::Parts tree = voxels.tree().parts();
   std::vector<glsl::ScarpBoxNode> nodes(tree.nodes.size() / sizeof(glsl::ScarpBoxNode));

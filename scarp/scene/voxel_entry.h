@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The palette entry of the voxel that a ray hit.
+// The voxel that a ray hit, as its file has it: its palette entry and its coordinates.
 #pragma once
 
 #include <cstdint>
@@ -12,5 +12,9 @@ namespace scarp {
 /// Returns the index in its model's palette of the voxel that was hit. Nullopt for hits of other fields and for models
 /// without a palette: the entries of their voxels are colours of 24 bits.
 std::optional<std::uint32_t> palette_entry(const Scene& scene, const Hit& hit);
+
+/// Returns the coordinates in its file of the voxel that was hit. Nullopt for hits of other fields. Without a file
+/// these are Hit::voxel.
+std::optional<ivec3> file_voxel(const Scene& scene, const Hit& hit);
 
 }  // namespace scarp

@@ -14,6 +14,7 @@
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/base/edit_count.h"
 #include "scarp/march/voxel/voxel_table.h"
+#include "scarp/scene/lattice_place.h"
 #include "scarp/scene/voxel_material.h"
 
 namespace scarp {
@@ -45,7 +46,15 @@ class VoxelModel {
              Extent extent = Extent::bounds, std::vector<VoxelMaterial> materials = {});
 
   /// The same grid, colours and materials with another march.
-  VoxelModel marched_by(const VoxelMarchEntry& march) const { return {grid_, march, palette_, extent_, materials_}; }
+  VoxelModel marched_by(const VoxelMarchEntry& march) const {
+    VoxelModel model(grid_, march, palette_, extent_, materials_);
+    model.set_file_place(file_place_);
+    return model;
+  }
+
+  /// Where the grid is among the voxels of the file that it was read from: readers crop grids and turn their axes.
+  void set_file_place(const LatticePlace& place) { file_place_ = place; }
+  const LatticePlace& file_place() const { return file_place_; }
 
   const VoxelGrid& grid() const { return grid_; }
   const VoxelMarchEntry& march() const { return *march_; }
@@ -89,6 +98,7 @@ class VoxelModel {
   std::vector<VoxelColour> palette_;
   std::vector<VoxelMaterial> materials_;
   Extent extent_;
+  LatticePlace file_place_{{}, ivec3(0)};
   VoxelBox box_;
   EditCount edits_;
   std::variant<std::monostate, EmptySpheres, EmptyCubes, OctantCubes, BrickMasks> built_;  // what the march needs

@@ -32,6 +32,8 @@ void require_rigid(const glm::dmat3& m, std::size_t place) {
   if (!good) throw Error(fmt::format("voxels: object {}: its matrix must be a rotation times a scale above 0", place));
 }
 
+double largest(const dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
+
 Hit hit_on(std::uint32_t part, const VoxelHit& found) {
   Hit hit;
   hit.status = HitStatus::hit, hit.face = found.face, hit.t = found.t;
@@ -40,6 +42,13 @@ Hit hit_on(std::uint32_t part, const VoxelHit& found) {
 }
 
 }  // namespace
+
+VoxelObjects::Turn::Turn(const glm::dmat3& world_from_grid_)
+    : grid_from_world(glm::inverse(world_from_grid_)), world_from_grid(world_from_grid_) {
+  VoxelTies frame;
+  for (std::uint8_t& ties : ties_by_frame)
+    ties = static_cast<std::uint8_t>(VoxelTies(grid_from_world, frame).bits), ++frame.bits;
+}
 
 VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.models)), rounding_(voxels.rounding) {
   validate(rounding_);
@@ -60,7 +69,7 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
     require_rigid(place.world_from_grid, index);
     const std::string key(reinterpret_cast<const char*>(&place.world_from_grid), sizeof(place.world_from_grid));
     const auto [turn, fresh] = turns.try_emplace(key, static_cast<std::uint32_t>(turns_.size()));
-    if (fresh) turns_.push_back({glm::inverse(place.world_from_grid), place.world_from_grid});
+    if (fresh) turns_.emplace_back(place.world_from_grid);
     objects_.push_back({origin, place.model, turn->second});
     const VoxelBox& box = models_[place.model]->box();
     if (box.empty()) continue;
@@ -69,6 +78,21 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   }
   objects_.shrink_to_fit();
   in_tree_.shrink_to_fit();
+  // Where objects meet, no coordinate of a ray, a place or a corner is larger than `farthest`. Their difference, the
+  // three products of a row and the sums round less than 8 units of it, and as much again in the elements of the
+  // inverse and in places of readers, which are products: 2^-49; twice that leaves room for the two sides of a plane.
+  double farthest = 0;
+  for (const WorldBox& box : boxes) box_ = around(box_, box);
+  for (const Object& object : objects_) farthest = std::max(farthest, largest(object.origin));
+  if (!boxes.empty()) farthest = std::max({farthest, largest(box_.low), largest(box_.high)});
+  for (Turn& turn : turns_) turn.room = std::ldexp(farthest, -48) * length(turn.grid_from_world[0]);
+  // Rays may hit voxels at edges of a box that they miss by less (quantise()).
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Turn& turn = turns_[objects_[in_tree_[i]].turn];
+    const double margin =
+        2 * length(turn.world_from_grid[0]) * (turn.room + kTouch / static_cast<double>(kVoxelPlaces));
+    boxes[i] = {boxes[i].low - margin, boxes[i].high + margin};
+  }
   tree_ = BoxTree(boxes);
 }
 
@@ -83,16 +107,16 @@ struct VoxelObjects::Query {
       : scene(in),
         ray(world_ray),
         turn(in.objects_[in.in_tree_[0]].turn),
-        direction(in.turns_[turn].grid_from_world * world_ray.direction) {}
+        direction(in.turns_[turn].grid_from_world * world_ray.direction, in.turns_[turn].ties(world_ray)) {}
 
   VoxelRay in_grid(std::uint32_t index, double t_max) {
     const Object& object = scene.objects_[index];
     const Turn& to = scene.turns_[object.turn];
     if (object.turn != turn) {
       turn = object.turn;
-      direction = VoxelDirection(to.grid_from_world * ray.direction);
+      direction = VoxelDirection(to.grid_from_world * ray.direction, to.ties(ray));
     }
-    return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}};
+    return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}, to.room};
   }
   std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const Hit* from) {
     VoxelRay local = in_grid(index, t_max);
@@ -250,9 +274,9 @@ std::vector<VoxelObjects::Placed> VoxelObjects::placed() const {
   return placed;
 }
 
-std::vector<glm::dmat3> VoxelObjects::turns() const {
-  std::vector<glm::dmat3> turns;
-  for (const Turn& turn : turns_) turns.push_back(turn.grid_from_world);
+std::vector<VoxelObjects::PlacedTurn> VoxelObjects::turns() const {
+  std::vector<PlacedTurn> turns;
+  for (const Turn& turn : turns_) turns.push_back({turn.grid_from_world, turn.ties_by_frame, turn.room});
   return turns;
 }
 

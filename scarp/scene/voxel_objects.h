@@ -9,6 +9,7 @@
 // knows fields alone, and asks them ray by ray.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -80,6 +81,10 @@ class VoxelObjects {
   bool overlaps(const TurnedBox& box) const;
   std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
 
+  /// The voxel of a hit by its coordinates in the file (VoxelModel::file_place()).
+  ivec3 file_voxel(const Hit& hit) const {
+    return models_[objects_[hit.part].model]->file_place().lattice_voxel(hit.voxel);
+  }
   const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.part].model]->grid(); }
   /// A point of the world in the space of the object's grid.
   dvec3 place_in_grid(const Hit& hit, const dvec3& p) const;
@@ -93,7 +98,9 @@ class VoxelObjects {
   double voxel_side() const;
 
   /// Around all solid voxels (or grids); empty when there are none.
-  const WorldBox& box() const { return tree_.box(); }
+  const WorldBox& box() const { return box_; }
+  /// Around all that rays may hit, which is a little more (kTouch in march/voxel/voxel_ray.h).
+  const WorldBox& reach() const { return tree_.box(); }
   std::size_t objects() const { return objects_.size(); }
   const std::vector<std::shared_ptr<const VoxelModel>>& models() const { return models_; }
   /// Of the objects and the hierarchy over them, without the models.
@@ -106,8 +113,14 @@ class VoxelObjects {
   };
   /// Returns the objects in the order of the tree's numbers.
   std::vector<Placed> placed() const;
-  /// Returns grid_from_world of each turn.
-  std::vector<glm::dmat3> turns() const;
+  /// Bits of the ties of a turn for each Ray::frame.
+  using TiesByFrame = std::array<std::uint8_t, 1u << VoxelTies::kBits>;
+  struct PlacedTurn {
+    glm::dmat3 grid_from_world;
+    TiesByFrame ties;
+    double room;  ///< VoxelRay::room
+  };
+  std::vector<PlacedTurn> turns() const;
   const BoxTree& tree() const { return tree_; }
   const VoxelRounding& rounding() const { return rounding_; }
 
@@ -119,6 +132,15 @@ class VoxelObjects {
   };
   struct Turn {
     glm::dmat3 grid_from_world, world_from_grid;
+    TiesByFrame ties_by_frame;
+    double room = 0;  // VoxelRay::room
+
+    explicit Turn(const glm::dmat3& world_from_grid_);
+    VoxelTies ties(const Ray& ray) const {
+      VoxelTies ties;
+      ties.bits = ties_by_frame[ray.frame % ties_by_frame.size()];
+      return ties;
+    }
   };
   struct Query;
   class PacketQuery;
@@ -136,6 +158,7 @@ class VoxelObjects {
   std::vector<Turn> turns_;
   std::vector<std::uint32_t> in_tree_;  // objects that have something to hit, in the order of the tree's numbers
   BoxTree tree_;
+  WorldBox box_;
   VoxelRounding rounding_;
 };
 

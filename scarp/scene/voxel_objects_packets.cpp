@@ -65,7 +65,8 @@ class VoxelObjects::PacketQuery {
   bool load() {
     packet_.steps = 0;
     aimed_ = alone_aimed_ = kNoTurn;
-    return load_voxel_packet(packet_, rays_);
+    const auto other_frame = [&](const Ray& ray) { return ray.frame != rays_[0].frame; };
+    return load_voxel_packet(packet_, rays_) && std::none_of(rays_.begin(), rays_.end(), other_frame);
   }
 
   bool ask_tree() {
@@ -94,6 +95,7 @@ class VoxelObjects::PacketQuery {
   Meeting meet(std::uint32_t index, std::uint64_t open) {
     const Object& object = scene_.objects_[index];
     const Turn& turn = scene_.turns_[object.turn];
+    const VoxelTies ties = turn.ties(rays_[0]);
     const VoxelTarget& target = scene_.targets_[object.model];
     const VoxelMarchEntry& march = scene_.models_[object.model]->march();
     std::uint64_t alone = march.simd ? 0 : open;
@@ -104,9 +106,9 @@ class VoxelObjects::PacketQuery {
     }
     Meeting meeting;
     if (const std::uint64_t together = open & ~alone; together != 0) {
-      if (aimed_ != object.turn) aim_voxel_packet(packet_, turn.grid_from_world);
+      if (aimed_ != object.turn) aim_voxel_packet(packet_, turn.grid_from_world, ties);
       aimed_ = object.turn;
-      meeting.met = march.packet(target, {turn.grid_from_world, object.origin}, packet_, together);
+      meeting.met = march.packet(target, {turn.grid_from_world, object.origin, ties, turn.room}, packet_, together);
       for (std::size_t k = 0; k < packet_.hits; ++k) {
         const auto i = static_cast<std::size_t>(packet_.ray[k]);
         meeting.hit |= std::uint64_t{1} << i;
@@ -119,7 +121,7 @@ class VoxelObjects::PacketQuery {
     if (alone != 0) {
       if (alone_aimed_ != object.turn) {
         directions_.clear();
-        for (const Ray& ray : rays_) directions_.emplace_back(turn.grid_from_world * ray.direction);
+        for (const Ray& ray : rays_) directions_.emplace_back(turn.grid_from_world * ray.direction, ties);
       }
       alone_aimed_ = object.turn;
     }
@@ -127,8 +129,12 @@ class VoxelObjects::PacketQuery {
       std::optional<ivec3> start_voxel;
       const Hit* from = from_.empty() ? nullptr : from_[i];
       if (from && from->part == index) start_voxel = from->voxel + normal_of(from->face);
-      const VoxelRay ray{turn.grid_from_world * (rays_[i].origin - object.origin), directions_[i].given, rays_[i].t_min,
-                         packet_.t_max[i], start_voxel};
+      const VoxelRay ray{turn.grid_from_world * (rays_[i].origin - object.origin),
+                         directions_[i].given,
+                         rays_[i].t_min,
+                         packet_.t_max[i],
+                         start_voxel,
+                         turn.room};
       const auto quantised = quantise(ray, directions_[i], target.box);
       if (!quantised) return;
       MarchStats stats;

@@ -164,7 +164,12 @@ std::vector<Ray> rays_in_local(const RayTable& table, const CoordinateFrame& fra
   to_local(&RayRow::origin);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const RayRow& row = table.rows[i];
-    rays[i] = {points[i], {}, row.t_min, row.t_max, row.start, row.start_cell};
+    rays[i] = {.origin = points[i],
+               .direction = {},
+               .t_min = row.t_min,
+               .t_max = row.t_max,
+               .start = row.start,
+               .start_cell = row.start_cell};
   }
   if (table.aim == RayAim::target) to_local(&RayRow::aim);
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -2,6 +2,7 @@
 // Voxel objects of scenes on a Vulkan device: the CPU's answers, to the bit.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/voxel_scene_judge.h"
 #include "cases.h"
 #include "scarp/accel/voxel_buffers.glsl.h"
 #include "scarp/base/error.h"
@@ -143,6 +145,39 @@ class SceneVoxelsOnDevice : public OnDevice {
 TEST_F(SceneVoxelsOnDevice, AreThoseOfTheCpu) {
   for (const int count : {1, 7, 300}) expect_same(Scene(scene_voxels(crowd_of(random, count, ""))));
   expect_same(Scene(scene_voxels(crowd_of(random, 40, "voxel-octants"))));
+}
+
+// Turned and mirrored objects that touch, as one field and as a field each.
+TEST_F(SceneVoxelsOnDevice, AgreeWithOneGridWhereObjectsMeet) {
+  constexpr std::array<const char*, 5> kMarches = {"voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants",
+                                                   "voxel-bricks"};
+  const int scenes = cases(400, 40, 10);
+  int hits = 0;
+  for (int s = 0; s < scenes; ++s) {
+    bench::Random of_scene(50, static_cast<std::uint64_t>(s));
+    const bench::VoxelSceneJudge judge(of_scene, kMarches[static_cast<std::size_t>(s % 5)]);
+    std::vector<bench::LatticeRay> lattice(2048);
+    std::vector<Ray> rays(lattice.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      lattice[i] = bench::VoxelSceneJudge::random_ray(of_scene);
+      rays[i] = judge.world_ray(lattice[i]);
+    }
+    for (const bool fields : {false, true}) {
+      const Scene there = scene_on(device(), fields ? judge.as_fields() : Scene(scene_voxels(judge.placed())));
+      std::vector<Hit> found(rays.size());
+      std::vector<std::uint8_t> blocked(rays.size());
+      there.closest_hits(rays, found);
+      there.occluded(rays, blocked);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        Hit hit = found[i];
+        if (fields) hit.part = hit.object;
+        hits += hit ? 1 : 0;
+        ASSERT_TRUE(judge.agrees(lattice[i], judge.answer(lattice[i]), hit)) << s << ' ' << fields << ' ' << i;
+        ASSERT_EQ(static_cast<bool>(hit), blocked[i] != 0) << s << ' ' << fields << ' ' << i;
+      }
+    }
+  }
+  EXPECT_GT(hits, scenes * 200);
 }
 
 TEST_F(SceneVoxelsOnDevice, SmoothNormalsMoveShadowRays) {

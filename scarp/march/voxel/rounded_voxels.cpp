@@ -124,13 +124,13 @@ struct Leaving {
   int axis = 0;
 };
 
-Leaving leaving(const ivec3& voxel, const VoxelRay& ray) {
+Leaving leaving(const ivec3& voxel, const VoxelRay& ray, VoxelTies ties = {}) {
   Leaving out;
   for (int axis = 0; axis < 3; ++axis) {
     const double d = ray.direction[axis];
     if (d == 0) continue;
     const double t = (voxel[axis] + (d > 0 ? 1 : 0) - ray.origin[axis]) / d;
-    if (t < out.t) out = {t, axis};
+    if (t < out.t || (t == out.t && t < kInfinity && ties.before(axis, out.axis))) out = {t, axis};
   }
   return out;
 }
@@ -157,7 +157,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
   VoxelRay rest = ray;
   std::optional<VoxelFace> came_by;  // face into rest.start_voxel
   const auto go_on_from = [&](const ivec3& voxel) {
-    const Leaving out = leaving(voxel, ray);
+    const Leaving out = leaving(voxel, ray, direction.quantised.ties);
     const int step = ray.direction[out.axis] > 0 ? 1 : -1;
     rest.t_min = std::max(rest.t_min, out.t);
     rest.start_voxel = voxel;

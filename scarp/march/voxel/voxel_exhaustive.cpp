@@ -9,14 +9,14 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-// The crossing of a plane: distance / speed, then the axis.
+// The crossing of a plane: distance / speed, then the rank of the axis.
 struct Event {
   std::int64_t distance, speed;
-  int axis;
+  int axis, rank;
 
   friend bool operator<(const Event& a, const Event& b) {
     const Wide left = Wide{a.distance} * b.speed, right = Wide{b.distance} * a.speed;
-    return left != right ? left < right : a.axis < b.axis;
+    return left != right ? left < right : a.rank < b.rank;
   }
 };
 
@@ -29,13 +29,14 @@ struct Visit {
 bool cut(Visit& visit, const QuantisedRay& ray, int axis, int place) {
   const std::int64_t planes = std::int64_t{place - ray.voxel[axis]} * ray.direction.step[axis];
   const std::int64_t speed = ray.direction.speed[axis], first = ray.to_plane[axis], side = 1 << 20;
+  const int rank = ray.direction.ties.rank(axis);
   if (planes < 0 || (planes > 0 && speed == 0)) return false;
   if (planes > 0) {
-    const Event in{first + (planes - 1) * side, speed, axis};
+    const Event in{first + (planes - 1) * side, speed, axis, rank};
     if (!visit.in || *visit.in < in) visit.in = in;
   }
   if (speed > 0) {
-    const Event out{first + planes * side, speed, axis};
+    const Event out{first + planes * side, speed, axis, rank};
     if (!visit.out || out < *visit.out) visit.out = out;
   }
   return !visit.in || !visit.out || *visit.in < *visit.out;

@@ -46,22 +46,24 @@ SCARP_FN bool scarp_voxel_ray(ivec3 low, ivec3 high, vec3 origin, vec3 direction
   float longest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
   // Quotients of devices are off by 2.5 units; no component may seem longer than the longest one.
   float per_longest = (1.0f - 1.0f / 2097152.0f) / longest;
-  ScarpVoxelClip clip = ScarpVoxelClip(t_min, t_max, -1);
+  ScarpVoxelClip clip = ScarpVoxelClip(t_min, t_max, -1, false);
   walk.back = 0u;
   bool met = longest > 0.0f;
   for (int i = 0; i < 3; ++i) {
-    if (direction[i] < 0.0f) walk.back |= 1u << uint(i);
-    met =
-        scarp_voxel_clip(i, origin[i], direction[i], 1.0f / direction[i], low[i], high[i], has_start, start[i], clip) &&
-        met;
+    walk.speed[i] = scarp_voxel_speed(direction[i], per_longest);
+    walk.back |= scarp_voxel_back(i, direction[i], 0u) | scarp_voxel_inexact(direction[i], per_longest, walk.speed[i]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    met = scarp_voxel_clip(i, origin[i], direction[i], 1.0f / direction[i], 0.0f, walk.speed[i], walk.back, low[i],
+                           high[i], has_start, start[i], clip) &&
+          met;
   }
   met = met && clip.t <= clip.t_out;
   if (met) {
     for (int i = 0; i < 3; ++i) {
-      walk.speed[i] = scarp_voxel_speed(direction[i], per_longest);
       ScarpVoxelPlace at;
-      met = scarp_voxel_place(i, origin[i], direction[i], walk.speed[i], low[i], high[i], has_start, start[i], clip,
-                              at) &&
+      met = scarp_voxel_place(i, origin[i], direction[i], walk.speed[i], walk.back, low[i], high[i], has_start,
+                              start[i], clip, at) &&
             met;
       walk.voxel[i] = at.voxel;
       walk.left[i] = at.left;

@@ -28,17 +28,22 @@ struct VoxelQuery {
 void scarp_turn_ray(uint ray, uint turn, VoxelTurns turns) {
   VoxelScratch scratch = VoxelScratch(batch.scratch);
   double per_longest = 0.0lf;
-  uint back = 0u;
+  uint frame = VoxelRaysAgain(batch.rays).rays[ray].frame;
+  uint ties = turns.of[turn].ties[frame >> 2] >> (8u * (frame & 3u)), back = ties & kScarpTieBits;
   [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
     double given = scarp_turned(turns.of[turn].rows[axis], VoxelRaysAgain(batch.rays).rays[ray].direction);
-    if (given < 0.0lf) back |= 1u << uint(axis);
+    back |= scarp_voxel_back(axis, given, ties);
     double inverse = scarp_exact_inverse(given), size = scarp_magnitude(inverse);
     if (axis == 0 || size < per_longest) per_longest = size;
     scratch.of[ray].given[axis] = given;
     scratch.of[ray].inverse[axis] = inverse;
   }
-  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) scratch.of[ray].speed[axis] =
-      scarp_voxel_speed(scratch.of[ray].given[axis], per_longest);
+  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
+    double given = scratch.of[ray].given[axis];
+    uint speed = scarp_voxel_speed(given, per_longest);
+    back |= scarp_voxel_inexact(given, per_longest, speed);
+    scratch.of[ray].speed[axis] = speed;
+  }
   scratch.of[ray].back = back;
   scratch.of[ray].t_per_s = scarp_voxel_t_per_s(per_longest);
 }
@@ -50,15 +55,16 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
   VoxelRaysAgain rays = VoxelRaysAgain(batch.rays);
   uint ray = query.ray, grid = objects.of[index].grid;
   bool has_start = rays.rays[ray].part == objects.of[index].part;
-  ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[ray].t_min, query.t_max, -1);
+  ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[ray].t_min, query.t_max, -1, false);
   bool met = true;
   [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
     precise dvec3 away = rays.rays[ray].origin - objects.of[index].origin;
-    double origin = scarp_turned(turns.of[query.turn].rows[axis], away);
+    double origin = scarp_turned(turns.of[query.turn].rows[axis], away), room = turns.of[query.turn].room;
+    if (scratch.of[ray].given[axis] == 0.0lf) origin = scarp_voxel_level(origin, room);
     scratch.of[ray].origin[axis] = origin;
-    met = scarp_voxel_clip(axis, origin, scratch.of[ray].given[axis], scratch.of[ray].inverse[axis],
-                           grids.grids[grid].low[axis], grids.grids[grid].high[axis], has_start,
-                           rays.rays[ray].start[axis], clip) &&
+    met = scarp_voxel_clip(axis, origin, scratch.of[ray].given[axis], scratch.of[ray].inverse[axis], room,
+                           scratch.of[ray].speed[axis], scratch.of[ray].back, grids.grids[grid].low[axis],
+                           grids.grids[grid].high[axis], has_start, rays.rays[ray].start[axis], clip) &&
           met;
   }
   met = met && clip.t <= clip.t_out;
@@ -66,8 +72,8 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
     [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
       ScarpVoxelPlace at;
       met = scarp_voxel_place(axis, scratch.of[ray].origin[axis], scratch.of[ray].given[axis],
-                              scratch.of[ray].speed[axis], grids.grids[grid].low[axis], grids.grids[grid].high[axis],
-                              has_start, rays.rays[ray].start[axis], clip, at) &&
+                              scratch.of[ray].speed[axis], scratch.of[ray].back, grids.grids[grid].low[axis],
+                              grids.grids[grid].high[axis], has_start, rays.rays[ray].start[axis], clip, at) &&
             met;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;

@@ -34,8 +34,10 @@ struct VoxelPacket {
 
   // Set by aim_voxel_packet(): VoxelDirection of each ray in the space of a grid.
   alignas(64) Lanes<double> given[3], inverse[3], t_per_s;
+  alignas(64) Lanes<double> touch;  ///< kTouch in voxels, 0 for exact directions
+  bool slow = false;                ///< whether any ray is level or slow along an axis
   alignas(64) Lanes<std::int64_t> speed[3],
-      down[3];  ///< down: -1 if a ray travels in the negative direction of the axis, otherwise 0
+      down[3];  ///< down: -1 if a ray's step along the axis is -1, otherwise 0
 
   // Set by a march: hits, in no particular order.
   std::size_t hits = 0;
@@ -51,6 +53,8 @@ struct VoxelPacket {
 struct VoxelStand {
   glm::dmat3 grid_from_world{1.0};
   dvec3 origin{0.0};
+  VoxelTies ties{};   ///< of the matrix
+  double room = 0.0;  ///< VoxelRay::room
 };
 
 /// Loads up to kRays world rays; ignores surfaces that they start on. Returns false if a direction does not have a
@@ -58,7 +62,7 @@ struct VoxelStand {
 [[nodiscard]] bool load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays);
 
 /// Call before marches, and again before rays traverse grids with another orientation.
-void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world);
+void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties = {});
 
 /// Marches the rays whose bits are set, as free rays, within [t_min, t_max]. Returns those that entered the box.
 using VoxelPacketMarch = std::uint64_t (*)(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,

@@ -78,6 +78,7 @@ struct LaneWalk {
   alignas(64) Numbers moved;
   // 1 / speed, or for looks that travel: in [0], the travel per voxel, as voxel_travel.h has it.
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
+  VoxelTies ties;                      // of the grid
   std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
   std::uint64_t solid[kVectors] = {};  // at a solid voxel, waiting to be reported: many cost as much as one
@@ -127,16 +128,50 @@ HWY_INLINE VD travel_per_voxel(const VI (&speed)[3]) {
   return hn::Trunc(hn::Div(hn::Set(dd, 0x1p48), length));
 }
 
+// Lanes whose entered axis other than `axis` is crossed before it (`first`) or after it.
+HWY_INLINE MI entered_by(VI entered, VoxelTies ties, int axis, bool first) {
+  MI any = hn::MaskFromVec(hn::Zero(di));
+  for (int i = 0; i < 3; ++i) {
+    if (i != axis && ties.before(i, axis) == first)
+      any = hn::Or(any, hn::Eq(entered, hn::Set(di, LaneWalk::kEntered + i)));
+  }
+  return any;
+}
+
+// Of quantise(): rays go back to the voxels before planes that are not crossed yet.
+HWY_NOINLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPacket& packet, std::size_t o, VD t,
+                               VD touch, VI entered, const MD (&down)[3], const VD (&distance)[3], VD (&voxel)[3],
+                               VI (&next)[3]) {
+  const VD one = hn::Set(dd, 1.0);
+  const MI exact = hn::RebindMask(di, hn::Eq(touch, hn::Zero(dd)));
+  MI comes_in = hn::RebindMask(di, hn::Gt(t, hn::Load(dd, packet.t_min + o)));
+  comes_in = hn::AndNot(hn::Eq(entered, hn::Set(di, LaneWalk::kInside)), comes_in);
+  for (int i = 0; i < 3; ++i) {
+    const MI on_plane = hn::And(exact, hn::RebindMask(di, hn::Eq(distance[i], one)));
+    const MI crossed = hn::AndNot(entered_by(entered, ties, i, true), on_plane);
+    const VD first = hn::IfThenElse(down[i], hn::Set(dd, box.high[i] - 1.0), hn::Set(dd, box.low[i]));
+    MI back = hn::And(comes_in, hn::Gt(next[i], hn::Set(di, kVoxelPlaces - kTouch - 1)));
+    back = hn::AndNot(hn::Or(crossed, hn::Eq(entered, hn::Set(di, LaneWalk::kEntered + i))), back);
+    back = hn::AndNot(hn::Eq(hn::Load(di, packet.speed[i] + o), hn::Zero(di)), back);
+    back = hn::AndNot(hn::RebindMask(di, hn::Eq(voxel[i], first)), back);
+    const VD step = hn::IfThenElse(down[i], one, hn::Neg(one));
+    voxel[i] = hn::Add(voxel[i], hn::IfThenElseZero(hn::RebindMask(dd, back), step));
+    next[i] = hn::IfThenZeroElse(back, next[i]);
+  }
+}
+
 // quantise() of voxel_ray.cpp, the same operations in the same order. Starts rays that enter the box, and returns them.
 template <class Look>
 HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
                     LaneWalk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
+  const VoxelTies ties = stand.ties;
   VD from[3], origin[3];
   for (int i = 0; i < 3; ++i) from[i] = hn::Sub(hn::Load(dd, packet.origin[i] + o), hn::Set(dd, stand.origin[i]));
   transform(stand.grid_from_world, from, origin);
   VD t = hn::Load(dd, packet.t_min + o), t_out = hn::Load(dd, packet.t_max + o);
   MD alive = hn::And(hn::RebindMask(dd, rays), hn::Lt(hn::Load(dd, packet.t_per_s + o), hn::Inf(dd)));
+  const VD touch = hn::Load(dd, packet.touch + o), late = hn::Max(touch, hn::Set(dd, stand.room));
   VI entered = hn::Set(di, LaneWalk::kInside);
   MD down[3];
   VD given[3];
@@ -144,34 +179,67 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
     const VD inverse = hn::Load(dd, packet.inverse[i] + o);
     given[i] = hn::Load(dd, packet.given[i] + o);
-    down[i] = hn::Lt(given[i], zero);
+    down[i] = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.down[i] + o), hn::Zero(di)));
     const MD level = hn::Eq(given[i], zero);
-    alive = hn::And(alive, hn::Or(hn::Not(level), hn::And(hn::Ge(origin[i], low), hn::Lt(origin[i], high))));
-    const VD to_low = hn::Mul(hn::Sub(low, origin[i]), inverse), to_high = hn::Mul(hn::Sub(high, origin[i]), inverse);
-    const VD near = hn::IfThenElse(down[i], to_high, to_low), far = hn::IfThenElse(down[i], to_low, to_high);
+    VD first = hn::IfThenElse(down[i], high, low);
+    if (packet.slow) {
+      const VD plane = hn::Floor(hn::Add(origin[i], hn::Set(dd, 0.5))), room = hn::Set(dd, stand.room);
+      const MD on_plane = hn::And(level, hn::Le(hn::Abs(hn::Sub(origin[i], plane)), room));
+      origin[i] = hn::IfThenElse(on_plane, plane, origin[i]);
+      // The voxel's upper side is the one that a level ray counts with.
+      const MD between = ties.up(i) > 0 ? hn::And(hn::Ge(origin[i], low), hn::Lt(origin[i], high))
+                                        : hn::And(hn::Gt(origin[i], low), hn::Le(origin[i], high));
+      alive = hn::And(alive, hn::Or(hn::Not(level), between));
+      const MD slow = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.speed[i] + o), hn::Set(di, kSlow)));
+      const VD early = hn::IfThenElseZero(slow, room);
+      first = hn::IfThenElse(down[i], hn::Add(high, early), hn::Sub(low, early));
+    }
+    const VD near = hn::Mul(hn::Sub(first, origin[i]), inverse);
+    const VD last = hn::IfThenElse(down[i], hn::Sub(low, late), hn::Add(high, late));
+    const VD far = hn::Mul(hn::Sub(last, origin[i]), inverse);
     const MD later = hn::AndNot(level, hn::Ge(near, t));
-    entered = hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, LaneWalk::kEntered + i), entered);
+    MI enters = hn::RebindMask(di, later);
+    // Of planes at the same t the last one; in the order x, y, z that is the one at hand.
+    if (ties.bits >> 3 != 0) {
+      enters = hn::AndNot(hn::And(hn::RebindMask(di, hn::Not(hn::Gt(near, t))), entered_by(entered, ties, i, false)),
+                          enters);
+    }
+    entered = hn::IfThenElse(enters, hn::Set(di, LaneWalk::kEntered + i), entered);
     t = hn::IfThenElse(hn::And(later, hn::Gt(near, t)), near, t);
     t_out = hn::IfThenElse(hn::AndNot(level, hn::Lt(far, t_out)), far, t_out);
   }
   alive = hn::And(alive, hn::Le(t, t_out));
   if (hn::AllFalse(dd, alive)) return hn::RebindMask(di, alive);
-  VD voxel[3];
+  VD voxel[3], distance[3];
   VI next[3];
+  MI touched = hn::MaskFromVec(hn::Zero(di));
   for (int i = 0; i < 3; ++i) {
     const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
     VD place = hn::Add(origin[i], hn::Mul(t, given[i]));
     place = hn::IfThenElse(hn::Gt(place, low), place, low);
     place = hn::IfThenElse(hn::Lt(place, high), place, high);
-    const MD in_here = hn::RebindMask(dd, hn::Eq(entered, hn::Set(di, LaneWalk::kEntered + i)));
+    const MI in_here = hn::Eq(entered, hn::Set(di, LaneWalk::kEntered + i));
+    const MD by_this = hn::RebindMask(dd, in_here);
     const VD whole = hn::Trunc(place);
     voxel[i] = hn::Sub(whole, hn::IfThenElseZero(hn::And(down[i], hn::Eq(whole, place)), one));
-    alive = hn::And(alive, hn::Or(in_here, hn::And(hn::Ge(voxel[i], low), hn::Lt(voxel[i], high))));
-    place = hn::IfThenElse(in_here, hn::IfThenElse(down[i], high, low), place);
-    voxel[i] = hn::IfThenElse(in_here, hn::IfThenElse(down[i], hn::Sub(high, one), low), voxel[i]);
-    const VD distance = hn::IfThenElse(down[i], hn::Sub(place, voxel[i]), hn::Sub(hn::Add(voxel[i], one), place));
-    const VD places = hn::Add(hn::Mul(distance, hn::Set(dd, static_cast<double>(kVoxelPlaces))), hn::Set(dd, 0.5));
+    place = hn::IfThenElse(by_this, hn::IfThenElse(down[i], high, low), place);
+    voxel[i] = hn::IfThenElse(by_this, hn::IfThenElse(down[i], hn::Sub(high, one), low), voxel[i]);
+    distance[i] = hn::IfThenElse(down[i], hn::Sub(place, voxel[i]), hn::Sub(hn::Add(voxel[i], one), place));
+    const VD units = hn::Mul(distance[i], hn::Set(dd, static_cast<double>(kVoxelPlaces)));
+    VD places = hn::Add(units, hn::Set(dd, 0.5));
+    if (packet.slow) {
+      const MI slow = hn::Lt(hn::Load(di, packet.speed[i] + o), hn::Set(di, kSlow));
+      places = hn::IfThenElse(hn::RebindMask(dd, slow), hn::Ceil(units), places);
+    }
     next[i] = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
+    touched = hn::Or(touched, hn::AndNot(in_here, hn::Gt(next[i], hn::Set(di, kVoxelPlaces - kTouch - 1))));
+  }
+  if (!hn::AllFalse(di, touched))
+    touch_behind(box, stand.ties, packet, o, t, touch, entered, down, distance, voxel, next);
+  for (int i = 0; i < 3; ++i) {
+    // On the border and leaving.
+    alive =
+        hn::And(alive, hn::And(hn::Ge(voxel[i], hn::Set(dd, box.low[i])), hn::Lt(voxel[i], hn::Set(dd, box.high[i]))));
   }
   const MI in = hn::RebindMask(di, alive);
   const Chosen chosen(bits_of(in));
@@ -272,7 +340,10 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
   }
   packet.steps += hn::CountTrue(di, alive);
 
-  // The first plane that leaves the part.
+  // The first plane that leaves the part; with ties in another order than x, y, z, a plane that comes earlier there
+  // wins as if it were nearer by one unit of the products.
+  const VoxelTies ties = walk.ties;
+  const bool ordered = ties.bits >> 3 == 0;
   VI out[3];
   for (int i = 0; i < 3; ++i) {
     out[i] = next[i];
@@ -281,9 +352,14 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
       out[i] = hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(hn::Sub(planes, one)));
     }
   }
-  const MI y_first = hn::Lt(times<Look>(out[1], speed[0]), times<Look>(out[0], speed[1]));
+  VI of_x = times<Look>(out[0], speed[1]);
+  if (!ordered) of_x = hn::Add(of_x, hn::Set(di, ties.bits >> 3 & 1));
+  const MI y_first = hn::Lt(times<Look>(out[1], speed[0]), of_x);
   VI distance = hn::IfThenElse(y_first, out[1], out[0]), pace = hn::IfThenElse(y_first, speed[1], speed[0]);
-  const MI z_first = hn::Lt(times<Look>(out[2], pace), times<Look>(distance, speed[2]));
+  VI of_xy = times<Look>(distance, speed[2]);
+  if (!ordered)
+    of_xy = hn::Add(of_xy, hn::IfThenElse(y_first, hn::Set(di, ties.bits >> 5 & 1), hn::Set(di, ties.bits >> 4 & 1)));
+  const MI z_first = hn::Lt(times<Look>(out[2], pace), of_xy);
   const VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
 
   VI crossed[3];
@@ -316,8 +392,15 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, walk.slowness[2] + o), slowness);
     for (int i = 0; i < 3; ++i) {
       VI ahead = hn::Sub(times<Look>(distance, speed[i]), times<Look>(next[i], pace));
-      // At the same s as the last plane, a higher axis comes after it.
-      if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
+      // Planes at the same s that come after the last one.
+      if (ordered) {
+        if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
+      } else {
+        for (int k = 0; k < 3; ++k) {
+          if (k != i && ties.before(k, i))
+            ahead = hn::IfThenElse(hn::Eq(axis, hn::Set(di, k)), hn::Sub(ahead, one), ahead);
+        }
+      }
       const VI a = hn::BitCast(di, hn::ShiftRight<kPlaceBits>(hn::BitCast(du, ahead)));
       // The nearest quotient is the one rounded down, or one more.
       const VI quotient = nearest(hn::Mul(as_double(a), slowness)), rest = hn::Sub(a, product(quotient, pace));
@@ -377,6 +460,7 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
   const Look look(target);
   std::uint64_t met = 0;
   LaneWalk walk;
+  walk.ties = stand.ties;
   packet.hits = 0;
   for (std::size_t o = 0; o < packet.count; o += N) {
     if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;
@@ -418,8 +502,9 @@ bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
 }
 
 // VoxelDirection of each ray, the same operations.
-void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
+void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties) {
   const VD whole = hn::Set(dd, static_cast<double>(1 << kDirectionBits)), half = hn::Set(dd, 0.5);
+  packet.slow = false;
   for (std::size_t o = 0; o < packet.count; o += N) {
     VD world[3], given[3], inverse[3];
     for (int i = 0; i < 3; ++i) world[i] = hn::Load(dd, packet.direction[i] + o);
@@ -428,13 +513,24 @@ void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
       inverse[i] = hn::Div(hn::Set(dd, 1.0), given[i]);
       hn::Store(given[i], dd, packet.given[i] + o);
       hn::Store(inverse[i], dd, packet.inverse[i] + o);
-      hn::Store(hn::VecFromMask(di, hn::RebindMask(di, hn::Lt(given[i], hn::Zero(dd)))), di, packet.down[i] + o);
+      // A level ray steps towards the upper side.
+      const VD zero = hn::Zero(dd);
+      const MD down = ties.up(i) > 0 ? hn::Lt(given[i], zero) : hn::Le(given[i], zero);
+      hn::Store(hn::VecFromMask(di, hn::RebindMask(di, down)), di, packet.down[i] + o);
     }
     const VD per_longest = hn::Min(hn::Min(hn::Abs(inverse[0]), hn::Abs(inverse[1])), hn::Abs(inverse[2]));
+    MD exact = hn::Eq(half, half), any_slow = hn::Lt(half, half);
     for (int i = 0; i < 3; ++i) {
-      const VD share = hn::Mul(hn::Mul(hn::Abs(given[i]), per_longest), whole);
-      hn::Store(truncated(hn::Add(share, half)), di, packet.speed[i] + o);
+      const VD units = hn::Mul(hn::Mul(hn::Abs(given[i]), per_longest), whole);
+      const MD slow = hn::Lt(units, hn::Set(dd, static_cast<double>(kSlow)));
+      const VI speed = truncated(hn::IfThenElse(slow, units, hn::Add(units, half)));
+      hn::Store(speed, di, packet.speed[i] + o);
+      exact = hn::And(exact, hn::Eq(units, as_double(speed)));
+      any_slow = hn::Or(any_slow, slow);
     }
+    hn::Store(hn::IfThenZeroElse(exact, hn::Set(dd, static_cast<double>(kTouch) / static_cast<double>(kVoxelPlaces))),
+              dd, packet.touch + o);
+    packet.slow = packet.slow || !hn::AllFalse(dd, any_slow);
     const VD per_s = hn::Set(dd, static_cast<double>(1 << (kDirectionBits - kPlaceBits)));
     hn::Store(hn::Mul(per_s, per_longest), dd, packet.t_per_s + o);
   }
@@ -498,8 +594,8 @@ bool load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays) {
   return HWY_DYNAMIC_DISPATCH(load)(packet, rays.data(), rays.size());
 }
 
-void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
-  HWY_DYNAMIC_DISPATCH(aim)(packet, grid_from_world);
+void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties) {
+  HWY_DYNAMIC_DISPATCH(aim)(packet, grid_from_world, ties);
 }
 
 std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,

@@ -196,7 +196,7 @@ std::vector<std::size_t> DeviceVoxelPictures::draw(const DeviceVoxelObjects& obj
       if (prepared.marches && prepared.exponent == 0) continue;
       // No t: it meets nothing.
       left[i] = 1;
-      all.rays[i] = {dvec3(0.0), dvec3(1.0), 1, 0, glsl::kScarpNoPart, {}};
+      all.rays[i] = {dvec3(0.0), dvec3(1.0), 1, 0, glsl::kScarpNoPart, {}, 0, 0};
     }
   });
   all.draw(objects, picture, !details.entries.empty());

@@ -51,31 +51,45 @@ void scarp_proxy_axis(uint pixel, VoxelObjects scene, uint object, int axis, out
   given = scarp_turned(row, rays.rays[pixel].direction);
   precise dvec3 away = rays.rays[pixel].origin - objects.of[object].origin;
   origin = scarp_turned(row, away);
+  if (given == 0.0lf) origin = scarp_voxel_level(origin, VoxelTurns(scene.is.turns).of[objects.of[object].turn].room);
 }
 
 // Returns false if the ray misses the box.
 bool scarp_enter_proxy(uint pixel, VoxelObjects scene, uint object, out ScarpVoxelWalk walk, out ProxyEntry entry) {
   VoxelRays rays = VoxelRays(push.rays);
   double per_longest = 0.0lf, origin, given;
-  uint back = 0u;
-  ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[pixel].t_min, rays.rays[pixel].t_max, -1);
+  uint turn = VoxelObjectList(scene.is.objects).of[object].turn, frame = rays.rays[pixel].frame;
+  uint ties = VoxelTurns(scene.is.turns).of[turn].ties[frame >> 2] >> (8u * (frame & 3u));
+  double room = VoxelTurns(scene.is.turns).of[turn].room;
+  uint back = ties & kScarpTieBits;
+  dvec3 inverse;
+  for (int axis = 0; axis < 3; ++axis) {
+    scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+    back |= scarp_voxel_back(axis, given, ties);
+    inverse[axis] = scarp_exact_inverse(given);
+    double size = scarp_magnitude(inverse[axis]);
+    if (axis == 0 || size < per_longest) per_longest = size;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+    walk.speed[axis] = scarp_voxel_speed(given, per_longest);
+    back |= scarp_voxel_inexact(given, per_longest, walk.speed[axis]);
+  }
+  ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[pixel].t_min, rays.rays[pixel].t_max, -1, false);
   bool met = true;
   for (int axis = 0; axis < 3; ++axis) {
     scarp_proxy_axis(pixel, scene, object, axis, origin, given);
-    if (given < 0.0lf) back |= 1u << uint(axis);
-    double inverse = scarp_exact_inverse(given), size = scarp_magnitude(inverse);
-    if (axis == 0 || size < per_longest) per_longest = size;
-    met = scarp_voxel_clip(axis, origin, given, inverse, voxel_grid.low[axis], voxel_grid.high[axis], false, 0, clip) &&
+    met = scarp_voxel_clip(axis, origin, given, inverse[axis], room, walk.speed[axis], back, voxel_grid.low[axis],
+                           voxel_grid.high[axis], false, 0, clip) &&
           met;
   }
   met = met && clip.t <= clip.t_out;
   if (met) {
     for (int axis = 0; axis < 3; ++axis) {
       scarp_proxy_axis(pixel, scene, object, axis, origin, given);
-      walk.speed[axis] = scarp_voxel_speed(given, per_longest);
       ScarpVoxelPlace at;
-      met = scarp_voxel_place(axis, origin, given, walk.speed[axis], voxel_grid.low[axis], voxel_grid.high[axis], false,
-                              0, clip, at) &&
+      met = scarp_voxel_place(axis, origin, given, walk.speed[axis], back, voxel_grid.low[axis], voxel_grid.high[axis],
+                              false, 0, clip, at) &&
             met;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;

@@ -19,40 +19,73 @@ SCARP_GLSL_BEGIN
 
 SCARP_FN scarp_real scarp_magnitude(scarp_real x) { return x < scarp_real(0.0f) ? -x : x; }
 
+const uint kScarpVoxelSlow = 16384u;  ///< kSlow of voxel_ray.h
+const uint kScarpVoxelTouch = 5u;     ///< kTouch
+
 /// A component of the direction in 2^-28 of the longest one, given the least magnitude of inverse components.
 SCARP_FN uint scarp_voxel_speed(scarp_real given, scarp_real per_longest) {
   SCARP_PRECISE scarp_real share = scarp_magnitude(given) * per_longest;
-  SCARP_PRECISE scarp_real units = share * scarp_real(268435456.0f) + scarp_real(0.5f);
-  return share <= scarp_real(1.0f) ? uint(units) : 0u;
+  SCARP_PRECISE scarp_real units = share * scarp_real(268435456.0f);
+  SCARP_PRECISE scarp_real nearest = units + scarp_real(0.5f);
+  return share <= scarp_real(1.0f) ? uint(units < scarp_real(16384.0f) ? units : nearest) : 0u;
+}
+/// kScarpInexact if this speed is not the component itself, else 0.
+SCARP_FN uint scarp_voxel_inexact(scarp_real given, scarp_real per_longest, uint speed) {
+  SCARP_PRECISE scarp_real share = scarp_magnitude(given) * per_longest;
+  SCARP_PRECISE scarp_real units = share * scarp_real(268435456.0f);
+  return units == scarp_real(speed) ? 0u : kScarpInexact;
+}
+/// Bits of ScarpVoxelWalk::back for an axis: how the ray steps along it, given the bits of VoxelTies.
+SCARP_FN uint scarp_voxel_back(int axis, scarp_real given, uint ties) {
+  uint bit = 1u << uint(axis);
+  return given == scarp_real(0.0f) ? ties & bit : given < scarp_real(0.0f) ? bit : 0u;
 }
 /// t per unit of distance / speed.
 SCARP_FN scarp_real scarp_voxel_t_per_s(scarp_real per_longest) { return scarp_real(256.0f) * per_longest; }
 
-/// A ray that is clipped to a box, from t to t_out; begin with its range and entered = -1.
+/// A ray that is clipped to a box, from t to t_out; begin with its range, entered = -1 and comes_in = false.
 struct ScarpVoxelClip {
   scarp_real t;
   scarp_real t_out;
-  int entered;  ///< the axis along which it comes in; -1: it starts inside
+  int entered;    ///< the axis along which it comes in; -1: it starts inside
+  bool comes_in;  ///< later than it starts
 };
 
-/// Returns false if the ray misses the box. `start` is the place of the voxel where it starts, if `has_start`.
-SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, scarp_real inverse, int low, int high,
-                               bool has_start, int start, SCARP_INOUT(ScarpVoxelClip) clip) {
-  bool up = !(given < scarp_real(0.0f));
+/// The origin of a level ray: on the plane that it is near to; `room` as VoxelRay::room.
+SCARP_FN scarp_real scarp_voxel_level(scarp_real origin, scarp_real room) {
+  SCARP_PRECISE scarp_real moved = origin + scarp_real(0.5f);
+  scarp_real plane = floor(moved);
+  SCARP_PRECISE scarp_real away = origin - plane;
+  return scarp_magnitude(away) <= room ? plane : origin;
+}
+
+/// Returns false if the ray misses the box. `room`: VoxelRay::room. `back` is
+/// that of the walk; `start` is the place of the voxel where it starts, if `has_start`.
+SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, scarp_real inverse, scarp_real room,
+                               uint speed, uint back, int low, int high, bool has_start, int start,
+                               SCARP_INOUT(ScarpVoxelClip) clip) {
+  bool up = (back >> uint(axis) & 1u) == 0u;
   scarp_real from = scarp_real(up ? low : high), to = scarp_real(up ? high : low);
   bool met = true;
   if (given == scarp_real(0.0f)) {
-    met = origin >= from && origin < to;
+    met = up ? origin >= from && origin < to : origin > to && origin <= from;
   } else {
-    SCARP_PRECISE scarp_real before = from - origin;
+    scarp_real early = speed < kScarpVoxelSlow ? room : scarp_real(0.0f), late = room;
+    if ((back & kScarpInexact) != 0u && late < scarp_real(4.76837158203125e-6f))
+      late = scarp_real(4.76837158203125e-6f);
+    SCARP_PRECISE scarp_real first = up ? from - early : from + early;
+    SCARP_PRECISE scarp_real last = up ? to + late : to - late;
+    SCARP_PRECISE scarp_real before = first - origin;
     SCARP_PRECISE scarp_real t_near = before * inverse;
-    SCARP_PRECISE scarp_real behind = to - origin;
+    SCARP_PRECISE scarp_real behind = last - origin;
     SCARP_PRECISE scarp_real t_far = behind * inverse;
     bool outside = has_start && (up ? start < low : start >= high);
     met = !has_start || (up ? start < high : start >= low);
     if (outside || t_near >= clip.t) {
-      clip.t = clip.t < t_near ? t_near : clip.t;
-      clip.entered = axis;
+      bool later = clip.t < t_near;
+      if (later || clip.entered < 0 || scarp_axis_before(back, clip.entered, axis)) clip.entered = axis;
+      clip.t = later ? t_near : clip.t;
+      clip.comes_in = clip.comes_in || later;
     }
     clip.t_out = t_far < clip.t_out ? t_far : clip.t_out;
   }
@@ -72,9 +105,9 @@ struct ScarpVoxelPlace {
 };
 
 /// Returns false if the ray only touches the box from outside.
-SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, uint speed, int low, int high,
+SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, uint speed, uint back, int low, int high,
                                 bool has_start, int start, ScarpVoxelClip clip, SCARP_OUT(ScarpVoxelPlace) at) {
-  bool up = !(given < scarp_real(0.0f));
+  bool up = (back >> uint(axis) & 1u) == 0u;
   scarp_real bottom = scarp_real(low), top = scarp_real(high);
   SCARP_PRECISE scarp_real way = clip.t * given;
   SCARP_PRECISE scarp_real place = origin + way;
@@ -91,11 +124,21 @@ SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, u
   }
   SCARP_PRECISE scarp_real distance =
       up ? (scarp_real(at.voxel) + scarp_real(1.0f)) - place : place - scarp_real(at.voxel);
-  SCARP_PRECISE scarp_real units = distance * scarp_real(1048576.0f) + scarp_real(0.5f);
+  SCARP_PRECISE scarp_real units = distance * scarp_real(1048576.0f);
+  SCARP_PRECISE scarp_real nearest = units + scarp_real(0.5f);
+  units = speed < kScarpVoxelSlow ? ceil(units) : nearest;
   // A start voxel may be far from the place.
   units = units > scarp_real(0.0f) ? units : scarp_real(0.0f);
   units = units < scarp_real(1048576.0f) ? units : scarp_real(1048576.0f);
-  at.next = speed == 0u ? kScarpNoPlane : uint(units);
+  at.next = uint(units);
+  // Planes behind that are not crossed yet.
+  bool on_plane = distance == scarp_real(1.0f) && (back & kScarpInexact) == 0u;
+  if (clip.comes_in && at.next >= kScarpVoxelPlaces - kScarpVoxelTouch && speed != 0u && axis != clip.entered &&
+      (!on_plane || scarp_axis_before(back, clip.entered, axis)) && at.voxel != (up ? low : high - 1)) {
+    at.voxel -= up ? 1 : -1;
+    at.next = 0u;
+  }
+  if (speed == 0u) at.next = kScarpNoPlane;
   at.left = up ? high - at.voxel : at.voxel - low + 1;
   return at.voxel >= low && at.voxel < high;
 }

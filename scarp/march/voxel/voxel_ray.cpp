@@ -25,16 +25,36 @@ ivec3 normal_of(VoxelFace face) {
   return normal;
 }
 
-VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inverse(1.0 / direction) {
+// Objects on one lattice have the same planes, and normals of theirs that are equal or opposite. The sign of a normal's
+// part along a fixed vector tells both ways apart, its size the three normals: for axes of the world they are the signs
+// and the order of x, y, z. 1 and the roots have no linear relation in integers, so no normal with rational slopes is
+// across the vector.
+VoxelTies::VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame) {
+  static const std::array<double, 3> by_rank{1.0, std::cbrt(0.5), std::cbrt(0.25)};
+  dvec3 upwards;
+  for (int axis = 0; axis < 3; ++axis)
+    upwards[axis] = frame.up(axis) * by_rank[static_cast<std::size_t>(frame.rank(axis))];
+  const dvec3 parts = grid_from_world * upwards;
+  for (int axis = 0; axis < 3; ++axis) bits |= parts[axis] < 0 ? 1u << axis : 0;
+  for (int a = 1; a < 3; ++a) {
+    for (int b = 0; b < a; ++b) bits |= std::abs(parts[a]) > std::abs(parts[b]) ? 1u << (a + b + 2) : 0;
+  }
+}
+
+VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(direction), inverse(1.0 / direction) {
   // Divisions dominate the cost here: that by the longest component has been done.
   const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
-  auto& [speed, slowness, step, t_per_s] = quantised;
+  auto& [speed, slowness, step, own_ties, exact, t_per_s] = quantised;
+  own_ties = ties;
+  exact = true;
   for (int axis = 0; axis < 3; ++axis) {
     // For a direction that is too short it is not finite.
     const double share = std::abs(direction[axis]) * per_longest;
-    speed[axis] = share <= 1 ? static_cast<std::int64_t>(share * (1 << kDirectionBits) + 0.5) : 0;
+    const double units = share <= 1 ? share * (1 << kDirectionBits) : 0;
+    speed[axis] = static_cast<std::int64_t>(units < kSlow ? units : units + 0.5);
+    exact = exact && static_cast<double>(speed[axis]) == units;
     slowness[axis] = 1 / static_cast<double>(speed[axis]);
-    step[axis] = direction[axis] < 0 ? -1 : 1;
+    step[axis] = direction[axis] == 0 ? ties.up(axis) : direction[axis] < 0 ? -1 : 1;
   }
   t_per_s = static_cast<double>(1 << (kDirectionBits - kPlaceBits)) * per_longest;
 }
@@ -42,18 +62,24 @@ VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inver
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& ray_direction, const VoxelBox& box) {
   const QuantisedDirection& direction = ray_direction.quantised;
   if (!std::isfinite(direction.t_per_s)) return {};
-  // Clip to the box. Among planes crossed at the same s the last one, z, is the entry face.
+  const VoxelTies ties = direction.ties;
+  const double late = direction.exact ? ray.room : std::max(ray.room, kTouch * 0x1p-20);
+  // Clip to the box. Of planes crossed at the same t the last one is the entry face.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
+  dvec3 from = ray.origin;
   for (int axis = 0; axis < 3; ++axis) {
-    const double origin = ray.origin[axis];
+    double& origin = from[axis];
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     if (ray_direction.given[axis] == 0) {
-      if (!(origin >= low && origin < high)) return {};
+      const double plane = std::floor(origin + 0.5);
+      origin = std::abs(origin - plane) <= ray.room ? plane : origin;
+      if (!(step > 0 ? origin >= low && origin < high : origin > low && origin <= high)) return {};
       continue;
     }
-    const double t_near = ((step > 0 ? low : high) - origin) * ray_direction.inverse[axis];
-    const double t_far = ((step > 0 ? high : low) - origin) * ray_direction.inverse[axis];
+    const double early = direction.speed[axis] < kSlow ? ray.room : 0;
+    const double t_near = ((step > 0 ? low - early : high + early) - origin) * ray_direction.inverse[axis];
+    const double t_far = ((step > 0 ? high + late : low - late) - origin) * ray_direction.inverse[axis];
     bool outside = false;
     if (ray.start_voxel) {
       const int start = (*ray.start_voxel)[axis];
@@ -61,8 +87,8 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
       outside = step > 0 ? start < low : start >= high;
     }
     if (outside || t_near >= t) {
+      if (t_near > t || entered < 0 || ties.before(entered, axis)) entered = axis;
       t = std::max(t, t_near);
-      entered = axis;
     }
     t_out = std::min(t_out, t_far);
   }
@@ -72,10 +98,11 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
   const bool starts_inside = ray.start_voxel && entered < 0;
   if (starts_inside && !box.contains(*ray.start_voxel)) return {};
   if (entered >= 0) result->face = face_of(entered, direction.step[entered]);
+  const bool comes_in = t > ray.t_min;  // along its way, not where it starts
   for (int axis = 0; axis < 3; ++axis) {
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     // Not beyond the box, where only rounding can take it.
-    double place = ray.origin[axis] + t * ray_direction.given[axis];
+    double place = from[axis] + t * ray_direction.given[axis];
     place = place > low ? place : low;
     place = place < high ? place : high;
     int& voxel = result->voxel[axis];
@@ -86,14 +113,20 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
       voxel = (*ray.start_voxel)[axis];
     } else {
       voxel = voxel_at(place, step);
-      // On the border and leaving.
-      if (voxel < low || voxel >= high) return {};
     }
-    const double distance = step > 0 ? voxel + 1 - place : place - voxel;
-    result->to_plane[axis] =
-        direction.speed[axis] == 0
-            ? QuantisedRay::kNever
-            : std::clamp<std::int64_t>(static_cast<std::int64_t>(distance * kVoxelPlaces + 0.5), 0, kVoxelPlaces);
+    const double distance = step > 0 ? voxel + 1 - place : place - voxel, units = distance * kVoxelPlaces;
+    std::int64_t next = std::clamp<std::int64_t>(
+        static_cast<std::int64_t>(direction.speed[axis] < kSlow ? std::ceil(units) : units + 0.5), 0, kVoxelPlaces);
+    // Planes behind that are not crossed yet.
+    const bool on_plane = distance == 1 && direction.exact;
+    if (comes_in && next >= kVoxelPlaces - kTouch && direction.speed[axis] != 0 && axis != entered &&
+        (!on_plane || ties.before(entered, axis)) && voxel != (step > 0 ? low : high - 1)) {
+      voxel -= step;
+      next = 0;
+    }
+    // On the border and leaving.
+    if (voxel < low || voxel >= high) return {};
+    result->to_plane[axis] = direction.speed[axis] == 0 ? QuantisedRay::kNever : next;
   }
   return result;
 }

@@ -11,15 +11,22 @@
 // offset, and every march visits the same voxels on all machines.
 //
 // The quantised ray stays within 2^-21 + 2^-29 * 16384 < 2^-14 voxel (2^-17 in boxes of 2,048) of the ray along every
-// axis. Its first voxel is that of the ray itself.
+// axis; within 2^-20 + 2^-14 along an axis of which it crosses one plane at most.
 //
-// Ties: planes crossed at the same s are crossed in the order x, y, z. Steps go through faces, so a ray through an edge
-// or a corner visits the voxels between, with zero length: solid voxels that touch at an edge let nothing pass. A point
-// on a plane belongs to the voxel that the ray enters or, if it runs along the plane, to the higher one.
+// Ties are decided in the directions of the world, so that grids that touch agree however each is turned (VoxelTies):
+//
+//   planes crossed at the same s   in the order x, y, z. Steps go through faces, so a ray through an edge or a corner
+//                                  visits the voxels between, with zero length: solid voxels that touch at an edge let
+//                                  nothing pass, in one grid or in two
+//   a ray along a plane            belongs to the voxel on the plane's upper side: that of +x, +y or +z
+//   a ray that starts on a plane   belongs to the voxel that it enters
+//   a ray that enters the box      crosses the planes there in the same order; with an inexact direction, all but that
+//                                  by which it enters afterwards (kTouch)
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <limits>
 #include <optional>
 
@@ -39,6 +46,9 @@ struct VoxelRay {
   /// The ray's voxel at t_min, if known more exactly than by its coordinates: a shadow ray starts in the empty
   /// neighbour of the voxel that was hit, and cannot hit that voxel again.
   std::optional<ivec3> start_voxel{};
+  /// Bound of what was rounded in `origin` and in the grid's place, in voxels. A ray along a plane counts as on it
+  /// within this distance, and a slow ray (kSlow) enters the box this much earlier.
+  double room = 0.0;
 };
 
 /// Returns the outward unit normal; zero for `inside`.
@@ -61,12 +71,45 @@ struct VoxelHit {
 constexpr int kPlaceBits = 20, kDirectionBits = 28;
 constexpr std::int64_t kVoxelPlaces = std::int64_t{1} << kPlaceBits;
 
+/// How the axes of a grid stand in the world, as far as ties depend on it. The default is that of grids in their place.
+struct VoxelTies {
+  static constexpr std::uint32_t kBits = 6;
+  /// Bits 0 to 2: axes whose upper side is the low one. Bits 3, 4, 5: y is crossed before x, z before x, z before y.
+  std::uint32_t bits = 0;
+
+  VoxelTies() = default;
+  explicit VoxelTies(const glm::dmat3& grid_from_world) : VoxelTies(grid_from_world, VoxelTies()) {}
+  /// `frame`: the ties of the space that the matrix maps from, where that is turned, too (Ray::frame).
+  VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame);
+
+  /// 1 or -1: the upper side of planes across this axis.
+  int up(int axis) const { return bits >> axis & 1 ? -1 : 1; }
+  /// Whether planes across axis a are crossed before those across b at the same place; a and b differ.
+  bool before(int a, int b) const { return a > b ? (bits >> (a + b + 2) & 1) != 0 : (bits >> (a + b + 2) & 1) == 0; }
+  /// Number of axes that are crossed before this one.
+  int rank(int axis) const {
+    const int one = (axis + 1) % 3, two = (axis + 2) % 3;
+    return (before(one, axis) ? 1 : 0) + (before(two, axis) ? 1 : 0);
+  }
+};
+
+/// A component below 2^-14 of the longest one crosses one plane at most. It is rounded down, and the place up, so that
+/// the ray does not leave its box before the given ray does and no neighbour sees it.
+constexpr std::int64_t kSlow = std::int64_t{1} << (kDirectionBits - 14);
+
+/// Rays whose direction is not exact in 2^-28 may be displaced where they leave one box and enter the next. Planes that
+/// such a ray has passed by less than this where it enters a box count as not crossed yet, so it touches the voxels at
+/// an edge there: no edge at which two objects touch lets it pass. In 2^-20 voxel: 2^-21 + 2^-29 2048, and rounding.
+constexpr std::int64_t kTouch = 5;
+
 /// A quantised direction.
 struct QuantisedDirection {
   std::array<std::int64_t, 3> speed;  ///< per axis, 0..2^28; one of them is 2^28
   std::array<double, 3> slowness;     ///< 1 / speed
-  std::array<int, 3> step;            ///< 1 or -1
-  double t_per_s;                     ///< t per unit of s = n / d; not finite if the direction is too short
+  std::array<int, 3> step;            ///< 1 or -1; VoxelTies::up() along planes
+  VoxelTies ties;
+  bool exact;      ///< speeds are the components of the given direction, without rounding
+  double t_per_s;  ///< t per unit of s = n / d; not finite if the direction is too short
 };
 
 /// Computed once for all boxes of a ray with the same orientation.
@@ -75,7 +118,7 @@ struct VoxelDirection {
   dvec3 inverse;  ///< 1 / given; not finite for zero components
   QuantisedDirection quantised;
 
-  explicit VoxelDirection(const dvec3& direction);
+  explicit VoxelDirection(const dvec3& direction, VoxelTies ties = {});
 };
 
 /// A ray from its entry into a box.

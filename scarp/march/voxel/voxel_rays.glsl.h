@@ -16,6 +16,8 @@ struct ScarpVoxelRay {
   double t_max;
   uint part;    ///< the object whose voxel it begins beside; kScarpNoPart: none
   ivec3 start;  ///< that voxel
+  uint frame;   ///< Ray::frame
+  uint none;
 };
 const uint kScarpNoPart = 0xffffffffu;
 

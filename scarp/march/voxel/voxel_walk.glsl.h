@@ -18,20 +18,27 @@ struct ScarpVoxelWalk {
   ivec3 left;  ///< planes to cross until it leaves the box, the last one included; 0 or less outside
   uvec3 next;  ///< distance to the next plane in 2^-20 voxel, from where distances began; any if speed is 0
   uvec3 speed;
-  uint back;  ///< bits 0 to 2: axes along which it travels in the negative direction; above: how often rebased
-  int axis;   ///< crossed last; -1: none
+  /// Bits 0 to 2: axes along which it steps in the negative direction; 3 to 5: those of VoxelTies (voxel_ray.h), 0 for
+  /// the order x, y, z; 6: its direction is inexact; above: how often rebased.
+  uint back;
+  int axis;  ///< crossed last; -1: none
 };
 
-const uint kScarpBackBits = 3u;
+const uint kScarpBackBits = 7u;
+const uint kScarpInexact = 64u;
+const uint kScarpTieBits = 56u;  ///< those of `back` that are bits of VoxelTies
 
 /// Returns 1 or -1: the ray's step along an axis.
 SCARP_FN int scarp_voxel_step(uint back, int axis) { return (back >> uint(axis) & 1u) != 0u ? -1 : 1; }
 
-/// Returns the axis of the first of three planes; of those at the same place the lowest one.
-SCARP_FN int scarp_first_plane(uvec3 distance, uvec3 speed) {
-  bool y_first = scarp_plane_before(distance.y, speed.y, distance.x, speed.x);
+/// Returns whether planes across axis a are crossed before those across b at the same place; a and b differ.
+SCARP_FN bool scarp_axis_before(uint back, int a, int b) { return ((back >> uint(a + b + 2) & 1u) != 0u) == (a > b); }
+
+/// Returns the axis of the first of three planes.
+SCARP_FN int scarp_first_plane(uvec3 distance, uvec3 speed, uint back) {
+  bool y_first = scarp_plane_before(distance.y, speed.y, distance.x, speed.x, back >> 3 & 1u);
   uint d = y_first ? distance.y : distance.x, v = y_first ? speed.y : speed.x;
-  return scarp_plane_before(distance.z, speed.z, d, v) ? 2 : y_first ? 1 : 0;
+  return scarp_plane_before(distance.z, speed.z, d, v, back >> (y_first ? 5u : 4u) & 1u) ? 2 : y_first ? 1 : 0;
 }
 
 /// Crosses planes of one axis.
@@ -53,7 +60,7 @@ SCARP_FN void scarp_voxel_rebase(SCARP_INOUT(ScarpVoxelWalk) walk) {
 /// Crosses the next plane. Returns false if that leaves the box.
 SCARP_FN bool scarp_voxel_cross(SCARP_INOUT(ScarpVoxelWalk) walk) {
   SCARP_COUNT(cross);
-  walk.axis = scarp_first_plane(walk.next, walk.speed);
+  walk.axis = scarp_first_plane(walk.next, walk.speed, walk.back);
   scarp_voxel_advance(walk, walk.axis, 1u);
   scarp_voxel_rebase(walk);
   return walk.left[walk.axis] > 0;
@@ -67,11 +74,12 @@ SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
   out_at.x = walk.next.x + (uint(min(part.x, walk.left.x) - 1) << 20);
   out_at.y = walk.next.y + (uint(min(part.y, walk.left.y) - 1) << 20);
   out_at.z = walk.next.z + (uint(min(part.z, walk.left.z) - 1) << 20);
-  int axis = scarp_first_plane(out_at, walk.speed);
+  int axis = scarp_first_plane(out_at, walk.speed, walk.back);
   uint distance = out_at[axis], speed = walk.speed[axis];
   float slowness = 1.0f / float(speed);
   for (int i = 0; i < 3; ++i) {
-    uint planes = scarp_planes_until(distance, speed, slowness, walk.next[i], walk.speed[i], i > axis ? 1u : 0u);
+    uint after = i != axis && scarp_axis_before(walk.back, axis, i) ? 1u : 0u;
+    uint planes = scarp_planes_until(distance, speed, slowness, walk.next[i], walk.speed[i], after);
     scarp_voxel_advance(walk, i, planes);
   }
   walk.axis = axis;
@@ -90,7 +98,7 @@ SCARP_FN uint scarp_travel_per_voxel(uvec3 speed) {
 /// Crosses the next plane, then all planes within `voxels` further travel. Returns false if that leaves the box.
 SCARP_FN bool scarp_voxel_travel(SCARP_INOUT(ScarpVoxelWalk) walk, uint voxels, uint travel_per_voxel) {
   SCARP_COUNT(cross);
-  int axis = scarp_first_plane(walk.next, walk.speed);
+  int axis = scarp_first_plane(walk.next, walk.speed, walk.back);
   uint distance = walk.next[axis], speed = walk.speed[axis];
   walk.axis = axis;
   scarp_voxel_advance(walk, axis, 1u);

@@ -4,9 +4,9 @@
 //   along each axis the ray crosses planes at the distances  next, next + 2^20, next + 2 * 2^20, ...
 //   which correspond to                                      s = distance / speed
 //
-// All planes of all axes, in the order of s and then of the axis, are the ray's events. A position is a number of past
-// events, and determines the voxel. A skip finds the first event that leaves a box, and counts the events of the other
-// axes before it. The position after a skip thus equals that of single steps.
+// All planes of all axes, in the order of s and then of the axis (VoxelTies), are the ray's events. A position is a
+// number of past events, and determines the voxel. A skip finds the first event that leaves a box, and counts the
+// events of the other axes before it. The position after a skip thus equals that of single steps.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +23,7 @@ class VoxelWalk {
       : ray_(ray),
         speed_(ray.direction.speed),
         step_(ray.direction.step),
+        ties_(ray.direction.ties),
         next_(ray.to_plane),
         voxel_(ray.voxel),
         box_(box) {}
@@ -47,10 +48,10 @@ class VoxelWalk {
     const int axis = first(out);
     const std::int64_t distance = out[axis], speed = speed_[axis];
     const double slowness = ray_.direction.slowness[axis];
-    // For each axis, all planes with next + k 2^20 over its speed no later than distance over speed; planes of a higher
-    // axis at the same s as the last one are crossed after it.
+    // For each axis, all planes with next + k 2^20 over its speed no later than distance over speed; those at the same
+    // s that come after the last one are not crossed.
     for (int i = 0; i < 3; ++i) {
-      const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (i > axis ? 1 : 0);
+      const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (i != axis && ties_.before(axis, i) ? 1 : 0);
       const std::int64_t planes = quotient(ahead >> kPlaceBits, speed, slowness) + 1;
       advance(i, ahead < 0 ? 0 : planes);
     }
@@ -95,9 +96,9 @@ class VoxelWalk {
  private:
   // Axis of the smallest distance. If speed is 0 the distance is not, and comes last.
   int first(const std::array<std::int64_t, 3>& distance) const {
-    const bool y_first = distance[1] * speed_[0] < distance[0] * speed_[1];
+    const bool y_first = distance[1] * speed_[0] < distance[0] * speed_[1] + (ties_.bits >> 3 & 1);
     const int axis = y_first ? 1 : 0;
-    return distance[2] * speed_[axis] < distance[axis] * speed_[2] ? 2 : axis;
+    return distance[2] * speed_[axis] < distance[axis] * speed_[2] + (ties_.bits >> (axis + 4) & 1) ? 2 : axis;
   }
   void advance(int axis, std::int64_t planes) {
     next_[axis] += planes * kVoxelPlaces;
@@ -120,6 +121,7 @@ class VoxelWalk {
   const QuantisedRay& ray_;
   const std::array<std::int64_t, 3> speed_;
   const std::array<int, 3> step_;
+  const VoxelTies ties_;
   std::array<std::int64_t, 3> next_;
   ivec3 voxel_;
   const VoxelBox box_;

@@ -56,12 +56,14 @@ SCARP_FN uvec2 scarp_words_minus(uvec2 a, uvec2 b) { return uvec2(a.x - b.x, a.y
 /// Returns a + b.
 SCARP_FN uvec2 scarp_words_plus(uvec2 a, uint b) { return uvec2(a.x + b, a.y + (a.x + b < b ? 1u : 0u)); }
 
-/// Returns whether plane a comes before plane b: distance_a / speed_a < distance_b / speed_b.
-SCARP_FN bool scarp_plane_before(uint distance_a, uint speed_a, uint distance_b, uint speed_b) {
+/// Returns whether plane a comes before plane b: distance_a / speed_a < distance_b / speed_b, or equal if `ties` is 1.
+SCARP_FN bool scarp_plane_before(uint distance_a, uint speed_a, uint distance_b, uint speed_b, uint ties) {
 #ifdef SCARP_INT64
-  if (!scarp_voxel_words()) return uint64_t(distance_a) * uint64_t(speed_b) < uint64_t(distance_b) * uint64_t(speed_a);
+  if (!scarp_voxel_words())
+    return uint64_t(distance_a) * uint64_t(speed_b) < uint64_t(distance_b) * uint64_t(speed_a) + uint64_t(ties);
 #endif
-  uvec2 a = scarp_words_product(distance_a, speed_b), b = scarp_words_product(distance_b, speed_a);
+  uvec2 a = scarp_words_product(distance_a, speed_b);
+  uvec2 b = scarp_words_plus(scarp_words_product(distance_b, speed_a), ties);
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 

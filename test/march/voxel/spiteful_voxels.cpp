@@ -183,6 +183,16 @@ const std::vector<VoxelRayKind>& spiteful_voxel_rays() {
   return kinds;
 }
 
+glm::dmat3 random_orientation(Random& random) {
+  glm::dmat3 turn(1.0);
+  if (random() % 2) return turn;
+  for (int k = 2; k > 0; --k) std::swap(turn[k], turn[static_cast<int>(random() % static_cast<std::uint64_t>(k + 1))]);
+  for (int k = 0; k < 3; ++k) {
+    if (random() % 2) turn[k] = -turn[k];
+  }
+  return turn;
+}
+
 VoxelBox random_edit(VoxelGrid& grid, Random& random) {
   const ivec3 a = random_voxel(grid.size() + 4, random) - 2, b = a + random_size(random, 6);
   const dvec3 centre = inside(grid, random);

@@ -26,6 +26,9 @@ struct VoxelRayKind {
 const std::vector<VoxelGridKind>& spiteful_voxel_grids();
 const std::vector<VoxelRayKind>& spiteful_voxel_rays();
 
+/// A grid's orientation: a signed permutation, the identity as often as not.
+glm::dmat3 random_orientation(Random& random);
+
 /// Fills, clears or paints a random box, ball or voxel; returns the dirty box.
 VoxelBox random_edit(VoxelGrid& grid, Random& random);
 

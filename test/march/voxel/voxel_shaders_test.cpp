@@ -71,30 +71,35 @@ struct ShaderRay {
   std::uint32_t entered = 0;
   bool met = true;
 
-  ShaderRay(const VoxelRay& ray, const VoxelBox& box) {
-    dvec3 inverse;
+  ShaderRay(const VoxelRay& ray, const VoxelBox& box, VoxelTies ties) {
+    dvec3 inverse, origin = ray.origin;
     for (int axis = 0; axis < 3; ++axis) inverse[axis] = glsl::scarp_exact_inverse(ray.direction[axis]);
     const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
     const bool has_start = ray.start_voxel.has_value();
     const ivec3 start = ray.start_voxel.value_or(ivec3(0));
-    glsl::ScarpVoxelClip clip{ray.t_min, ray.t_max, -1};
+    glsl::ScarpVoxelClip clip{ray.t_min, ray.t_max, -1, false};
+    walk.back = ties.bits & glsl::kScarpTieBits;
     for (int axis = 0; axis < 3; ++axis) {
-      met = glsl::scarp_voxel_clip(axis, ray.origin[axis], ray.direction[axis], inverse[axis], box.low[axis],
-                                   box.high[axis], has_start, start[axis], clip) &&
+      walk.speed[axis] = glsl::scarp_voxel_speed(ray.direction[axis], per_longest);
+      walk.back |= glsl::scarp_voxel_back(axis, ray.direction[axis], ties.bits) |
+                   glsl::scarp_voxel_inexact(ray.direction[axis], per_longest, walk.speed[axis]);
+      if (ray.direction[axis] == 0) origin[axis] = glsl::scarp_voxel_level(origin[axis], ray.room);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      met = glsl::scarp_voxel_clip(axis, origin[axis], ray.direction[axis], inverse[axis], ray.room, walk.speed[axis],
+                                   walk.back, box.low[axis], box.high[axis], has_start, start[axis], clip) &&
             met;
     }
     met = met && clip.t <= clip.t_out;
     if (!met) return;
     for (int axis = 0; axis < 3; ++axis) {
-      walk.speed[axis] = glsl::scarp_voxel_speed(ray.direction[axis], per_longest);
       glsl::ScarpVoxelPlace at;
-      met = glsl::scarp_voxel_place(axis, ray.origin[axis], ray.direction[axis], walk.speed[axis], box.low[axis],
+      met = glsl::scarp_voxel_place(axis, origin[axis], ray.direction[axis], walk.speed[axis], walk.back, box.low[axis],
                                     box.high[axis], has_start, start[axis], clip, at) &&
             met;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
       walk.next[axis] = at.next;
-      if (ray.direction[axis] < 0) walk.back |= 1u << axis;
     }
     walk.axis = -1;
     t = clip.t;
@@ -149,11 +154,13 @@ TEST_P(VoxelShaders, AgreeWithTheCpu) {
                   &*bricks};
         glsl::host_target = &target;
       }
-      const VoxelRay ray = rays.make(*grid, random);
+      VoxelRay ray = rays.make(*grid, random);
+      ray.room = i % 4 ? 0 : 1e-9;
       if (!is_usual(ray) || target.box.empty()) continue;
-      const std::optional<QuantisedRay> expected_ray = quantise(ray, target.box);
+      const VoxelTies ties(random_orientation(random));
+      const std::optional<QuantisedRay> expected_ray = quantise(ray, VoxelDirection(ray.direction, ties), target.box);
       glsl::host_words = i % 2 == 1;
-      const ShaderRay there(ray, target.box);
+      const ShaderRay there(ray, target.box, ties);
       ASSERT_EQ(there.met, expected_ray.has_value()) << rays.name;
       if (!expected_ray) continue;
       for (const Marched& march : kMarches) {
@@ -216,11 +223,12 @@ TEST(VoxelShaders, AgreeAtTheLargestSize) {
                      to.z + std::ldexp(uniform(random, -1, 1), -i % 24));
     ray.origin = i % 2 ? from : to;
     ray.direction = i % 2 ? to - from : from - to;
-    const std::optional<QuantisedRay> expected_ray = quantise(ray, target.box);
+    const VoxelTies ties(random_orientation(random));
+    const std::optional<QuantisedRay> expected_ray = quantise(ray, VoxelDirection(ray.direction, ties), target.box);
     for (const Marched& march : {kMarches[0], kMarches[4]}) {
       glsl::host_march = march.number;
       glsl::host_words = i % 4 < 2;
-      const ShaderRay there(ray, target.box);
+      const ShaderRay there(ray, target.box, ties);
       ASSERT_EQ(there.met, expected_ray.has_value());
       if (!expected_ray) continue;
       std::uint32_t steps = 0;

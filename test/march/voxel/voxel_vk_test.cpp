@@ -260,9 +260,10 @@ TEST(VoxelProxiesLayout, IsThatOfTheShaders) {
 
 TEST(VoxelBatchLayout, IsThatOfTheShaders) {
   using glsl::ScarpVoxelRay, glsl::ScarpVoxelHit, glsl::ScarpVoxelGrid, glsl::ScarpVoxelObject;
-  EXPECT_TRUE(has_struct(kVoxelShader, {offsetof(ScarpVoxelRay, origin), offsetof(ScarpVoxelRay, direction),
-                                        offsetof(ScarpVoxelRay, t_min), offsetof(ScarpVoxelRay, t_max),
-                                        offsetof(ScarpVoxelRay, part), offsetof(ScarpVoxelRay, start)}));
+  EXPECT_TRUE(has_struct(
+      kVoxelShader, {offsetof(ScarpVoxelRay, origin), offsetof(ScarpVoxelRay, direction),
+                     offsetof(ScarpVoxelRay, t_min), offsetof(ScarpVoxelRay, t_max), offsetof(ScarpVoxelRay, part),
+                     offsetof(ScarpVoxelRay, start), offsetof(ScarpVoxelRay, frame), offsetof(ScarpVoxelRay, none)}));
   EXPECT_TRUE(has_struct(
       kVoxelShader, {offsetof(ScarpVoxelHit, t), offsetof(ScarpVoxelHit, voxel), offsetof(ScarpVoxelHit, part),
                      offsetof(ScarpVoxelHit, face), offsetof(ScarpVoxelHit, status), offsetof(ScarpVoxelHit, steps),
