@@ -33,6 +33,7 @@
 #include "scarp/march/height/queries.h"
 #include "scarp/output/hit_table.h"
 #include "scarp/scene/scene.h"
+#include "scarp/scene/voxel_entry.h"
 #include "scarp/source/coordinates.h"
 #include "scarp/source/ray_table.h"
 
@@ -270,6 +271,7 @@ class Caster {
         const SceneSurface surface = scene_.surface(rays[i], hit);
         row.normal = frame_.normal_from_local(surface.normal);
         row.kind = *find_hit_kind(scene_.field_of(hit.object).kind());
+        row.hit.voxel = file_voxel(scene_, hit).value_or(hit.voxel);
         if (surface.material < materials_) row.material = surface.material;
         dvec3& at = positions.emplace_back(rays[i].at(hit.t));
         if (scene_.only_field() && row.kind != HitKind::voxels) at.z = hit.height;

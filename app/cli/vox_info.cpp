@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/cli/vox_input.h"
+#include "scarp/base/lattice_rotation.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/source/vdb_file.h"
 #include "scarp/source/vox_animation.h"
@@ -157,6 +158,22 @@ void write_document(const WriteLine& line, const Json& info) {
        });
 }
 
+// Where a part of the scene stands. The corner p of a voxel of the file is at offset + axes[0] p.x + axes[1] p.y +
+// axes[2] p.z.
+Json part_of(const PlacedVoxels& voxels, const VoxelPlace& place) {
+  const LatticePlace& in_file = voxels.models[place.model]->file_place();
+  const LatticeRotation back = in_file.turn().inverse();
+  const dvec3 offset = place.origin - place.world_from_grid * dvec3(back(in_file.origin()));
+  Json axes = Json::array();
+  for (int axis = 0; axis < 3; ++axis) {
+    dvec3 along(0.0);
+    along[axis] = 1;
+    const dvec3 a = place.world_from_grid * back(along) + 0.0;  // no -0
+    axes.push_back({a.x, a.y, a.z});
+  }
+  return {{"offset", {offset.x, offset.y, offset.z}}, {"axes", axes}};
+}
+
 }  // namespace
 
 Json describe_vox(const std::string& path, const VoxOptions& options) {
@@ -179,8 +196,14 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   }
   const SceneFieldPtr field = scene_voxels(input.voxels);
   info["bytes"] = field->bytes();
-  const WorldBox box = *field->box();
-  const auto corner = [](const dvec3& p) { return Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)}; };
+  info["parts"] = Json::array();
+  for (const VoxelPlace& place : input.voxels.places) info["parts"].push_back(part_of(input.voxels, place));
+  const WorldBox box = *field->extent();
+  // Files with a transform of their own have decimals.
+  const bool metres = is_vdb_path(path);
+  const auto corner = [&](const dvec3& p) {
+    return metres ? Json{p.x, p.y, p.z} : Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)};
+  };
   info["low"] = box.empty() ? Json() : corner(box.low);
   info["high"] = box.empty() ? Json() : corner(box.high);
   info["notes"] = input.notes;
@@ -213,13 +236,13 @@ std::string vox_text_of(const Json& info) {
   if (info["low"].is_null()) {
     line("box", "empty: there is no voxel to see");
   } else {
-    const auto at = [&](const char* name, int axis) { return info[name][axis].get<std::int64_t>(); };
+    const auto at = [&](const char* name, int axis) { return info[name][axis].get<double>(); };
     const auto size = [&](int axis) { return at("high", axis) - at("low", axis); };
-    // Files with a transform of their own.
     const bool metres = is_vdb_path(info["path"].get<std::string>());
-    line("box", fmt::format("{} x {} x {} {}, ({}, {}, {}) to ({}, {}, {})", size(0), size(1), size(2),
-                            metres ? "m" : "voxels", at("low", 0), at("low", 1), at("low", 2), at("high", 0),
-                            at("high", 1), at("high", 2)));
+    line("box",
+         fmt::format("{:.10g} x {:.10g} x {:.10g} {}, ({:.10g}, {:.10g}, {:.10g}) to ({:.10g}, {:.10g}, {:.10g})",
+                     size(0), size(1), size(2), metres ? "m" : "voxels", at("low", 0), at("low", 1), at("low", 2),
+                     at("high", 0), at("high", 1), at("high", 2)));
   }
   for (const Json& note : info["notes"]) line("note", note.get<std::string>());
   return out;

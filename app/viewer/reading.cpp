@@ -60,7 +60,7 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
     reading.lines.push_back(fmt::format("slope {:.1f} degrees, distance {:.1f} m", slope / kDegree, reading.hit.t));
   }
   if (reading.hit.voxel.x >= 0) {
-    const ivec3& v = reading.hit.voxel;
+    const ivec3 v = file_voxel(scene, reading.hit).value_or(reading.hit.voxel);
     reading.lines.push_back(fmt::format("voxel {}, {}, {} of object {}", v.x, v.y, v.z, reading.hit.part));
     if (surface.colour) {
       const VoxelColour& c = *surface.colour;

@@ -48,6 +48,8 @@ class Matrix {
     // y is up in the file. Its z points away from the viewer if it is left-handed, and at the viewer otherwise.
     part.size = {size.x, size.z, size.y};
     part.low = {position.x, header.right_handed ? -position.z - size.z : position.z, position.y};
+    part.file_turn = {{0, 2, 1}, {1, 1, header.right_handed ? -1 : 1}};
+    part.file_origin.z = header.right_handed ? size.z : 0;
   }
 
   // `place`: in the slice.

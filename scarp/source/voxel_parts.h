@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scarp/base/lattice_rotation.h"
 #include "scarp/base/vec.h"
 
 namespace scarp {
@@ -24,6 +25,9 @@ struct VoxelPart {
   ivec3 low{0};   ///< of the box in the file's space, after its axes were turned
   ivec3 size{1};  ///< each 1..kMaxPartSide
   std::vector<ListedVoxel> voxels;
+  /// The file's own coordinates: a corner p of the box is file_turn(p) + file_origin there. Files mirror axes.
+  LatticeRotation file_turn{};
+  ivec3 file_origin{0};
 };
 
 /// The contents of a file.

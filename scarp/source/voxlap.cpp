@@ -43,6 +43,15 @@ ListedVoxel upright(const ivec3& v, const ivec3& size, const std::array<std::uin
           static_cast<std::int16_t>(size.z - 1 - v.z), colour};
 }
 
+// The same for corners of the box, backwards.
+VoxelPart upright_part(const ivec3& size) {
+  VoxelPart part;
+  part.size = size;
+  part.file_turn = {{0, 1, 2}, {1, -1, -1}};
+  part.file_origin = {0, size.y, size.z};
+  return part;
+}
+
 std::uint64_t bytes_of_indices(const ivec3& size) {
   return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z);
 }
@@ -137,7 +146,7 @@ VoxelParts parse_kv6(std::string_view file) {
   const std::string_view voxels = bytes.take(std::size_t{8} * count);
   bytes.take(4 * static_cast<std::size_t>(size.x));  // counts per x, which those per column repeat
   const std::string_view counts = bytes.take(2 * columns);
-  VoxelPart part{ivec3(0), size, {}};
+  VoxelPart part = upright_part(size);
   part.voxels.reserve(count);
   std::size_t at = 0;
   for (int x = 0; x < size.x; ++x) {
@@ -180,7 +189,7 @@ VoxelParts parse_voxlap_vox(std::string_view file) {
   const auto solid = static_cast<std::size_t>(std::count_if(
       indices.begin(), indices.end(), [](char index) { return static_cast<std::uint8_t>(index) != kEmpty; }));
   if (solid > kMostListedVoxels) throw Error(fmt::format("more than {} voxels", kMostListedVoxels));
-  VoxelPart part{ivec3(0), size, {}};
+  VoxelPart part = upright_part(size);
   part.voxels.reserve(solid);
   std::size_t at = 0;
   for (int x = 0; x < size.x; ++x) {
@@ -219,7 +228,8 @@ VoxelParts parse_vxl(std::string_view file) {
     throw Error(
         fmt::format("{} bytes follow the last of {} x {} columns (is it a map of Voxlap?)", behind, size.x, size.y));
   size.z = map.depth <= kLeastMapDepth ? kLeastMapDepth : kMapDepth;
-  VoxelPart part{ivec3(0), size, std::move(map.voxels)};
+  VoxelPart part = upright_part(size);
+  part.voxels = std::move(map.voxels);
   for (ListedVoxel& v : part.voxels) v = upright({v.x, v.y, v.z}, size, v.colour);
   return {"Voxlap map", {std::move(part)}, {"the ground below the surface of the map is empty"}};
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -269,6 +271,40 @@ TEST_F(CliVox, VoxelsKeepTheSideThatTheirFileStates) {
   const std::size_t end = made.out.find(" voxels of 2.5 m, ");
   ASSERT_NE(end, std::string::npos) << made.out;
   EXPECT_TRUE(copied.out.ends_with(made.out.substr(end))) << copied.out << made.out;
+}
+
+TEST_F(CliVox, CastReportsTheVoxelsOfTheFile) {
+  VoxFile file = parse_vox(test::text_of(model_));
+  file.models = {{{10, 12, 9}, {{5, 6, 7, 216}}}};
+  file.nodes = {{0, {}, VoxTransform{1, -1, -1, {{{"_r", "20"}, {"_t", "7 8 9"}}}}}, {1, {}, VoxShape{}}};
+  write_vox(model_, file);
+  const auto json = nlohmann::json::parse(run({"info", model_, "--json"}).out);
+  ASSERT_EQ(json["parts"].size(), 1u);
+  // The middle of voxel (5, 6, 7), by the part's offset and axes.
+  std::array<double, 3> middle{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    middle[i] = json["parts"][0]["offset"][i].get<double>();
+    const std::array<double, 3> p{5.5, 6.5, 7.5};
+    for (std::size_t k = 0; k < 3; ++k) middle[i] += p[k] * json["parts"][0]["axes"][k][i].get<double>();
+    EXPECT_EQ(middle[i], json["low"][i].get<double>() + 0.5);
+  }
+  const std::string rays =
+      scratch_.write("rays.csv", fmt::format("x,y,z,dx,dy,dz\n{},{},99,0,0,-1\n", middle[0], middle[1]));
+  const auto cast = run({"cast", model_, rays});
+  EXPECT_NE(cast.out.find(",5,6,7,high_z"), std::string::npos) << cast.out << cast.err;
+}
+
+TEST_F(CliVox, InfoPrintsDecimalsOfOpenVdb) {
+  const std::string dem = path("dem.tif"), world = path("world.vdb");
+  ASSERT_EQ(run({"generate", "--size", "9", "--cell", "10", "-o", dem}).status, 0);
+  const auto made = run({"voxelise", dem, "-o", world, "--voxel", "2.75", "--exaggeration", "30"});
+  if (made.err.find("OpenVDB") != std::string::npos) GTEST_SKIP() << made.err;
+  const std::string text = run({"info", world}).out;
+  const std::size_t box = text.find("\nbox ");
+  ASSERT_NE(box, std::string::npos) << text;
+  EXPECT_NE(text.substr(box, text.find('\n', box + 1) - box).find('.'), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(run({"info", world, "--json"}).out);
+  EXPECT_EQ(std::fmod(json["high"][2].get<double>() - json["low"][2].get<double>(), 2.75), 0) << json["high"];
 }
 
 TEST_F(CliVox, EachLookIsAnother) {

@@ -59,7 +59,10 @@ PlacedVoxels placed_voxels_from(const VoxelParts& file, const VoxelFileOptions& 
     if (options.surface_colours) grid.drop_hidden_entries();
     const auto model = static_cast<std::uint32_t>(placed.models.size());
     placed.places.push_back({.model = model, .origin = dvec3(file.parts[i].low + boxes[i].low)});
-    placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march));
+    const auto made = std::make_shared<VoxelModel>(std::move(grid), march);
+    const LatticePlace part(file.parts[i].file_turn, file.parts[i].file_origin);
+    made->set_file_place({part.turn(), part.turn()(boxes[i].low) + part.origin()});
+    placed.models.push_back(made);
   }
   return placed;
 }

@@ -185,7 +185,9 @@ PlacedVoxels placed_voxels_from(const VdbVoxels& file, const VoxelFileOptions& o
   // A grid point is the middle of its voxel.
   const dvec3 origin = turn * file.origin + world_from_grid * (dvec3(cells.low()) - 0.5);
   PlacedVoxels placed{.rounding = options.rounding};
-  placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, std::move(palette)));
+  const auto model = std::make_shared<VoxelModel>(std::move(grid), march, std::move(palette));
+  model->set_file_place({{}, cells.low()});
+  placed.models.push_back(model);
   placed.places.push_back({.world_from_grid = world_from_grid, .origin = origin});
   return placed;
 }

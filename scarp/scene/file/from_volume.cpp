@@ -35,10 +35,12 @@ struct FromFile {
   std::array<ivec3, 3> steps() const { return {back(ivec3(1, 0, 0)), back(ivec3(0, 1, 0)), back(ivec3(0, 0, 1))}; }
 };
 
-PlacedVoxels model_of(VoxelGrid grid, const FromVolumeOptions& options, std::vector<VoxelColour> palette) {
+PlacedVoxels model_of(const FromFile& file, VoxelGrid grid, const FromVolumeOptions& options,
+                      std::vector<VoxelColour> palette) {
   if (options.voxels.surface_colours) grid.drop_hidden_entries();
   const VoxelMarchEntry& march = file_voxel_march(options.voxels.march, {&grid.size(), 1});
-  const auto model = std::make_shared<const VoxelModel>(std::move(grid), march, std::move(palette));
+  const auto model = std::make_shared<VoxelModel>(std::move(grid), march, std::move(palette));
+  model->set_file_place({file.back, -min(file.back(file.size), 0)});
   return {{model}, {VoxelPlace{}}, options.voxels.rounding};
 }
 
@@ -101,7 +103,7 @@ PlacedVoxels placed_voxels_from(const Binvox& binvox, const VoxelColour& colour,
     std::fill(entries.begin(), entries.end(), 1);
     return mask;
   };
-  return model_of(VoxelGrid::built(file.size, kEntryBits, fill), options, {colour, colour});
+  return model_of(file, VoxelGrid::built(file.size, kEntryBits, fill), options, {colour, colour});
 }
 
 PlacedVoxels placed_voxels_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
@@ -133,7 +135,7 @@ PlacedVoxels placed_voxels_from(const DenseVolume& volume, std::span<const Voxel
     }
     return mask;
   };
-  return model_of(VoxelGrid::built(file.size, kEntryBits, fill), options, std::move(palette));
+  return model_of(file, VoxelGrid::built(file.size, kEntryBits, fill), options, std::move(palette));
 }
 
 }  // namespace scarp

@@ -278,11 +278,14 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
   std::vector<std::uint32_t> model_of(instances.size());
   std::map<int, std::uint32_t> shared;
   std::vector<VoxelGrid*> grids;
+  std::vector<ivec3> lows;  // of the grids in their models
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const auto own = cut.find(i);
     const auto next = static_cast<std::uint32_t>(grids.size());
     model_of[i] = own != cut.end() ? next : shared.try_emplace(instances[i].model, next).first->second;
-    if (model_of[i] == next) grids.push_back(own != cut.end() ? &own->second : &models.at(instances[i].model).grid);
+    if (model_of[i] != next) continue;
+    grids.push_back(own != cut.end() ? &own->second : &models.at(instances[i].model).grid);
+    lows.push_back(models.at(instances[i].model).box.low);
   }
   std::vector<ivec3> sizes;
   for (const VoxelGrid* grid : grids) sizes.push_back(grid->size());
@@ -294,10 +297,12 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
 
   PlacedVoxels in_scene{.rounding = options.voxels.rounding};
   for (std::size_t i = 0; i < instances.size(); ++i) in_scene.places.push_back(placed[i].scene_place(model_of[i]));
-  for (VoxelGrid* grid : grids) {
-    if (options.voxels.surface_colours) grid->drop_hidden_entries();
-    in_scene.models.push_back(
-        std::make_shared<const VoxelModel>(std::move(*grid), march, palette, VoxelModel::Extent::bounds, materials));
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    if (options.voxels.surface_colours) grids[i]->drop_hidden_entries();
+    const auto model =
+        std::make_shared<VoxelModel>(std::move(*grids[i]), march, palette, VoxelModel::Extent::bounds, materials);
+    model->set_file_place({{}, lows[i]});
+    in_scene.models.push_back(model);
   }
   return in_scene;
 }
