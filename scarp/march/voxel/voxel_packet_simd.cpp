@@ -139,9 +139,9 @@ HWY_INLINE MI entered_by(VI entered, VoxelTies ties, int axis, bool first) {
 }
 
 // Of quantise(): rays go back to the voxels before planes that are not crossed yet.
-HWY_NOINLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPacket& packet, std::size_t o, VD t,
-                               VD touch, VI entered, const MD (&down)[3], const VD (&distance)[3], VD (&voxel)[3],
-                               VI (&next)[3]) {
+HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPacket& packet, std::size_t o, VD t,
+                             VD touch, VI entered, const MD (&down)[3], const VD (&distance)[3], VD (&voxel)[3],
+                             VI (&next)[3]) {
   const VD one = hn::Set(dd, 1.0);
   const MI exact = hn::RebindMask(di, hn::Eq(touch, hn::Zero(dd)));
   MI comes_in = hn::RebindMask(di, hn::Gt(t, hn::Load(dd, packet.t_min + o)));
@@ -179,10 +179,11 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
     const VD inverse = hn::Load(dd, packet.inverse[i] + o);
     given[i] = hn::Load(dd, packet.given[i] + o);
-    down[i] = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.down[i] + o), hn::Zero(di)));
+    down[i] = hn::Lt(given[i], zero);
     const MD level = hn::Eq(given[i], zero);
-    VD first = hn::IfThenElse(down[i], high, low);
+    VD first;
     if (packet.slow) {
+      down[i] = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.down[i] + o), hn::Zero(di)));
       const VD plane = hn::Floor(hn::Add(origin[i], hn::Set(dd, 0.5))), room = hn::Set(dd, stand.room);
       const MD on_plane = hn::And(level, hn::Le(hn::Abs(hn::Sub(origin[i], plane)), room));
       origin[i] = hn::IfThenElse(on_plane, plane, origin[i]);
@@ -193,6 +194,8 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
       const MD slow = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.speed[i] + o), hn::Set(di, kSlow)));
       const VD early = hn::IfThenElseZero(slow, room);
       first = hn::IfThenElse(down[i], hn::Add(high, early), hn::Sub(low, early));
+    } else {
+      first = hn::IfThenElse(down[i], high, low);
     }
     const VD near = hn::Mul(hn::Sub(first, origin[i]), inverse);
     const VD last = hn::IfThenElse(down[i], hn::Sub(low, late), hn::Add(high, late));
@@ -234,6 +237,8 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     next[i] = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
     touched = hn::Or(touched, hn::AndNot(in_here, hn::Gt(next[i], hn::Set(di, kVoxelPlaces - kTouch - 1))));
   }
+  // Rays that miss the box are on its sides here.
+  touched = hn::And(touched, hn::RebindMask(di, alive));
   if (!hn::AllFalse(di, touched))
     touch_behind(box, stand.ties, packet, o, t, touch, entered, down, distance, voxel, next);
   for (int i = 0; i < 3; ++i) {
@@ -320,8 +325,8 @@ HWY_INLINE LookResult look_at(const Look& look, const VI (&voxel)[3], const VI (
 }
 
 // VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; returns those still in the box. The others
-// do not change.
-template <class Look>
+// do not change. kOrdered: ties are crossed in the order x, y, z of the grid.
+template <class Look, bool kOrdered>
 HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std::size_t o, MI alive) {
   const VI one = hn::Set(di, 1), zero = hn::Zero(di);
   VI at[3], next[3], speed[3], down[3], voxel[3], end[3];
@@ -342,8 +347,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
 
   // The first plane that leaves the part; with ties in another order than x, y, z, a plane that comes earlier there
   // wins as if it were nearer by one unit of the products.
-  const VoxelTies ties = walk.ties;
-  const bool ordered = ties.bits >> 3 == 0;
+  [[maybe_unused]] const VoxelTies ties = walk.ties;
   VI out[3];
   for (int i = 0; i < 3; ++i) {
     out[i] = next[i];
@@ -353,11 +357,11 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     }
   }
   VI of_x = times<Look>(out[0], speed[1]);
-  if (!ordered) of_x = hn::Add(of_x, hn::Set(di, ties.bits >> 3 & 1));
+  if constexpr (!kOrdered) of_x = hn::Add(of_x, hn::Set(di, ties.bits >> 3 & 1));
   const MI y_first = hn::Lt(times<Look>(out[1], speed[0]), of_x);
   VI distance = hn::IfThenElse(y_first, out[1], out[0]), pace = hn::IfThenElse(y_first, speed[1], speed[0]);
   VI of_xy = times<Look>(distance, speed[2]);
-  if (!ordered)
+  if constexpr (!kOrdered)
     of_xy = hn::Add(of_xy, hn::IfThenElse(y_first, hn::Set(di, ties.bits >> 5 & 1), hn::Set(di, ties.bits >> 4 & 1)));
   const MI z_first = hn::Lt(times<Look>(out[2], pace), of_xy);
   const VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
@@ -393,7 +397,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     for (int i = 0; i < 3; ++i) {
       VI ahead = hn::Sub(times<Look>(distance, speed[i]), times<Look>(next[i], pace));
       // Planes at the same s that come after the last one.
-      if (ordered) {
+      if constexpr (kOrdered) {
         if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
       } else {
         for (int k = 0; k < 3; ++k) {
@@ -455,8 +459,9 @@ HWY_INLINE void wake(LaneWalk& walk) {
   }
 }
 
-template <class Look>
-std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+template <class Look, bool kOrdered>
+std::uint64_t march_with_ties(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                              std::uint64_t rays) {
   const Look look(target);
   std::uint64_t met = 0;
   LaneWalk walk;
@@ -472,7 +477,7 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
     for (std::size_t o = 0; o < walk.lanes; o += N) {
       std::uint64_t& alive = walk.alive[o / N];
       if (alive == 0) continue;
-      alive = bits_of(advance(look, packet, walk, o, lanes_of(alive)));
+      alive = bits_of(advance<Look, kOrdered>(look, packet, walk, o, lanes_of(alive)));
       live += static_cast<std::size_t>(hn::CountTrue(di, lanes_of(alive)));
     }
     // Only if that saves vectors.
@@ -484,6 +489,12 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
   }
   finish_all(packet, walk);
   return met;
+}
+
+template <class Look>
+std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+  return stand.ties.bits >> 3 == 0 ? march_with_ties<Look, true>(target, stand, packet, rays)
+                                   : march_with_ties<Look, false>(target, stand, packet, rays);
 }
 
 bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
