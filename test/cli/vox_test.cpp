@@ -290,7 +290,7 @@ TEST_F(CliVox, CastReportsTheVoxelsOfTheFile) {
   }
   const std::string rays =
       scratch_.write("rays.csv", fmt::format("x,y,z,dx,dy,dz\n{},{},99,0,0,-1\n", middle[0], middle[1]));
-  const auto cast = run({"cast", model_, rays});
+  const auto cast = run({"cast", model_, "--rays", rays});
   EXPECT_NE(cast.out.find(",5,6,7,high_z"), std::string::npos) << cast.out << cast.err;
 }
 
