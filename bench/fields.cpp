@@ -104,7 +104,7 @@ BenchField exaggerated(const BenchField& ground, double exaggeration) {
   HeightFieldSettings settings = ground.field.settings();
   settings.exaggeration *= exaggeration;
   HeightField field = ground.field.visit(
-      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, grid.row_stride, settings); });
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
   return described(std::move(field), ground.name);
 }
 

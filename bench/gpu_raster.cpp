@@ -49,7 +49,7 @@ HeightField as_triangles(const BenchField& ground) {
   HeightFieldSettings settings = ground.field.settings();
   settings.surface = Surface::triangles;
   return ground.field.visit(
-      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, grid.row_stride, settings); });
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
 
 // Two triangles for each cell of a patch, parted as Surface::triangles is.

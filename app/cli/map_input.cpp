@@ -24,7 +24,7 @@ HeightField with_cells(const HeightField& field, double cell_x, double cell_y) {
   settings.cell_x = cell_x;
   settings.cell_y = cell_y;
   return field.visit(
-      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, grid.row_stride, settings); });
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
 
 Raster read(const MapOptions& options) { return read_tiles(options.inputs, options.raster, terminal_progress("read")); }

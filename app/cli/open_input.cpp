@@ -30,7 +30,7 @@ void choose_exaggeration(const Raster& raster, FieldOptions& settings, std::vect
                                   .offset = raster.offset,
                                   .nodata = raster.nodata};
   const auto view = [&](const auto& samples) {
-    return HeightField::view(samples.data(), raster.cols, raster.rows, raster.cols, plain);
+    return HeightField::view(samples.data(), raster.cols, raster.rows, plain);
   };
   try {
     const HeightField field = std::visit(view, raster.samples);

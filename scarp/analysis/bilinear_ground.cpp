@@ -24,7 +24,7 @@ HeightField solid(const HeightField& field) {
   settings.surface = Surface::bilinear;
   settings.solid = true;
   return field.visit(
-      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, grid.row_stride, settings); });
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
 
 // The first cell of a ray that starts at a place and moves by (cols, rows) per t.

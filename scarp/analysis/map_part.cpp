@@ -21,8 +21,8 @@ RowBand all_rows(const HeightField& field) { return {0, field.rows()}; }
 HeightField rows_of(const HeightField& field, const RowBand& band) {
   if (band == all_rows(field)) return field;
   return field.visit([&](const auto& grid) {
-    return HeightField::view(grid.data + band.first * grid.row_stride, grid.cols, band.rows(), grid.row_stride,
-                             field.settings());
+    return HeightField::view(grid.data + band.first * grid.row_stride, grid.cols, band.rows(), field.settings(),
+                             grid.row_stride);
   });
 }
 

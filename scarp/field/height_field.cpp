@@ -130,9 +130,9 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
 }
 
 template <class T>
-HeightField HeightField::view(const T* samples, int cols, int rows, std::ptrdiff_t row_stride,
-                              const HeightFieldSettings& settings, std::weak_ptr<const void> memory) {
-  HeightField field(type_of<T>(), samples, cols, rows, row_stride, settings, nullptr);
+HeightField HeightField::view(const T* samples, int cols, int rows, const HeightFieldSettings& settings,
+                              std::ptrdiff_t row_stride, std::weak_ptr<const void> memory) {
+  HeightField field(type_of<T>(), samples, cols, rows, row_stride == 0 ? cols : row_stride, settings, nullptr);
   // One that was never set to an owner, destroyed or not, is equivalent to an empty one.
   const std::weak_ptr<const void> none;
   if (memory.owner_before(none) || none.owner_before(memory)) field.state_->memory = std::move(memory);
@@ -222,7 +222,7 @@ CellBox HeightField::set_samples(const SampleRect& rect, const T* samples, std::
 }
 
 #define SCARP_INSTANTIATE(T)                                                                                \
-  template HeightField HeightField::view<T>(const T*, int, int, std::ptrdiff_t, const HeightFieldSettings&, \
+  template HeightField HeightField::view<T>(const T*, int, int, const HeightFieldSettings&, std::ptrdiff_t, \
                                             std::weak_ptr<const void>);                                     \
   template HeightField HeightField::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);           \
   template CellBox HeightField::set_samples<T>(const SampleRect&, const T*, std::ptrdiff_t);

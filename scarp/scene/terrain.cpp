@@ -20,8 +20,7 @@ Terrain::Terrain(HeightField field, Georeference georeference)
 template <class T>
 Terrain Terrain::view(const T* samples, int cols, int rows, const HeightFieldSettings& settings,
                       std::ptrdiff_t row_stride, std::weak_ptr<const void> memory) {
-  return Terrain(
-      HeightField::view(samples, cols, rows, row_stride == 0 ? cols : row_stride, settings, std::move(memory)));
+  return Terrain(HeightField::view(samples, cols, rows, settings, row_stride, std::move(memory)));
 }
 
 template <class T>

@@ -41,7 +41,7 @@ void require_layout(const TileLayout& layout) {
     throw Error("tiles: tiles are not solid: walls would stand between them (set solid to false)");
   // The field itself checks the rest.
   const float sample = 0;
-  HeightField::view(&sample, 1, 1, 1, layout.ground);
+  HeightField::view(&sample, 1, 1, layout.ground);
 }
 
 // The level of a tile with this many samples; -1 if there is none.

@@ -124,10 +124,10 @@ TEST(HeightField, TakesAnInfinityThatIsDeclaredNodata) {
 
 TEST(HeightField, ViewsTheCallersMemoryWithAnyStrideAndCopiesNothing) {
   std::array<float, 12> memory{0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1};
-  const HeightField field = HeightField::view(memory.data(), 3, 3, 4);
+  const HeightField field = HeightField::view(memory.data(), 3, 3, {}, 4);
   EXPECT_DOUBLE_EQ(field.height(0, 0).value(), 6);
   EXPECT_EQ(field.min_sample(), 0);
-  const HeightField flipped = HeightField::view(memory.data() + 8, 3, 3, -4);
+  const HeightField flipped = HeightField::view(memory.data() + 8, 3, 3, {}, -4);
   EXPECT_DOUBLE_EQ(flipped.height(0, 0).value(), 0);
   memory[8] = 60;
   EXPECT_DOUBLE_EQ(field.height(0, 0).value(), 60);

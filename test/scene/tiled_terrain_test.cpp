@@ -269,7 +269,7 @@ TEST(TiledTerrain, KeepsTheMemoryOfViews) {
   auto owner = std::make_shared<std::vector<float>>((kCells + 1) * (kCells + 1), 3.0f);
   TiledTerrain terrain({1, 1, kCells, kCells, {}});
   terrain.edit([&](auto& editor) {
-    editor.put({0, 0}, HeightField::view(owner->data(), kCells + 1, kCells + 1, kCells + 1, {}, owner));
+    editor.put({0, 0}, HeightField::view(owner->data(), kCells + 1, kCells + 1, {}, 0, owner));
   });
   std::weak_ptr<const void> memory = owner;
   owner.reset();
