@@ -15,6 +15,21 @@ int voxel_at(double place, int step) {
   return step < 0 && voxel == place ? voxel - 1 : voxel;
 }
 
+// Functions of the library would be calls, for which the loops of quantise() save all their numbers.
+
+std::int64_t rounded_up(double units) {
+  const auto down = static_cast<std::int64_t>(units);
+  return down + (static_cast<double>(down) < units ? 1 : 0);
+}
+
+// The origin of a level ray: the plane that it is near to. Others are not in the box.
+constexpr double kFarthest = 1 << 20;  // beyond all boxes
+double on_plane(double origin, double room) {
+  if (!(origin > -1 && origin < kFarthest)) return origin;
+  const double plane = static_cast<int>(origin + 1.5) - 1;
+  return std::abs(origin - plane) <= room ? plane : origin;
+}
+
 }  // namespace
 
 ivec3 normal_of(VoxelFace face) {
@@ -44,8 +59,11 @@ VoxelTies::VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame) {
 VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(direction), inverse(1.0 / direction) {
   // Divisions dominate the cost here: that by the longest component has been done.
   const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
-  auto& [speed, slowness, step, own_ties, exact, t_per_s] = quantised;
+  auto& [speed, slowness, step, own_ties, after, exact, t_per_s] = quantised;
   own_ties = ties;
+  const std::uint32_t y_x = ties.bits >> 3 & 1, z_x = ties.bits >> 4 & 1, z_y = ties.bits >> 5 & 1;
+  after = {static_cast<std::uint8_t>(6 ^ (y_x << 1 | z_x << 2)), static_cast<std::uint8_t>(4 ^ (y_x | z_y << 2)),
+           static_cast<std::uint8_t>(z_x | z_y << 1)};
   exact = true;
   for (int axis = 0; axis < 3; ++axis) {
     // For a direction that is too short it is not finite.
@@ -72,8 +90,7 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
     double& origin = from[axis];
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     if (ray_direction.given[axis] == 0) {
-      const double plane = std::floor(origin + 0.5);
-      origin = std::abs(origin - plane) <= ray.room ? plane : origin;
+      origin = on_plane(origin, ray.room);
       if (!(step > 0 ? origin >= low && origin < high : origin > low && origin <= high)) return {};
       continue;
     }
@@ -116,11 +133,11 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
     }
     const double distance = step > 0 ? voxel + 1 - place : place - voxel, units = distance * kVoxelPlaces;
     std::int64_t next = std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(direction.speed[axis] < kSlow ? std::ceil(units) : units + 0.5), 0, kVoxelPlaces);
+        direction.speed[axis] < kSlow ? rounded_up(units) : static_cast<std::int64_t>(units + 0.5), 0, kVoxelPlaces);
     // Planes behind that are not crossed yet.
-    const bool on_plane = distance == 1 && direction.exact;
+    const bool exact = distance == 1 && direction.exact;
     if (comes_in && next >= kVoxelPlaces - kTouch && direction.speed[axis] != 0 && axis != entered &&
-        (!on_plane || ties.before(entered, axis)) && voxel != (step > 0 ? low : high - 1)) {
+        (!exact || ties.before(entered, axis)) && voxel != (step > 0 ? low : high - 1)) {
       voxel -= step;
       next = 0;
     }

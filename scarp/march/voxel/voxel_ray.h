@@ -108,8 +108,9 @@ struct QuantisedDirection {
   std::array<double, 3> slowness;     ///< 1 / speed
   std::array<int, 3> step;            ///< 1 or -1; VoxelTies::up() along planes
   VoxelTies ties;
-  bool exact;      ///< speeds are the components of the given direction, without rounding
-  double t_per_s;  ///< t per unit of s = n / d; not finite if the direction is too short
+  std::array<std::uint8_t, 3> after;  ///< per axis, a bit for each axis that is crossed after it
+  bool exact;                         ///< speeds are the components of the given direction, without rounding
+  double t_per_s;                     ///< t per unit of s = n / d; not finite if the direction is too short
 };
 
 /// Computed once for all boxes of a ray with the same orientation.

@@ -48,10 +48,11 @@ class VoxelWalk {
     const int axis = first(out);
     const std::int64_t distance = out[axis], speed = speed_[axis];
     const double slowness = ray_.direction.slowness[axis];
+    const std::int64_t after = ray_.direction.after[axis];
     // For each axis, all planes with next + k 2^20 over its speed no later than distance over speed; those at the same
     // s that come after the last one are not crossed.
     for (int i = 0; i < 3; ++i) {
-      const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (i != axis && ties_.before(axis, i) ? 1 : 0);
+      const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (after >> i & 1);
       const std::int64_t planes = quotient(ahead >> kPlaceBits, speed, slowness) + 1;
       advance(i, ahead < 0 ? 0 : planes);
     }
