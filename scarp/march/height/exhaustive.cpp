@@ -350,6 +350,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (p.length() > 0 && p.span.end <= reached) continue;
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
+    const bool came_to_rim = p.rim && side == Side::unknown;
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
@@ -387,7 +388,8 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     }
     if (side == Side::below && (p.last > rounding || (rises && !s))) side = Side::above;
     // A wall behind the rim is met by the ray that comes in below it.
-    if (side == Side::below && from == Sides::above && p.rim && !s && field.settings().solid) side = Side::unknown;
+    if (came_to_rim && side == Side::below && from == Sides::above && !s && field.settings().solid)
+      side = Side::unknown;
   }
   return without;
 }
