@@ -237,7 +237,9 @@ class Ground {
       }
     }
     std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
-      return p.span.begin != q.span.begin ? p.span.begin < q.span.begin : p.span.end < q.span.end;
+      if (p.span.begin != q.span.begin) return p.span.begin < q.span.begin;
+      if (p.span.end != q.span.end) return p.span.end < q.span.end;
+      return !p.rim && q.rim;  // ground comes before the rims beside it: an upright ray on the border is over both
     });
     return found;
   }

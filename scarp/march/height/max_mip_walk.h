@@ -641,7 +641,7 @@ class Walk {
     if constexpr (ask == Ask::any) return true;
     answer_.t = t;
     answer_.cell = {col_, row_};
-    assert(rim(grid_ray()).is_height_of_ground(t, wall));
+    assert(ask == Ask::bisected || rim(grid_ray()).is_height_of_ground(t, wall));
     answer_.u = place ? place->x : x_.place(t, col_);
     answer_.v = place ? place->y : y_.place(t, row_);
     answer_.height = ground_.metres(ray_height(t));
