@@ -98,10 +98,10 @@ struct GridRay {
 class HeightField {
  public:
   /// Wraps caller-owned memory without copying; it must outlive every copy of the field. `row_stride` is the distance
-  /// between rows in samples; 0 means `cols`. If it is negative, `samples` points to the northernmost row, which is last in memory.
-  /// Throws Error for a null pointer, fewer than 1 column or row, rows that overlap (a stride shorter than a row), a
-  /// setting out of range, an infinite sample (with its position), or a shared border whose sides differ (with the
-  /// position). `memory`, if not empty, is what owns the samples: scenes throw Error once it is destroyed.
+  /// between rows in samples; 0 means `cols`. If it is negative, `samples` points to the northernmost row, which is
+  /// last in memory. Throws Error for a null pointer, fewer than 1 column or row, rows that overlap (a stride shorter
+  /// than a row), a setting out of range, an infinite sample (with its position), or a shared border whose sides differ
+  /// (with the position). `memory`, if not empty, is what owns the samples: scenes throw Error once it is destroyed.
   template <class T>
   static HeightField view(const T* samples, int cols, int rows, const HeightFieldSettings& settings = {},
                           std::ptrdiff_t row_stride = 0, std::weak_ptr<const void> memory = {});
