@@ -24,6 +24,17 @@ namespace {
 using nlohmann::json;
 using scarp::bench::expect_fields, scarp::bench::expect_head, scarp::bench::output_of;
 
+// What a command writes, and whether it did what it was told to.
+std::string text_of(const std::string& arguments, bool succeeds) {
+  const std::string command = fmt::format("'{}' {}", SCARP_BENCH_PROGRAM, arguments);
+  FILE* const pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return "";
+  std::string text;
+  for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  EXPECT_EQ(::pclose(pipe) == 0, succeeds) << command;
+  return text;
+}
+
 TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
   const json all =
       output_of("naive --size 129 --exaggerations 1,4 --rays small --repeats 1 --judged 2000 --pass-limit 0.02");
@@ -349,7 +360,7 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
                         "gsamples_per_s", "bytes_per_sample",
                         "device",         "driver",
                         "field",          "relief",
-                        "mean_slope_deg"});
+                        "mean_slope_deg", "exaggeration"});
     SCOPED_TRACE(row.dump());
     const std::string ray_class = row["class"], mode = row["mode"];
     classes.insert(ray_class);
@@ -365,21 +376,62 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_EQ(row["fetch_ratio"], 1.0);
     }
-    if (mode == "naive-fair") {
+    if (mode == "naive-missed") {
       EXPECT_LT(row["miss_rate"], 0.001);
     }
-    if (mode == "naive-equal") {
+    if (mode == "naive-wrong-equal") {
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_GT(row["fetch_ratio"], 1.0);
     }
-    if (mode.starts_with("naive-0.1%")) {
+    if (mode == "naive-wrong" || mode == "naive-wrong-clipped") {
       EXPECT_LE(row["wrong_rate"], 0.001);
     }
   }
   EXPECT_EQ(classes, (std::set<std::string>{"build", "chunk", "primary", "shadow", "grazing", "ao"}));
-  for (const char* mode : {"pyramid", "max-mip", "naive-default", "naive-fair", "naive-right", "naive-equal",
-                           "naive-0.1%", "naive-0.1%-clipped", "relaxed", "lipschitz"})
+  for (const char* mode :
+       {"pyramid", "max-mip", "naive-default", "naive-position", "naive-position-clipped", "naive-missed",
+        "naive-missed-false", "naive-wrong", "naive-wrong-clipped", "naive-wrong-equal", "relaxed", "lipschitz"})
     EXPECT_TRUE(modes.contains(mode)) << mode;
+}
+
+TEST(ScarpBench, GpuComparesAtEqualErrorOfPosition) {
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const json all =
+      output_of("gpu --sizes 129 --rays small --judged 2000 --repeats 1 --classes primary,chunk --exaggerations 1,4");
+  std::multiset<std::string> found, builds;
+  std::map<double, double> factor_of_primary;
+  for (const json& row : all["rows"]) {
+    SCOPED_TRACE(row.dump());
+    const std::string ray_class = row["class"], mode = row["mode"];
+    if (ray_class == "build") {
+      builds.insert(mode);
+      continue;
+    }
+    if (mode != "naive-position" && mode != "naive-position-clipped") continue;
+    found.insert(fmt::format("{} {} {}", ray_class, row["exaggeration"].get<int>(), mode));
+    EXPECT_LE(row["miss_rate"].get<double>() + row["late_rate"].get<double>() + row["early_rate"].get<double>(), 0.001);
+    EXPECT_LE(row["false_rate"], 0.001);
+    EXPECT_GT(row["fetch_ratio"], 1.0);
+    if (ray_class == "primary") factor_of_primary[row["exaggeration"]] = row["step_factor"];
+  }
+  EXPECT_EQ(builds.size(), 1u);
+  EXPECT_EQ(found, (std::multiset<std::string>{"chunk 1 naive-position", "chunk 1 naive-position-clipped",
+                                               "chunk 4 naive-position", "chunk 4 naive-position-clipped",
+                                               "primary 1 naive-position", "primary 1 naive-position-clipped",
+                                               "primary 4 naive-position", "primary 4 naive-position-clipped"}));
+  EXPECT_LT(factor_of_primary[4], factor_of_primary[1]) << "steep ground needs a smaller factor";
+}
+
+TEST(ScarpBench, DevicesMarksTheChosenOne) {
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const std::string text = text_of("devices", true);
+  EXPECT_NE(text.find("\n*"), std::string::npos) << text;
+  EXPECT_EQ(text.find("\n*"), text.rfind("\n*")) << text;
+  text_of("devices --device none-of-that-name 2> /dev/null", false);
 }
 #endif
 
@@ -514,19 +566,9 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("heights --csv /nowhere/rows.csv"));
   EXPECT_TRUE(fails("leaks --rays 0"));
   EXPECT_TRUE(fails("gpu --device none-of-that-name --sizes 33 --rays small"));
+  EXPECT_TRUE(fails("gpu --sizes 33 --rays small --classes sideways"));
   EXPECT_TRUE(fails("edits --size 100 --rect 101"));
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
-}
-
-// What a command writes, and whether it did what it was told to.
-std::string text_of(const std::string& arguments, bool succeeds) {
-  const std::string command = fmt::format("'{}' {}", SCARP_BENCH_PROGRAM, arguments);
-  FILE* const pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) return "";
-  std::string text;
-  for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
-  EXPECT_EQ(::pclose(pipe) == 0, succeeds) << command;
-  return text;
 }
 
 TEST(ScarpBench, WrongUsageIsOneLineOfTheProgram) {
@@ -546,7 +588,7 @@ TEST(ScarpBench, WrongUsageIsOneLineOfTheProgram) {
 
 // NaN is neither too small nor too large; a check that traces NaN rays traces none, and finds nothing wrong.
 TEST(ScarpBench, NumbersAreFinite) {
-  const std::map<std::string, std::vector<std::string>> options = {
+  std::map<std::string, std::vector<std::string>> options = {
       {"--rays", {"leaks", "voxel-leaks", "function-leaks"}},
       {"--embree-rays", {"leaks"}},
       {"--pass-limit", {"heights", "survey", "naive", "batches", "simd", "voxels"}},
@@ -554,6 +596,9 @@ TEST(ScarpBench, NumbersAreFinite) {
       {"--miss-limit", {"naive"}},
       {"--batches", {"batches"}},
   };
+#ifdef SCARP_BENCH_VULKAN
+  for (const char* option : {"--pass-limit", "--exaggerations", "--miss-limit"}) options[option].push_back("gpu");
+#endif
   for (const auto& [option, commands] : options) {
     for (const std::string& command : commands) {
       for (const std::string value : {"nan", "inf", "-1"}) {

@@ -104,6 +104,13 @@ struct ViewOptions {
 /// Throws Error if the script cannot be started; otherwise does not return.
 [[noreturn]] void run_view(const ViewOptions& options);
 
+/// `devices`: the Vulkan devices of this machine; with SCARP_VULKAN, as `gpu` and `shaders`.
+struct DevicesOptions {
+  std::string device = "auto";  ///< DeviceSettings::choice
+};
+/// Throws Error if there is no device, or none that the choice takes.
+void run_devices(const DevicesOptions& options);
+
 /// `gpu`: the marches on a Vulkan device, and the article's comparison there.
 struct GpuOptions {
   FieldOptions field;
@@ -112,7 +119,9 @@ struct GpuOptions {
   std::optional<RayCounts> rays;  ///< nothing: those of RayCounts, for CPU devices a sixteenth
   std::int64_t judged = 0;        ///< rays per class that the oracle answers, too; 0: 20,000, for CPU devices 4096
   std::uint64_t ray_seed = 1;
-  double miss_limit = 0.001;  ///< share of the hits that naive may miss
+  std::vector<std::string> classes{"chunk", "primary", "shadow", "grazing", "ao"};
+  std::vector<double> exaggerations{1};
+  double miss_limit = 0.001;  ///< share of the hits that naive-missed may miss
   int repeats = 5;
   double pass_limit_s = 10;
   bool raster = false;

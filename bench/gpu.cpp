@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench gpu`: the marches on a Vulkan device, by its own timestamps, and the max-mip article's comparison there:
-// naive made as fine as it takes to be as right as max-mip, then how long both take and how many heights they read.
+// naive made as fine as it takes for its hits to be where those of max-mip are, then how long both take and how many
+// heights they read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,15 +32,23 @@ using Json = nlohmann::ordered_json;
 // 480 x 270 as far as it goes in whole tiles of 8 pixels.
 constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
 constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
-// Naive is searched for in class chunk, where so many times more rays are judged: what is right on a few rays need not
+// So many times more rays are judged in the classes in which naive is made fine: what is right on a few rays need not
 // be right.
 constexpr std::int64_t kMoreJudged = 16;
 constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
-// Share of wrong rays of naive-0.1%.
+// Share of wrong rays of naive-wrong, and of hits of naive-position that are lost or off.
 constexpr double kNearlyRight = 0.001;
 // Steps per ray beyond which the search for naive's settings ends.
 constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
+
+// The classes of the article's comparison: the map, one any-hit ray per point, and the picture.
+bool is_compared(RayClass ray_class) { return ray_class == RayClass::chunk || ray_class == RayClass::primary; }
+
+// At most kNearlyRight of the hits are lost or more than a cell off, and as few of the misses are hits.
+bool has_positions(const Judgement& judged) {
+  return judged.miss_rate + judged.late_rate + judged.early_rate <= kNearlyRight && judged.false_rate <= kNearlyRight;
+}
 
 bool is_cpu(const Device& device) { return device.description().kind == DeviceKind::cpu; }
 
@@ -60,9 +69,14 @@ std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray
 
 // A field in the memory of both.
 struct Ground {
-  Ground(const Device& device, const BenchField& ground)
-      : bench(ground), cpu(ground.field), gpu(device, bench.field), target{&bench.field, &gpu, cpu.target().slope} {}
+  Ground(const Device& device, const BenchField& ground, double exaggeration)
+      : exaggeration(exaggeration),
+        bench(exaggerated(ground, exaggeration)),
+        cpu(bench.field),
+        gpu(device, bench.field),
+        target{&bench.field, &gpu, cpu.target().slope} {}
 
+  double exaggeration;
   BenchField bench;
   ScarpGround cpu;
   DeviceGround gpu;
@@ -113,33 +127,24 @@ class Comparison {
         lipschitz_(device, "lipschitz", rays_) {}
 
   void run(const BenchField& field) {
-    const Ground ground(device_, field);
-    measure_build(ground);
-    for (const RayClass ray_class :
-         {RayClass::chunk, RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao}) {
-      const RaySet set = std::move(make_rays(field, {ray_class}, rays_, options_.ray_seed).front());
-      const std::int64_t judged = ray_class == RayClass::chunk ? kMoreJudged * judged_ : judged_;
-      const Judge judge(ground.cpu.target(), set, judged, options_.ray_seed);
-      const std::vector<Ray>& rays = set.library_rays;
-      std::vector<Contender> contenders{{"max-mip", &max_mip_, {}},
-                                        {"naive-default", &naive_, {}},
-                                        {"relaxed", &relaxed_, {}},
-                                        {"lipschitz", &lipschitz_, {}}};
-      for (Contender& contender : contenders) judge_it(ground, set, rays, judge, contender);
-      if (ray_class == RayClass::chunk) add_fair_ones(ground, set, rays, judge, contenders);
-      measure_all(ground, set, rays, contenders);
-      std::fflush(stdout);
+    for (const double exaggeration : options_.exaggerations) {
+      const Ground ground(device_, field, exaggeration);
+      measure_build(ground);
+      for (const std::string& name : options_.classes) measure_class(ground, find_ray_class(name));
     }
   }
 
   const Json& rows() const { return rows_; }
 
   void print() const {
-    std::vector<std::vector<std::string>> lines{{"samples", "class", "mode", "Mrays/s", "max-mip is", "fetches",
-                                                 "x max-mip", "steps", "wrong %", "missed %", "late %", "error p99",
-                                                 "factor", "least step"}};
+    std::vector<std::vector<std::string>> lines{{"samples", "exagg.", "class", "mode", "Mrays/s", "max-mip is",
+                                                 "fetches", "x max-mip", "steps", "wrong %", "missed %", "late %",
+                                                 "error p99", "factor", "least step", "tolerance"}};
     const auto percent = [](const Json& share) {
       return share.is_null() ? "-" : short_number(100 * share.get<double>());
+    };
+    const auto fraction = [](const Json& value) {
+      return value.is_null() ? "-" : fmt::format("1/{:.0f}", 1 / value.get<double>());
     };
     for (const Json& row : rows_) {
       if (row["class"] == "build") {
@@ -147,17 +152,52 @@ class Comparison {
                    short_number(row["build_ms"]), short_number(row["gsamples_per_s"]));
         continue;
       }
-      lines.push_back({short_number(row["size"]), row["class"], row["mode"], short_number(row["mrays_per_s"]),
-                       fmt::format("{} x", short_number(row["max_mip_ratio"])), short_number(row["fetches_per_ray"]),
-                       short_number(row["fetch_ratio"]), short_number(row["steps_per_ray"]), percent(row["wrong_rate"]),
-                       percent(row["miss_rate"]), percent(row["late_rate"]), short_number(row["error_p99"], 2),
-                       short_number(row["step_factor"]),
-                       row["min_step"].is_null() ? "-" : fmt::format("1/{:.0f}", 1 / row["min_step"].get<double>())});
+      lines.push_back({short_number(row["size"]), short_number(row["exaggeration"]), row["class"], row["mode"],
+                       short_number(row["mrays_per_s"]), fmt::format("{} x", short_number(row["max_mip_ratio"])),
+                       short_number(row["fetches_per_ray"]), short_number(row["fetch_ratio"]),
+                       short_number(row["steps_per_ray"]), percent(row["wrong_rate"]), percent(row["miss_rate"]),
+                       percent(row["late_rate"]), short_number(row["error_p99"], 2), short_number(row["step_factor"]),
+                       fraction(row["min_step"]), fraction(row["tolerance"])});
     }
-    print_table(lines, 3);
+    print_table(lines, 4);
+    print_comparison();
   }
 
  private:
+  void measure_class(const Ground& ground, RayClass ray_class) {
+    const RaySet set = std::move(make_rays(ground.bench, {ray_class}, rays_, options_.ray_seed).front());
+    const Judge judge(ground.cpu.target(), set, is_compared(ray_class) ? kMoreJudged * judged_ : judged_,
+                      options_.ray_seed);
+    std::vector<Contender> contenders{{"max-mip", &max_mip_, {}},
+                                      {"naive-default", &naive_, {}},
+                                      {"relaxed", &relaxed_, {}},
+                                      {"lipschitz", &lipschitz_, {}}};
+    for (Contender& contender : contenders) judge_it(ground, set, judge, contender);
+    if (is_compared(ray_class)) add_fair_ones(ground, set, judge, contenders);
+    measure_all(ground, set, set.library_rays, contenders);
+    std::fflush(stdout);
+  }
+
+  // Naive whose hits are where they belong beside max-mip, the classes one below the other.
+  void print_comparison() const {
+    std::vector<std::vector<std::string>> lines{
+        {"samples", "exagg.", "class", "max-mip", "naive Mrays/s", "max-mip is", "clipped Mrays/s", "max-mip is"}};
+    for (const Json& row : rows_) {
+      if (row["class"] != "chunk" && row["class"] != "primary") continue;
+      if (row["mode"] == "max-mip") {
+        lines.push_back({short_number(row["size"]), short_number(row["exaggeration"]), row["class"],
+                         short_number(row["mrays_per_s"]), "-", "-", "-", "-"});
+      }
+      const std::size_t at = row["mode"] == "naive-position" ? 4 : row["mode"] == "naive-position-clipped" ? 6 : 0;
+      if (at == 0) continue;
+      lines.back()[at] = short_number(row["mrays_per_s"]);
+      lines.back()[at + 1] = fmt::format("{} x", short_number(row["max_mip_ratio"]));
+    }
+    if (lines.size() == 1) return;
+    fmt::print("naive with at most {} % of its hits lost or more than a cell off:\n", 100 * kNearlyRight);
+    print_table(lines, 3);
+  }
+
   // Asks `rays`; the answers as the judge wants them.
   static std::vector<Judge::Answer> ask(DeviceQueries& queries, const DeviceTarget& target, bool any_hit,
                                         const std::vector<Ray>& rays, std::vector<DeviceRayCost>& costs) {
@@ -179,55 +219,65 @@ class Comparison {
     return answers;
   }
 
-  void judge_it(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays, const Judge& judge,
-                Contender& contender) const {
+  void judge_it(const Ground& ground, const RaySet& set, const Judge& judge, Contender& contender) const {
     std::vector<Ray> sample;
-    for (const std::size_t i : judge.sample()) sample.push_back(rays[i]);
-    std::vector<DeviceRayCost> costs(sample.size());
+    for (const std::size_t i : judge.sample()) sample.push_back(set.library_rays[i]);
+    std::vector<DeviceRayCost> costs(sample.size()), no_costs;
     DeviceQueries& queries = contender.march->counting;
     queries.set_march_settings(contender.settings);
-    contender.judged = judge.score(ask(queries, ground.target, set.any_hit, sample, costs));
+    std::vector<Judge::Answer> answers = ask(queries, ground.target, set.any_hit, sample, costs);
     const double count = static_cast<double>(sample.size());
     contender.fetches = std::accumulate(costs.begin(), costs.end(), 0.0,
                                         [](double sum, const DeviceRayCost& cost) { return sum + cost.fetches; }) /
                         count;
     contender.seconds_per_ray = device_seconds(device_, queries.passes()) / count;
+    if (set.any_hit && is_compared(set.ray_class)) {
+      // The position at which such a ray is blocked is that of its closest hit.
+      contender.march->timed.set_march_settings(contender.settings);
+      const auto closest = ask(contender.march->timed, ground.target, false, sample, no_costs);
+      for (std::size_t i = 0; i < answers.size(); ++i) answers[i].t = closest[i].t;
+    }
+    contender.judged = judge.score(answers);
   }
 
   // Naive at the cheapest settings that are good, for each meaning of good that there are settings for.
-  void add_fair_ones(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays, const Judge& judge,
-                     std::vector<Contender>& contenders) {
+  void add_fair_ones(const Ground& ground, const RaySet& set, const Judge& judge, std::vector<Contender>& contenders) {
     const double limit = options_.miss_limit, max_mip_wrong = contenders[0].judged.wrong_rate;
-    std::map<std::tuple<DeviceMarch*, double, double>, Contender> tried;
+    std::map<std::tuple<DeviceMarch*, double, double, double>, Contender> tried;
     const auto contender_with = [&](DeviceMarch& march, const NaiveSettings& settings) -> const Contender& {
-      const auto [at, is_new] = tried.try_emplace({&march, settings.step_factor, settings.min_step});
+      const auto [at, is_new] =
+          tried.try_emplace({&march, settings.step_factor, settings.min_step, settings.tolerance});
       if (is_new) {
         at->second.march = &march;
         at->second.settings.naive = settings;
-        judge_it(ground, set, rays, judge, at->second);
+        judge_it(ground, set, judge, at->second);
       }
       return at->second;
     };
     const auto add = [&](const char* mode, DeviceMarch& march, const std::function<bool(const Judgement&)>& good) {
-      const auto settings = cheapest_naive(
-          [&](const NaiveSettings& attempt) {
-            const Judgement& judged = contender_with(march, attempt).judged;
-            return NaiveTrial{good(judged), judged.steps};
-          },
-          is_cpu(device_) ? kCpuDeviceMostSteps : kMostSteps);
+      const auto attempt = [&](const NaiveSettings& settings) {
+        const Judgement& judged = contender_with(march, settings).judged;
+        return NaiveTrial{good(judged), judged.steps};
+      };
+      const auto settings = cheapest_naive(attempt, is_cpu(device_) ? kCpuDeviceMostSteps : kMostSteps);
       if (!settings) {
-        fmt::print("{0} x {0} samples: no settings make {1}\n", ground.bench.field.cols(), mode);
+        fmt::print("{0} x {0} samples, exaggeration {1}, {2}: no settings make {3}\n", ground.bench.field.cols(),
+                   ground.exaggeration, name_of(set.ray_class), mode);
         return;
       }
-      contenders.push_back(contender_with(march, *settings));
+      contenders.push_back(contender_with(march, coarsened_naive(*settings, attempt)));
       contenders.back().mode = mode;
     };
-    add("naive-fair", naive_, [&](const Judgement& judged) { return judged.miss_rate < limit; });
-    add("naive-right", naive_, [&](const Judgement& judged) { return judged.miss_rate + judged.false_rate < limit; });
-    add("naive-equal", naive_, [&](const Judgement& judged) { return judged.wrong_rate <= max_mip_wrong; });
+    add("naive-position", naive_, has_positions);
+    add("naive-position-clipped", clipped_naive_, has_positions);
+    if (!set.any_hit) return;
     const auto nearly_right = [](const Judgement& judged) { return judged.wrong_rate <= kNearlyRight; };
-    add("naive-0.1%", naive_, nearly_right);
-    add("naive-0.1%-clipped", clipped_naive_, nearly_right);
+    add("naive-missed", naive_, [&](const Judgement& judged) { return judged.miss_rate < limit; });
+    add("naive-missed-false", naive_,
+        [&](const Judgement& judged) { return judged.miss_rate + judged.false_rate < limit; });
+    add("naive-wrong", naive_, nearly_right);
+    add("naive-wrong-clipped", clipped_naive_, nearly_right);
+    add("naive-wrong-equal", naive_, [&](const Judgement& judged) { return judged.wrong_rate <= max_mip_wrong; });
   }
 
   // One pass of each to warm up, then passes in turn.
@@ -257,7 +307,7 @@ class Comparison {
       const auto& [mode, march, settings, judged, fetches, per_ray] = contenders[c];
       const double count = static_cast<double>(parts[c].size()), speed = count / median(times[c]);
       const auto [fastest, slowest] = std::minmax_element(times[c].begin(), times[c].end());
-      const bool is_naive = march == &naive_ || march == &clipped_naive_, has_times = !set.any_hit && judged.error_p99;
+      const bool is_naive = march == &naive_ || march == &clipped_naive_, has_times = judged.error_p99.has_value();
       Json row = head(ground, name_of(set.ray_class), mode);
       row["mrays_per_s"] = speed * 1e-6;
       row["max_mip_ratio"] = max_mip_speed / speed;
@@ -283,7 +333,9 @@ class Comparison {
     }
   }
 
+  // Once per size: samples are the same under all exaggerations.
   void measure_build(const Ground& ground) {
+    if (ground.exaggeration != options_.exaggerations.front()) return;
     std::vector<double> times;
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const DeviceGround again(device_, ground.bench.field);
@@ -292,6 +344,7 @@ class Comparison {
     const double samples = static_cast<double>(ground.bench.field.cols()) * ground.bench.field.rows();
     const auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
     Json row = head(ground, "build", "pyramid");
+    row["exaggeration"] = nullptr;
     row["build_ms"] = median(times) * 1e3;
     row["gsamples_per_s"] = samples / median(times) * 1e-9;
     row["bytes_per_sample"] = static_cast<double>(ground.gpu.bytes()) / samples;
@@ -303,6 +356,7 @@ class Comparison {
     const DeviceDescription& device = device_.description();
     Json row;
     row["size"] = ground.bench.field.cols();
+    row["exaggeration"] = ground.exaggeration;
     row["class"] = ray_class;
     row["mode"] = mode;
     row["device"] = device.name;
@@ -331,7 +385,7 @@ class Comparison {
                               "gsamples_per_s", "bytes_per_sample",
                               "device",         "driver",
                               "field",          "relief",
-                              "mean_slope_deg"}) {
+                              "mean_slope_deg", "exaggeration"}) {
       all[field] = row.value(field, Json());
     }
     return all;

@@ -10,6 +10,7 @@
 
 #include "app/cli/numbers.h"
 #include "bench/commands.h"
+#include "bench/gpu_command.h"
 #include "bench/rays.h"
 #include "bench/wrong_usage.h"
 #include "scarp/base/error.h"
@@ -18,8 +19,6 @@ namespace {
 
 using namespace scarp::bench;
 using scarp::cli::kAboveZero, scarp::cli::number_in;
-
-constexpr int kLeastSize = 33, kMostSize = 32767;  // Embree's grids end there
 
 std::pair<int, int> size_from(const std::string& text) {
   int cols = 0, rows = 0, end = 0;
@@ -259,45 +258,10 @@ int run(int argc, char** argv) {
   view_command->add_option("--csv", view.csv, "file to write the rows to, as in bench/results");
 
 #ifdef SCARP_BENCH_VULKAN
+  DevicesOptions devices;
+  CLI::App* devices_command = add_devices_command(app, devices);
   GpuOptions gpu;
-  CLI::App* gpu_command =
-      app.add_subcommand("gpu", "the marches on a Vulkan device, and the article's comparison there");
-  gpu_command->add_option("--device", gpu.device, "auto, gpu, cpu or part of a name")->capture_default_str();
-  gpu_command
-      ->add_option("--sizes", gpu.sizes,
-                   "samples per side of the procedural DEM, one or several (1025,4097, and 16385 but for CPU devices)")
-      ->delimiter(',')
-      ->check(CLI::Range(kLeastSize, kMostSize));
-  gpu_command->add_option("--kind", gpu.field.kind, "procedural DEM")
-      ->check(CLI::IsMember({"ridged", "fbm"}))
-      ->capture_default_str();
-  gpu_command->add_option("--seed", gpu.field.seed, "of the procedural DEM")->capture_default_str();
-  gpu_command->add_option("--ray-seed", gpu.ray_seed, "of the rays")->capture_default_str();
-  gpu_command
-      ->add_option_function<std::string>(
-          "--rays",
-          [&gpu](const std::string& size) {
-            gpu.rays = size == "small" ? RayCounts{160, 88, 4096, 4096, 64} : RayCounts{};
-          },
-          "full: 1920 x 1080 pixels and 2^20 rays for each other class (but for CPU devices: a sixteenth); small: "
-          "160 x 88 and 2^12, to see that all works")
-      ->check(CLI::IsMember({"full", "small"}));
-  gpu_command
-      ->add_option("--judged", gpu.judged, "rays per class that the oracle answers, too (20000; for CPU devices 4096)")
-      ->check(CLI::Range(1, 100'000'000));
-  gpu_command->add_option("--miss-limit", gpu.miss_limit, "share of the hits that naive may miss")
-      ->check(number_in({0, 1}))
-      ->capture_default_str();
-  gpu_command->add_option("--repeats", gpu.repeats, "counted passes per march")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  gpu_command
-      ->add_option("--pass-limit", gpu.pass_limit_s,
-                   "seconds; a march that takes longer for a pass traces part of the rays")
-      ->check(number_in(kAboveZero))
-      ->capture_default_str();
-  gpu_command->add_flag("--raster", gpu.raster,
-                        "instead: primary rays beside the same grid drawn as two triangles per cell");
+  CLI::App* gpu_command = add_gpu_command(app, gpu);
   add_json_option(*gpu_command, report);
 
   ShadersOptions shaders;
@@ -660,6 +624,7 @@ int run(int argc, char** argv) {
   if (*maps_command) run_maps(maps, report);
   if (*view_command) run_view(view);
 #ifdef SCARP_BENCH_VULKAN
+  if (*devices_command) run_devices(devices);
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
   if (*shaders_command) run_shaders(shaders, report);
   if (*voxels_command && !voxels.device.empty()) run_device_voxels(voxels, report);

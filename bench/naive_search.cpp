@@ -9,6 +9,9 @@ constexpr int kFactorHalvings = 6;
 // The height above ground that counts as a hit, against the least step: small enough that what naive reports early
 // stays a matter of the step, as its misses are.
 constexpr double kTolerancePerStep = 1.0 / 16;
+// A gain of fewer steps than this share is none.
+constexpr double kLeastGain = 0.01;
+constexpr double kMostFactor = 1;
 
 }  // namespace
 
@@ -35,6 +38,30 @@ std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const
     }
   }
   return best;
+}
+
+NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt) {
+  struct Coarsening {
+    double NaiveSettings::*member;
+    double ratio;
+  };
+  constexpr Coarsening kCoarsenings[] = {
+      {&NaiveSettings::tolerance, 4},  {&NaiveSettings::tolerance, 1.5},   {&NaiveSettings::min_step, 1.4},
+      {&NaiveSettings::min_step, 1.2}, {&NaiveSettings::step_factor, 1.4}, {&NaiveSettings::step_factor, 1.2},
+  };
+  double steps = attempt(settings).steps;
+  for (const auto& [member, ratio] : kCoarsenings) {
+    for (;;) {
+      NaiveSettings coarser = settings;
+      coarser.*member *= ratio;
+      if (coarser.step_factor > kMostFactor) break;
+      const NaiveTrial trial = attempt(coarser);
+      if (!trial.good || trial.steps > (1 - kLeastGain) * steps) break;
+      settings = coarser;
+      steps = trial.steps;
+    }
+  }
+  return settings;
 }
 
 }  // namespace scarp::bench

@@ -27,4 +27,8 @@ struct NaiveTrial {
 std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
                                             double most_steps = std::numeric_limits<double>::infinity());
 
+/// Makes good settings of `cheapest_naive` coarser, first the tolerance, then the least step, then the factor (at most
+/// 1), each as long as naive stays good and takes fewer steps.
+NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt);
+
 }  // namespace scarp::bench

@@ -234,6 +234,7 @@ TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
 // The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
 // one beyond the end of a buffer.
 TEST_F(OpenDevice, TellsWhatValidationSays) {
+  if (!test::tests_validate()) GTEST_SKIP() << "SCARP_TEST_VALIDATION=off";
   const Device watched({.validation = true});
   const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");
   const Device::Impl& open = *watched.impl();

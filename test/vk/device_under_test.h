@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: MIT
 // The device on which tests run, with validation: any message of it fails the program's tests.
+// SCARP_TEST_VALIDATION=off runs them without the validation layer, where it is not installed.
 #pragma once
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/vk/device.h"
 
 namespace scarp::test {
+
+/// False if SCARP_TEST_VALIDATION is "off".
+inline bool tests_validate() {
+  const char* choice = std::getenv("SCARP_TEST_VALIDATION");
+  return !choice || choice != std::string_view("off");
+}
 
 /// Why there is none, or nothing. Without a device tests are skipped; without the validation layer they fail.
 struct DeviceUnderTest {
@@ -30,7 +39,7 @@ inline const DeviceUnderTest& device_under_test() {
     bool usable = false;
     for (const DeviceDescription& device : list.devices) usable |= device.usable();
     if (usable) {
-      found.device.emplace(DeviceSettings{.validation = true, .keep_pipelines = false});
+      found.device.emplace(DeviceSettings{.validation = tests_validate(), .keep_pipelines = false});
     } else {
       found.why_none = list.devices.empty() ? list.why_none : "no usable Vulkan device";
     }

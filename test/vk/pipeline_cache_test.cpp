@@ -172,7 +172,7 @@ class DevicePipelines : public PipelineFiles {
 
   // Opens the device, computes on it and closes it. Returns the path of its file.
   static std::string compute(bool keep_pipelines = true) {
-    const Device device({.validation = true, .keep_pipelines = keep_pipelines});
+    const Device device({.validation = test::tests_validate(), .keep_pipelines = keep_pipelines});
     const std::uint32_t constants[] = {64, 0};
     const ComputePipeline twice(device, kTwiceOfAll, "twice", sizeof(glsl::TwicePush), constants);
     const std::uint32_t number = 21;
