@@ -69,7 +69,7 @@ BenchField procedural(const FieldOptions& options) {
   return described(HeightField::own(std::move(steps), options.size, options.size, settings), name);
 }
 
-BenchField from_file(const std::string& path, Surface surface) {
+BenchField from_file(const std::string& path, [[maybe_unused]] Surface surface) {
 #ifdef SCARP_BENCH_GDAL
   Raster raster = read_raster(path, {});
   // From metres to cells, in all three axes.

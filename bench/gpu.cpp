@@ -69,9 +69,9 @@ std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray
 
 // A field in the memory of both.
 struct Ground {
-  Ground(const Device& device, const BenchField& ground, double exaggeration)
-      : exaggeration(exaggeration),
-        bench(exaggerated(ground, exaggeration)),
+  Ground(const Device& device, const BenchField& ground, double factor)
+      : exaggeration(factor),
+        bench(exaggerated(ground, factor)),
         cpu(bench.field),
         gpu(device, bench.field),
         target{&bench.field, &gpu, cpu.target().slope} {}

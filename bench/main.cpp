@@ -643,7 +643,12 @@ int run(int argc, char** argv) {
   if (*sweeps_command) run_sweeps(sweeps, report);
   if (*frames_command) run_frames(frames, report);
   if (*functions_command) run_functions(functions, report);
+#ifdef SCARP_BENCH_GDAL
   if (*function_leaks_command) run_function_leaks(function_leaks, report);
+#else
+  if (*function_leaks_command)
+    throw scarp::Error("function-leaks: this scarp-bench was built without GDAL; build with SCARP_GDAL=ON");
+#endif
   if (*shapes_command) run_shapes(shapes, report);
   if (*extents_command) {
     extents.sizes.clear();

@@ -133,8 +133,12 @@ measure() {
 
 # "chunk 5100 Mrays/s, naive x 2.1; primary ...": max-mip, and its speed over naive's at equal error of position.
 figures_of() {
-  awk -F, '$3 == "max-mip" { text = text sprintf("%s%s " ($4 < 100 ? "%.3g" : "%.0f") " Mrays/s", text == "" ? "" : "; ", $2, $4) }
-    $3 == "naive-position" { text = text sprintf(", naive x %.2f", $5) } END { print text }' "$1"
+  awk -F, '$3 == "max-mip" {
+      text = text (text == "" ? "" : "; ") $2 ($NF == 1 ? "" : " at exaggeration " $NF + 0)
+      text = text sprintf($4 < 100 ? " %.3g Mrays/s" : " %.0f Mrays/s", $4)
+    }
+    $3 == "naive-position" { text = text sprintf(", naive x %.2f", $5) }
+    END { print text }' "$1"
 }
 
 # test_program NAME LIMIT PROGRAM [FILES]: a test of ctest; those that are skipped count apart.
