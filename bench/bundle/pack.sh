@@ -19,7 +19,7 @@ fail() {
   exit 1
 }
 # The file that the linker would load by this name.
-system_library() { ldconfig -p | awk -v name="$1" '$1 == name && /x86-64/ { print $NF; exit }'; }
+system_library() { ldconfig -p | awk -v name="$1" '$1 == name && /x86-64/ && !found { found = $NF } END { print found }'; }
 
 cp "$here/run.sh" "$tree/run.sh"
 cp "$build/test/device_tests.txt" "$tree/tests.txt"
@@ -53,7 +53,7 @@ fi
 
 glibc=$(find "$tree" -type f \( -path '*/bin/*' -o -name '*.so*' \) -exec readelf -VW {} + | grep -oE 'GLIBC_[0-9]+(\.[0-9]+)+' | sort -Vu | tail -n 1)
 mkdir -p "$(dirname -- "$out")"
-tar -C "$work" --owner=0 --group=0 -c scarp-gpu | xz -T0 -9e >"$out"
+tar -C "$work" --owner=0 --group=0 -c scarp-gpu | xz -T0 -6 >"$out"
 size=$(($(stat -c %s "$out") / 1000000 + 1))
 ((size <= limit_mb)) || fail "$out: $size MB, the limit is $limit_mb"
 printf '== gpu-bundle: %s, %d MB, for x86-64 Linux with glibc %s and a Vulkan driver; unpack it and run scarp-gpu/run.sh\n' "$out" "$size" "${glibc#GLIBC_}"
