@@ -70,6 +70,10 @@ else
   export SCARP_TEST_VALIDATION=off
 fi
 
+# So that programs that are ended leave the lines they printed.
+by_lines=(env)
+! command -v stdbuf >/dev/null || by_lines=(stdbuf -oL)
+
 summary=()
 add_row() { summary+=("$(printf '%-24s %-18s %5s  %s' "$@")"); }
 
@@ -87,7 +91,7 @@ step() {
   ((limit <= left)) || limit=$left
   ((limit <= most)) || limit=$most
   printf '== %s (at most %d s)\n' "$name" "$limit"
-  timeout --kill-after=5 "$limit" "$@" >"$log" 2>&1 </dev/null &
+  timeout --kill-after=5 "$limit" "${by_lines[@]}" "$@" >"$log" 2>&1 </dev/null &
   pid=$!
   result=''
   # Errors: bash reports processes that were killed.
@@ -185,7 +189,7 @@ else
   measure gpu-129 gpu 60 gpu --device "$device" --sizes 129 --classes $classes --rays small --judged 2000 --repeats 1
   measure voxels voxels 30 voxels --device "$device" --sets degenerate --thousands 1 --height 36 --repeats 1
   measure render render 30 render --device "$device" --period 64 --width 40 --height 30 --cameras 1 --repeats 1
-  measure functions functions 30 functions --device "$device" --width 48 --height 27 --repeats 1 --judged 100
+  measure functions functions 90 functions --device "$device" --width 48 --height 27 --repeats 1 --judged 100
 fi
 
 tests=()
