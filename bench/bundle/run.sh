@@ -57,11 +57,8 @@ bench_deadline=$((started + (seconds - 10) * 2 / 3))
 
 export HOME="${HOME:-$folder/logs}" RC_PARAMS=seed=20261121
 # The driver uses these libraries, too: the bundle's only where the system's are missing or too old.
-libraries=''
-if ldd bin/* 2>&1 | grep -q 'not found'; then libraries="$here/lib/spare"; fi
-bench() { LD_LIBRARY_PATH="$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" timeout --kill-after=5 20 bin/scarp-bench "$@"; }
-if bench devices 2>&1 </dev/null | grep -q 'Vulkan: no loader'; then libraries="${libraries:+$libraries:}$here/lib/loader"; fi
-[[ -z $libraries ]] || export LD_LIBRARY_PATH="$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+use_libraries() { export LD_LIBRARY_PATH="$1${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; }
+if ldd bin/* 2>&1 | grep -q 'not found'; then use_libraries "$here/lib/spare"; fi
 validation='without the validation layer'
 if [[ -d layers ]]; then
   export VK_LAYER_PATH="$here/layers${VK_LAYER_PATH:+:$VK_LAYER_PATH}"
@@ -72,7 +69,7 @@ fi
 
 # So that programs that are ended leave the lines they printed.
 by_lines=(env)
-! command -v stdbuf >/dev/null || by_lines=(stdbuf -oL)
+! stdbuf -oL true 2>/dev/null || by_lines=(stdbuf -oL)
 
 summary=()
 add_row() { summary+=("$(printf '%-24s %-18s %5s  %s' "$@")"); }
@@ -170,6 +167,10 @@ test_program() {
 
 step_deadline=$bench_deadline
 step devices 20 bin/scarp-bench devices --device "$device"
+if grep -q 'Vulkan: no loader' "$folder/logs/devices.log"; then
+  use_libraries "$here/lib/loader"
+  step devices 20 bin/scarp-bench devices --device "$device"
+fi
 cat "$folder/logs/devices.log"
 chosen=$(sed -n 's/^\*  *\(.*\)/\1/p' "$folder/logs/devices.log")
 chosen=${chosen%%  *}
