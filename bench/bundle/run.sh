@@ -186,7 +186,7 @@ if [[ -z $small ]]; then
   measure gpu-16385 gpu 90 gpu --device "$device" --sizes 16385 --classes $classes --judged 5000 --repeats 3
   measure voxels voxels 60 voxels --device "$device" --thousands 1,4,16
   measure render render 30 render --device "$device" --threads "$(nproc)" --cameras 2 --repeats 2
-  measure functions functions 40 functions --device "$device" --repeats 1 --judged 1000
+  measure functions functions 60 functions --device "$device" --width 320 --height 180 --repeats 1 --judged 200
 else
   measure gpu-129 gpu 60 gpu --device "$device" --sizes 129 --classes $classes --rays small --judged 2000 --repeats 1
   measure voxels voxels 30 voxels --device "$device" --sets degenerate --thousands 1 --height 36 --repeats 1
