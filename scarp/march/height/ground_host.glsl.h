@@ -9,9 +9,7 @@
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/march/height/ray_frame.glsl.h"
 
-// Addresses rather than references: of private references glslc 2023.2 makes shaders for minutes, or for ever.
-Ground opened;
-Address opened_samples, opened_pyramid, opened_quads;
+Address opened_ground, opened_samples, opened_pyramid, opened_quads;
 uint opened_words, opened_type;
 uint opened_quad_cols, opened_quad_rows, opened_quad_stride;
 float opened_hole;
@@ -23,7 +21,7 @@ float opened_hole;
 /// The ground at an address, as the marches want to know it.
 ScarpField open_ground(Address address) {
   Ground ground = Ground(address);
-  opened = ground;
+  opened_ground = address;
   opened_samples = ground.is.samples;
   opened_pyramid = ground.is.pyramid;
   opened_quads = ground.is.quads;
@@ -59,17 +57,25 @@ float scarp_sample(int col, int row) {
   return float(bitfieldExtract(word, (col & 1) << 4, 16));
 }
 
+// Two words of memory: one load, where two indices would make two.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GroundPair { uvec2 words; };
+// The address of a word.
+Address ground_address(Address begin, uint index) {
+  uint low = begin.x + (index << 2);
+  return Address(low, begin.y + (index >> 30) + (low < begin.x ? 1u : 0u));
+}
+
 /// The samples of a cell, by rows.
 vec4 scarp_corners(int col, int row) {
   if (SCARP_GROUND_TYPE != kGroundFloat32) {
     return vec4(scarp_sample(col, row), scarp_sample(col + 1, row), scarp_sample(col, row + 1),
                 scarp_sample(col + 1, row + 1));
   }
-  GroundWords samples = GroundWords(opened_samples);
-  uint north = uint(row) * opened_words + uint(col);
-  uint south = north + opened_words;
-  return uintBitsToFloat(
-      uvec4(samples.words[north], samples.words[north + 1u], samples.words[south], samples.words[south + 1u]));
+  Address north = ground_address(opened_samples, uint(row) * opened_words + uint(col));
+  Address south = ground_address(north, opened_words);
+  uvec2 north_pair = GroundPair(north).words;
+  uvec2 south_pair = GroundPair(south).words;
+  return uintBitsToFloat(uvec4(north_pair, south_pair));
 }
 
 // All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
@@ -79,7 +85,7 @@ bool scarp_is_nodata(float value) {
 }
 
 uint pyramid_entry(int level, int col, int row) {
-  GroundLevel at = opened.is.levels[level - 1];
+  GroundLevel at = Ground(opened_ground).is.levels[level - 1];
   return GroundWords(opened_pyramid).words[at.begin + uint(row) * at.cols + uint(col)];
 }
 float scarp_maximum(int level, int col, int row) { return float(ground_maximum(pyramid_entry(level, col, row))); }

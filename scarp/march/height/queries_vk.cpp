@@ -55,6 +55,16 @@ class HeightRuns : public RaySlices<HeightRays> {
     });
   }
 
+  // The rays of the last slice once more, which are still there.
+  template <class Begin, class GoOn>
+  void ask_again(const Begin& begin, const GoOn& go_on) {
+    passes_.clear();
+    if (packed_.empty()) return;
+    begin(commands_, rays_.address(), answers_.address(), static_cast<std::uint32_t>(prepared_.size()));
+    do run();
+    while (go_on(commands_));
+  }
+
  private:
   // body(block, i, ray) for each ray of the slice, the i-th of a block.
   template <class Body>
@@ -105,6 +115,13 @@ struct DeviceQueries::Impl {
     march.reserve(settings.rays_at_once);
   }
 
+  // Records the first run of a march.
+  auto begin(std::uint64_t ground, const DeviceRayQuery& query) {
+    return [this, ground, query](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
+      march.begin(commands, {ground, rays, hits, count}, query);
+    };
+  }
+
   // Calls answer(i, prepared, hit) for each ray, on all threads.
   template <class Answer>
   void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
@@ -115,11 +132,10 @@ struct DeviceQueries::Impl {
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
     query.exact_only = exact_only || leaves_first_pass(*target.field);
     if (!exact) query.sampling = sampling_of(name, march_settings, target);
+    last_ground = target.ground->address();
+    last_query = query;
     runs.ask(
-        [&](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
-          march.begin(commands, {target.ground->address(), rays, hits, count}, query);
-        },
-        [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
+        begin(target.ground->address(), query), [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
         [&](std::size_t i) {
           return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i], clip_at_top);
         },
@@ -130,11 +146,17 @@ struct DeviceQueries::Impl {
         });
   }
 
+  void ask_again() {
+    runs.ask_again(begin(last_ground, last_query), [&](Commands& commands) { return march.go_on(commands); });
+  }
+
   std::string_view name;
   MarchSettings march_settings;
   HeightRuns runs;
   bool statistics, exact_only, clip_at_top;
   DeviceHeightMarch march;
+  std::uint64_t last_ground = 0;
+  DeviceRayQuery last_query{};
 };
 
 DeviceQueries::DeviceQueries(const Device& device, const HeightMarchEntry& march, const MarchSettings& march_settings,
@@ -166,6 +188,8 @@ void DeviceQueries::occluded(const DeviceTarget& target, std::span<const Ray> ra
     blocked[i] = prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
   });
 }
+
+void DeviceQueries::march_again() { impl_->ask_again(); }
 
 const std::vector<PassTime>& DeviceQueries::passes() const { return impl_->runs.passes(); }
 
