@@ -128,11 +128,7 @@ Commands::Commands(Commands&&) noexcept = default;
 Commands& Commands::operator=(Commands&&) noexcept = default;
 
 Commands::~Commands() {
-  if (!impl_ || !impl_->running) return;
-  try {
-    impl_->device->device.waitIdle();
-  } catch (const vk::SystemError&) {  // device lost: nothing is running
-  }
+  if (impl_ && impl_->running) impl_->device->wait_at_end(impl_->fence);
 }
 
 void Commands::record_dispatch(const ComputePipeline& pipeline, const void* push, std::uint32_t bytes,

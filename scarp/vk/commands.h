@@ -31,7 +31,7 @@ class Commands {
   explicit Commands(const Device& device);
   Commands(Commands&&) noexcept;
   Commands& operator=(Commands&&) noexcept;
-  /// Waits for a run that has not finished.
+  /// Waits for a run that has not finished; on a device that was given up, for a few seconds.
   ~Commands();
 
   using Groups = std::array<std::uint32_t, 3>;
@@ -59,7 +59,8 @@ class Commands {
   /// Full barrier: earlier commands finish, and their writes are visible, before later ones begin.
   void barrier();
 
-  /// Runs the recorded commands and waits. Throws Error if the device is lost or exceeds DeviceSettings::timeout_s.
+  /// Runs the recorded commands and waits. Throws Error if the device is lost, or has exceeded
+  /// DeviceSettings::timeout_s, in this run or an earlier one.
   void run();
   /// Dispatches and draws of the last run(), in order.
   const std::vector<PassTime>& passes() const;

@@ -89,7 +89,16 @@ Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
   }
 }
 
-Device::Impl::~Impl() { save_pipelines(); }
+Device::Impl::~Impl() {
+  save_pipelines();
+  if (!hangs) return;
+  // Drivers wait without end for a device that is destroyed while it runs. The process leaves it to the system instead.
+  staging.release();
+  new auto(std::move(pipelines));
+  new auto(std::move(pool));
+  new auto(std::move(device));
+  new auto(std::move(instance));
+}
 
 void Device::Impl::save_pipelines() noexcept {
   if (pipelines_path.empty()) return;
@@ -102,16 +111,32 @@ void Device::Impl::save_pipelines() noexcept {
 }
 
 void Device::Impl::submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) {
+  if (!given_up.empty()) throw Error(given_up);
   const vk::CommandBuffer buffer = *commands;
   queue.submit(vk::SubmitInfo().setCommandBuffers(buffer), *fence);
 }
 
 void Device::Impl::wait(const vk::raii::Fence& fence, const std::string& what) {
+  if (!given_up.empty()) throw Error(given_up);
   const auto limit = static_cast<std::uint64_t>(settings.timeout_s * 1e9);
   if (device.waitForFences(*fence, true, limit) == vk::Result::eTimeout) {
-    throw Error(fmt::format("device '{}': {} did not finish within {:g} s", name(), what, settings.timeout_s));
+    given_up = fmt::format(
+        "device '{}': {} did not finish within {:g} s, and the device was given up (run again, or choose another "
+        "device, see 'scarp devices')",
+        name(), what, settings.timeout_s);
+    throw Error(given_up);
   }
   device.resetFences(*fence);
+}
+
+void Device::Impl::wait_at_end(const vk::raii::Fence& fence) noexcept {
+  constexpr double kLastSeconds = 5;
+  if (hangs) return;
+  const double seconds = given_up.empty() ? settings.timeout_s : kLastSeconds;
+  try {
+    hangs = device.waitForFences(*fence, true, static_cast<std::uint64_t>(seconds * 1e9)) == vk::Result::eTimeout;
+  } catch (const vk::SystemError&) {  // device lost: nothing is running
+  }
 }
 
 std::optional<std::uint32_t> Device::Impl::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const {

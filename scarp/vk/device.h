@@ -79,7 +79,7 @@ struct DeviceSettings {
   std::string choice = "auto";
   bool validation =
       false;  ///< enables the Khronos validation layer with synchronisation validation and collects its messages
-  double timeout_s = 600;  ///< time limit of one run of commands, > 0
+  double timeout_s = 600;  ///< time limit of one run of commands, > 0; after it the device is given up: nothing runs
   /// Whether compiled pipelines are kept in the user's cache folder, from process to process (doc/user/devices.md).
   bool keep_pipelines = true;
 };

@@ -73,9 +73,13 @@ struct Device::Impl {
   Impl(const DeviceSettings& settings, VulkanInstance instance);
   ~Impl();
 
+  /// Throws Error if the device has been given up.
   void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence);
-  /// Waits for the fence and resets it. Throws Error after the time limit of the settings.
+  /// Waits for the fence and resets it. Gives the device up after the time limit of the settings, and throws Error then
+  /// and from then on.
   void wait(const vk::raii::Fence& fence, const std::string& what);
+  /// Waits for the fence before what it guards is destroyed: for a device that was given up, only a few seconds.
+  void wait_at_end(const vk::raii::Fence& fence) noexcept;
   const std::string& name() const { return description.name; }
   /// Returns the first memory type for a buffer that has all `flags`.
   std::optional<std::uint32_t> memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
@@ -97,6 +101,9 @@ struct Device::Impl {
   std::size_t pipelines_on_file = 0;  // bytes
   vk::raii::PipelineCache pipelines = nullptr;
   std::unique_ptr<StagingRing> staging;  // made on first use
+  std::string given_up;                  // why, in a sentence; empty: it was not
+  bool hangs = false;                    // it did not even finish by the end
+  bool has_drawn = false;                // whether a first drawing has been tried
 };
 
 struct DeviceBuffer::Impl {

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "scarp/vk/first_drawing.h"
 #include "scarp/vk/raii.h"
 
 namespace scarp {
@@ -34,6 +35,7 @@ void require_draws(const Device& device) {
     throw Error(fmt::format("device '{}': no 32-bit float depth buffers (choose another device, see 'scarp devices')",
                             description.name));
   }
+  try_first_drawing(device);
 }
 
 DeviceImage make_image(const Device::Impl& device, std::uint32_t width, std::uint32_t height, vk::Format format) {

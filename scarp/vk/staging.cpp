@@ -50,11 +50,8 @@ StagingRing::StagingRing(Device::Impl& device)
 }
 
 StagingRing::~StagingRing() {
-  try {
-    for (const Half& half : halves_) {
-      if (half.running) device_.device.waitIdle();
-    }
-  } catch (const vk::SystemError&) {  // device lost: nothing is running
+  for (const Half& half : halves_) {
+    if (half.running) device_.wait_at_end(half.fence);
   }
 }
 

@@ -35,8 +35,8 @@ namespace scarp {
 /// Rays on a device, by the addresses of buffers.
 struct DeviceRays {
   std::uint64_t ground = 0;  ///< DeviceGround::address()
-  std::uint64_t rays = 0;    ///< ScarpRay, `count` of them
-  std::uint64_t hits = 0;    ///< ScarpHit, room for as many; by any hit only the status is defined
+  std::uint64_t rays = 0;    ///< glsl::RayBlock, `count` rays in ray_blocks(count) of them
+  std::uint64_t hits = 0;    ///< glsl::HitBlock, room for as many; by any hit only the status is defined
   std::uint32_t count = 0;   ///< 1 to DeviceHeightMarch::kMostRaysAtOnce
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the marches ask of their host (cell_surface.glsl.h, max_mip.glsl.h), answered from accel/ground_buffers.glsl.h.
-// GLSL. Includers call open_ground() before a march: what is the same for all samples is read once. Those that know
+// GLSL. Includers call open_ground() before a march: what is the same for all samples is read once, since drivers do
+// not move loads through an address out of loops (test/march/height/turn_loads_test.cpp counts them). Those that know
 // the type of samples as a constant define SCARP_GROUND_TYPE.
 #ifndef SCARP_MARCH_GROUND_HOST_GLSL_H
 #define SCARP_MARCH_GROUND_HOST_GLSL_H
@@ -8,9 +9,9 @@
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/march/height/ray_frame.glsl.h"
 
-Ground opened;
-GroundWords opened_samples, opened_pyramid;
+Address opened_ground, opened_samples, opened_pyramid, opened_quads;
 uint opened_words, opened_type;
+uint opened_quad_cols, opened_quad_rows, opened_quad_stride;
 float opened_hole;
 
 #ifndef SCARP_GROUND_TYPE
@@ -20,10 +21,14 @@ float opened_hole;
 /// The ground at an address, as the marches want to know it.
 ScarpField open_ground(Address address) {
   Ground ground = Ground(address);
-  opened = ground;
-  opened_samples = GroundWords(ground.is.samples);
-  opened_pyramid = GroundWords(ground.is.pyramid);
+  opened_ground = address;
+  opened_samples = ground.is.samples;
+  opened_pyramid = ground.is.pyramid;
+  opened_quads = ground.is.quads;
   opened_words = ground.is.sample_words;
+  opened_quad_cols = ground.is.quad_cols;
+  opened_quad_rows = ground.is.quad_rows;
+  opened_quad_stride = ground.is.quad_stride;
   opened_type = ground.is.sample_type;
   opened_hole = ground_sample_value(ground, ground.is.hole);
   ScarpField field;
@@ -44,19 +49,20 @@ ScarpField open_ground(Address address) {
 }
 
 float scarp_sample(int col, int row) {
+  GroundWords samples = GroundWords(opened_samples);
   uint begin = uint(row) * opened_words;
-  if (SCARP_GROUND_TYPE == kGroundFloat32) return uintBitsToFloat(opened_samples.words[begin + uint(col)]);
-  uint word = opened_samples.words[begin + (uint(col) >> 1)];
+  if (SCARP_GROUND_TYPE == kGroundFloat32) return uintBitsToFloat(samples.words[begin + uint(col)]);
+  uint word = samples.words[begin + (uint(col) >> 1)];
   if (SCARP_GROUND_TYPE == kGroundInt16) return float(bitfieldExtract(int(word), (col & 1) << 4, 16));
   return float(bitfieldExtract(word, (col & 1) << 4, 16));
 }
 
 // Two words of memory: one load, where two indices would make two.
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GroundPair { uvec2 words; };
-// The address of word `index`, or with shift 3 of pair `index`.
-uvec2 ground_address(Address begin, uint index, uint shift) {
-  uint low = begin.x + (index << shift);
-  return uvec2(low, begin.y + (index >> (32u - shift)) + (low < begin.x ? 1u : 0u));
+// The address of a word.
+Address ground_address(Address begin, uint index) {
+  uint low = begin.x + (index << 2);
+  return Address(low, begin.y + (index >> 30) + (low < begin.x ? 1u : 0u));
 }
 
 /// The samples of a cell, by rows.
@@ -65,9 +71,11 @@ vec4 scarp_corners(int col, int row) {
     return vec4(scarp_sample(col, row), scarp_sample(col + 1, row), scarp_sample(col, row + 1),
                 scarp_sample(col + 1, row + 1));
   }
-  uvec2 north = ground_address(opened.is.samples, uint(row) * opened_words + uint(col), 2u);
-  uvec2 south = ground_address(north, opened_words, 2u);
-  return uintBitsToFloat(uvec4(GroundPair(north).words, GroundPair(south).words));
+  Address north = ground_address(opened_samples, uint(row) * opened_words + uint(col));
+  Address south = ground_address(north, opened_words);
+  uvec2 north_pair = GroundPair(north).words;
+  uvec2 south_pair = GroundPair(south).words;
+  return uintBitsToFloat(uvec4(north_pair, south_pair));
 }
 
 // All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
@@ -77,14 +85,13 @@ bool scarp_is_nodata(float value) {
 }
 
 uint pyramid_entry(int level, int col, int row) {
-  GroundLevel at = opened.is.levels[level - 1];
-  return opened_pyramid.words[at.begin + uint(row) * at.cols + uint(col)];
+  GroundLevel at = Ground(opened_ground).is.levels[level - 1];
+  return GroundWords(opened_pyramid).words[at.begin + uint(row) * at.cols + uint(col)];
 }
 float scarp_maximum(int level, int col, int row) { return float(ground_maximum(pyramid_entry(level, col, row))); }
 uvec2 scarp_quad(int level, int col, int row) {
-  uint index =
-      ground_quad(opened.is.quad_cols, opened.is.quad_rows, opened.is.quad_stride, uint(level), uint(col), uint(row));
-  return GroundPair(ground_address(opened.is.quads, index, 3u)).words;
+  uint index = ground_quad(opened_quad_cols, opened_quad_rows, opened_quad_stride, uint(level), uint(col), uint(row));
+  return GroundQuads(opened_quads).of[index];
 }
 float scarp_minimum(int level, int col, int row) { return float(ground_minimum(pyramid_entry(level, col, row))); }
 

@@ -14,7 +14,7 @@
 
 // Ray i as shaders for this kind of ground know it.
 ScarpRay known_ray(uint i) {
-  ScarpRay ray = batch_ray(i).is;
+  ScarpRay ray = batch_ray(i);
   if (batch_ground != kBatchAnyGround && (batch_ground & kScarpStarts) == 0u) ray.flags &= ~kScarpOnSurface;
   return ray;
 }

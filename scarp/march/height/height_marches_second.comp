@@ -15,7 +15,7 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
-  ScarpRay ray = batch_ray(i).is;
+  ScarpRay ray = batch_ray(i);
   ScarpField field = batch_field(ray);
   ScarpSampling settings = batch.settings;
   settings.march = batch_march;

@@ -14,12 +14,12 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
-  ScarpField field = batch_field(batch_ray(i).is);
+  ScarpField field = batch_field(batch_ray(i));
   ScarpLean at = scarp_lean_begin();
   for (;;) {
     ScarpHit hit;
     // The ray is read again for each frame: in registers it would be in the way of the walk.
-    if (!scarp_lean_on(field, batch_ray(i).is, batch_any, at, hit)) continue;
+    if (!scarp_lean_on(field, batch_ray(i), batch_any, at, hit)) continue;
     // Answered in here: lavapipe (Mesa 22.3) gives a lane that has left the loop what others make after it.
     batch_answer(i, hit);
     if (hit.status == kScarpDoubtful) batch_mark();

@@ -13,7 +13,7 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
-  ScarpRay ray = batch_ray(i).is;
+  ScarpRay ray = batch_ray(i);
   ScarpField field = batch_field(ray);
   ScarpHit hit = scarp_no_hit();
   ScarpWalk walk;

@@ -12,17 +12,72 @@
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_march_vk.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 
 namespace scarp {
 namespace {
 
-// The states of interrupted marches stay on the device.
 struct HeightRays {
   using Prepared = DeviceRay;
-  using Ray = glsl::ScarpRay;
   using Hit = glsl::ScarpHit;
   static Hit none() { return {}; }
+};
+
+// Rays and answers lie in blocks, and the states of interrupted marches stay on the device.
+class HeightRuns : public RaySlices<HeightRays> {
+ public:
+  HeightRuns(const Device& device, std::uint32_t rays_at_once)
+      : RaySlices(device, rays_at_once),
+        rays_(device, glsl::ray_blocks(slice_) * sizeof(glsl::RayBlock), "rays"),
+        answers_(device, glsl::ray_blocks(slice_) * sizeof(glsl::HitBlock), "hits") {}
+
+  // begin(commands, rays, hits, count) records the first run of a march on buffers of these addresses,
+  // go_on(commands) the next one, or returns false if there is none.
+  template <class Begin, class GoOn, class Prepare, class Answer>
+  void ask(const Begin& begin, const GoOn& go_on, std::size_t count, const Prepare& prepare, const Answer& answer) {
+    ask_in_slices(count, prepare, answer, [&] {
+      // Each ray keeps its place. Those that do not march end at once.
+      const std::size_t blocks = glsl::ray_blocks(prepared_.size());
+      packed_.resize(blocks);
+      for_each_ray([&](std::size_t block, std::uint32_t i, std::size_t ray) {
+        glsl::put_ray({packed_[block]}, i, prepared_[ray].ray);
+      });
+      upload(rays_, 0, packed_.data(), blocks * sizeof(glsl::RayBlock));
+      begin(commands_, rays_.address(), answers_.address(), static_cast<std::uint32_t>(prepared_.size()));
+      do run();
+      while (go_on(commands_));
+      answered_.resize(blocks);
+      download(answers_, 0, answered_.data(), blocks * sizeof(glsl::HitBlock));
+      for_each_ray([&](std::size_t block, std::uint32_t i, std::size_t ray) {
+        found_[ray] = glsl::hit_of_block({answered_[block]}, i);
+      });
+    });
+  }
+
+  // The rays of the last slice once more, which are still there.
+  template <class Begin, class GoOn>
+  void ask_again(const Begin& begin, const GoOn& go_on) {
+    passes_.clear();
+    if (packed_.empty()) return;
+    begin(commands_, rays_.address(), answers_.address(), static_cast<std::uint32_t>(prepared_.size()));
+    do run();
+    while (go_on(commands_));
+  }
+
+ private:
+  // body(block, i, ray) for each ray of the slice, the i-th of a block.
+  template <class Body>
+  void for_each_ray(const Body& body) const {
+    static_assert(kRaysPerPiece % glsl::kRayBlock == 0);
+    for_each(prepared_.size(), [&](std::size_t ray) {
+      body(ray / glsl::kRayBlock, static_cast<std::uint32_t>(ray % glsl::kRayBlock), ray);
+    });
+  }
+
+  DeviceBuffer rays_, answers_;
+  std::vector<glsl::RayBlock> packed_;
+  std::vector<glsl::HitBlock> answered_;
 };
 
 glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
@@ -60,6 +115,13 @@ struct DeviceQueries::Impl {
     march.reserve(settings.rays_at_once);
   }
 
+  // Records the first run of a march.
+  auto begin(std::uint64_t ground, const DeviceRayQuery& query) {
+    return [this, ground, query](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
+      march.begin(commands, {ground, rays, hits, count}, query);
+    };
+  }
+
   // Calls answer(i, prepared, hit) for each ray, on all threads.
   template <class Answer>
   void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
@@ -70,11 +132,10 @@ struct DeviceQueries::Impl {
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
     query.exact_only = exact_only || leaves_first_pass(*target.field);
     if (!exact) query.sampling = sampling_of(name, march_settings, target);
-    runs.ask_there(
-        [&](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
-          march.begin(commands, {target.ground->address(), rays, hits, count}, query);
-        },
-        [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
+    last_ground = target.ground->address();
+    last_query = query;
+    runs.ask(
+        begin(target.ground->address(), query), [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
         [&](std::size_t i) {
           return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i], clip_at_top);
         },
@@ -85,11 +146,17 @@ struct DeviceQueries::Impl {
         });
   }
 
+  void ask_again() {
+    runs.ask_again(begin(last_ground, last_query), [&](Commands& commands) { return march.go_on(commands); });
+  }
+
   std::string_view name;
   MarchSettings march_settings;
-  RayRuns<HeightRays> runs;
+  HeightRuns runs;
   bool statistics, exact_only, clip_at_top;
   DeviceHeightMarch march;
+  std::uint64_t last_ground = 0;
+  DeviceRayQuery last_query{};
 };
 
 DeviceQueries::DeviceQueries(const Device& device, const HeightMarchEntry& march, const MarchSettings& march_settings,
@@ -121,6 +188,8 @@ void DeviceQueries::occluded(const DeviceTarget& target, std::span<const Ray> ra
     blocked[i] = prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
   });
 }
+
+void DeviceQueries::march_again() { impl_->ask_again(); }
 
 const std::vector<PassTime>& DeviceQueries::passes() const { return impl_->runs.passes(); }
 

@@ -70,6 +70,10 @@ class DeviceQueries {
   void occluded(const DeviceTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<DeviceRayCost> costs = {});
 
+  /// Marches the rays of the last call once more, or its last slice; their answers stay on the device. For benchmarks:
+  /// cards lower their clocks while the host prepares rays, so times mean something after many runs in a row.
+  void march_again();
+
   /// Returns the times of the last call's runs. A slice takes one run, or more if marches exceed turns_at_once.
   const std::vector<PassTime>& passes() const;
 

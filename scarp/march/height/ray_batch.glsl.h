@@ -3,8 +3,8 @@
 // upon, and the ground as the marches ask for it (cell_surface.glsl.h, max_mip.glsl.h), from
 // accel/ground_buffers.glsl.h.
 //
-//   RayBatch ──rays──▶ ScarpRay ScarpRay ...     one invocation each
-//       │  ├──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
+//   RayBatch ──rays──▶ RayBlock RayBlock ...     one invocation for each ray (ray_blocks.glsl.h)
+//       │  ├──hits───▶ HitBlock HitBlock ...     the answers, in the same order
 //       │  ├──states─▶ batch_states.glsl.h       where marches stand that are not done
 //       │  └──under_way─▶ a word                 1 if there are such; who begins a run clears it
 //       └────ground──▶ GroundBuffers
@@ -16,7 +16,7 @@
 #define SCARP_MARCH_RAY_BATCH_GLSL_H
 
 #include "scarp/accel/ground_buffers.glsl.h"
-#include "scarp/march/height/ray_frame.glsl.h"
+#include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
@@ -53,18 +53,10 @@ struct RayBatch {
   Address under_way;
 };
 
-/// Sizes of ScarpRay and ScarpHit.
-const uint kBatchRayBytes = 92u;
-const uint kBatchHitBytes = 36u;
-
 /// The status of a march that goes on in the next run.
 const int kBatchUnderWay = kScarpDoubtful;
 
-#ifdef __cplusplus
-
-static_assert(sizeof(ScarpRay) == kBatchRayBytes && sizeof(ScarpHit) == kBatchHitBytes);
-
-#else
+#ifndef __cplusplus
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool batch_any = false;
@@ -73,26 +65,22 @@ layout(constant_id = 3) const uint batch_march = kScarpNaive;
 layout(constant_id = 4) const uint batch_ground = kBatchAnyGround;
 layout(constant_id = 5) const uint batch_refinement = kScarpRefineNone;
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRay { ScarpRay is; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHit { ScarpHit is; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchWord { uint word; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
 #define SCARP_GROUND_TYPE (batch_ground == kBatchAnyGround ? opened_type : batch_ground >> kBatchSamplesShift)
 #include "scarp/march/height/ground_host.glsl.h"
 
-// The ray and the hit of an invocation, by 32 bits: batches have less than 2^32 bytes.
-Address batch_address(Address begin, uint offset) {
-  uint low = begin.x + offset;
-  return Address(low, begin.y + (low < begin.x ? 1u : 0u));
+// The ray of an invocation, and the block of its answer.
+ScarpRay batch_ray(uint i) {
+  return ray_of_block(RayBlockAt(ray_block_address(batch.rays, i, kRayBlockBytes)), i % kRayBlock);
 }
-BatchRay batch_ray(uint i) { return BatchRay(batch_address(batch.rays, i * kBatchRayBytes)); }
-BatchHit batch_hit(uint i) { return BatchHit(batch_address(batch.hits, i * kBatchHitBytes)); }
+HitBlockAt batch_hits(uint i) { return HitBlockAt(ray_block_address(batch.hits, i, kHitBlockBytes)); }
 
 // Whether this run is to march ray i.
 bool batch_asks(uint i) {
   if (i >= batch.count) return false;
-  return batch.resume == kBatchBegin || batch_hit(i).is.status == kBatchUnderWay;
+  return batch.resume == kBatchBegin || batch_hits(i).is.status[i % kRayBlock] == kBatchUnderWay;
 }
 
 // The ground as a ray has it.
@@ -107,7 +95,7 @@ ScarpField batch_field(ScarpRay ray) {
 void batch_mark() { BatchWord(batch.under_way).word = 1u; }
 // That of ray i has not.
 void batch_interrupt(uint i) {
-  batch_hit(i).is.status = kBatchUnderWay;
+  batch_hits(i).is.status[i % kRayBlock] = kBatchUnderWay;
   batch_mark();
 }
 
@@ -118,13 +106,14 @@ void batch_answer(uint i, ScarpHit hit) {
     hit.fetches = 0u;
   }
   if (batch_any) {
-    batch_hit(i).is.status = hit.status;
+    uint j = i % kRayBlock;
+    batch_hits(i).is.status[j] = hit.status;
     if (!batch_statistics) return;
-    batch_hit(i).is.steps = hit.steps;
-    batch_hit(i).is.fetches = hit.fetches;
+    batch_hits(i).is.steps[j] = hit.steps;
+    batch_hits(i).is.fetches[j] = hit.fetches;
     return;
   }
-  batch_hit(i).is = hit;
+  put_hit(batch_hits(i), i % kRayBlock, hit);
 }
 
 #endif

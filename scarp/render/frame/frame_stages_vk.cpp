@@ -164,8 +164,8 @@ void FrameStages::reserve(std::uint32_t pixels) {
   };
   push_.seens = address(seens_, pixels * seens_per_pixel(water) * sizeof(glsl::FrameSeen));
   if (water) push_.waters = address(waters_, pixels * sizeof(glsl::FrameWater));
-  push_.rays = address(rays_, rays * sizeof(glsl::ScarpRay));
-  push_.hits = address(hits_, rays * sizeof(glsl::ScarpHit));
+  push_.rays = address(rays_, glsl::ray_blocks(rays) * sizeof(glsl::RayBlock));
+  push_.hits = address(hits_, glsl::ray_blocks(rays) * sizeof(glsl::HitBlock));
   push_.owners = address(owners_, rays * 4);
   push_.grounds = address(grounds_, rays * 4);
   push_.counters = address(counters_, sizeof(glsl::FrameCounters));

@@ -10,7 +10,7 @@
 //       │  ├──ground────▶ GroundBuffers
 //       │  ├──seens─────▶ FrameSeen, the camera's of all pixels; then mirrored ones, then those to the water's bottom
 //       │  ├──waters────▶ FrameWater of each pixel, if there is water
-//       │  ├──rays──────▶ ScarpRay for the march, one after another, whatever they are for;  ──hits──▶ its answers
+//       │  ├──rays──────▶ RayBlock for the march, ray after ray, whatever they are for;  ──hits──▶ its answers
 //       │  ├──owners────▶ of each ray the index of its FrameSeen
 //       │  ├──grounds───▶ indices of those that see ground, which is to be lit and painted
 //       │  ├──counters──▶ FrameCounters: how many rays and grounds there are

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sends rays to the march, for the stages that make some and include this. GLSL.
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Rays { ScarpRay of[]; };
+#include "scarp/march/height/ray_blocks.glsl.h"
 
 // Writes what is known of a ray before it is marched. The rest means something where it meets ground.
 void keep(uint i, FrameSeen seen) {
@@ -34,6 +34,6 @@ void list_ray(ScarpSent sent, float step, uint seen) {
   uint at = atomicAdd(Counters(push.counters).are.rays, 1u);
   // The march counts steps in cells of a time that the ray tells.
   if (stepped) sent.ray.cell_time *= step;
-  Rays(push.rays).of[at] = sent.ray;
+  put_ray(RayBlockTo(ray_block_address(push.rays, at, kRayBlockBytes)), at % kRayBlock, sent.ray);
   Indices(push.owners).of[at] = seen;
 }

@@ -8,12 +8,11 @@
 
 #include "scarp/render/frame/terrain_frame_stage.glsl.h"
 // It asks the stage for its ground.
+#include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/height/surface_normal.glsl.h"
 
 layout(constant_id = 4) const bool of_light = false;
 layout(constant_id = 5) const bool lists_ground = true;
-
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Hits { ScarpHit of[]; };
 
 void take_light(uint i, bool met) {
   if (met) return;
@@ -27,7 +26,7 @@ void take_light(uint i, bool met) {
 void main() {
   uint at = gl_GlobalInvocationID.x;
   if (at >= push.threads) return;
-  ScarpHit hit = Hits(push.hits).of[at];
+  ScarpHit hit = hit_of_block(HitBlockAt(ray_block_address(push.hits, at, kHitBlockBytes)), at % kRayBlock);
   uint i = Indices(push.owners).of[at];
   bool met = hit.status == kScarpHit || hit.status == kScarpWall;
   if (of_light) {

@@ -35,9 +35,13 @@ class BatchesOnDevice : public OnDevice {
                 const DeviceRayQuery& query) {
     Marched marched;
     marched.hits.resize(rays.size());
-    DeviceBuffer there(device(), rays.size() * sizeof(glsl::ScarpRay), "rays"),
-        hits(device(), rays.size() * sizeof(glsl::ScarpHit), "hits");
-    upload(there, 0, rays.data(), there.bytes());
+    std::vector<glsl::RayBlock> ray_blocks(glsl::ray_blocks(rays.size()));
+    std::vector<glsl::HitBlock> hit_blocks(ray_blocks.size());
+    for (std::uint32_t i = 0; i < rays.size(); ++i)
+      glsl::put_ray({ray_blocks[i / glsl::kRayBlock]}, i % glsl::kRayBlock, rays[i]);
+    DeviceBuffer there(device(), ray_blocks.size() * sizeof(glsl::RayBlock), "rays"),
+        hits(device(), hit_blocks.size() * sizeof(glsl::HitBlock), "hits");
+    upload(there, 0, ray_blocks.data(), there.bytes());
     Commands commands(device());
     march.begin(commands, {ground.address(), there.address(), hits.address(), static_cast<std::uint32_t>(rays.size())},
                 query);
@@ -45,7 +49,9 @@ class BatchesOnDevice : public OnDevice {
       commands.run();
       ++marched.runs;
     } while (march.go_on(commands));
-    download(hits, 0, marched.hits.data(), hits.bytes());
+    download(hits, 0, hit_blocks.data(), hits.bytes());
+    for (std::uint32_t i = 0; i < rays.size(); ++i)
+      marched.hits[i] = glsl::hit_of_block({hit_blocks[i / glsl::kRayBlock]}, i % glsl::kRayBlock);
     return marched;
   }
 

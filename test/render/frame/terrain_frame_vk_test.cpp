@@ -22,6 +22,7 @@
 
 #include "cases.h"
 #include "render/terrain.h"
+#include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
 #include "scarp/scene/scene_vk.h"
@@ -607,7 +608,7 @@ TEST(TerrainFrameLayout, IsThatOfTheShaders) {
   EXPECT_TRUE(is_laid_out_like<glsl::FrameSettings>(kRaysShader));
   EXPECT_TRUE(is_laid_out_like<glsl::FrameSeen>(kRaysShader));
   EXPECT_TRUE(is_laid_out_like<glsl::FrameWater>(kRaysShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::ScarpRay>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::RayBlock>(kRaysShader));
   EXPECT_TRUE(is_laid_out_like<glsl::FrameSum>(kResolveShader));
 }
 
