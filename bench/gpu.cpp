@@ -38,9 +38,10 @@ constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
 constexpr std::int64_t kMoreJudged = 16;
 constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
-// Of cards, before the runs that are timed, and how many these are.
-constexpr std::chrono::milliseconds kWarmUp{100};
-constexpr int kRunsInARow = 9;
+// Of cards: runs of a group, groups that are no faster than the best one before it counts, and the limit of time.
+constexpr int kRunsInARow = 9, kGroups = 20;
+constexpr double kFaster = 0.99;
+constexpr std::chrono::seconds kMostInARow{3};
 // Share of wrong rays of naive-wrong, and of hits of naive-position that are lost or off.
 constexpr double kNearlyRight = 0.001;
 // Steps per ray beyond which the search for naive's settings ends.
@@ -284,19 +285,24 @@ class Comparison {
     add("naive-wrong-equal", naive_, [&](const Judgement& judged) { return judged.wrong_rate <= max_mip_wrong; });
   }
 
-  // Time of the rays that a device has marched last: of cards the median of runs in a row, after some that bring its
-  // clocks up. While the host prepares rays they fall, and one run takes up to six times as long.
+  // Time of the rays that a device has marched last: of cards the median of the fastest group of runs in a row. While
+  // the host prepares rays its clocks fall, and a run takes up to six times as long until they have come up again.
   double seconds_of_last(DeviceQueries& queries) const {
     if (is_cpu(device_)) return device_seconds(device_, queries.passes());
     const auto again = [&] {
       queries.march_again();
       return device_seconds(device_, queries.passes());
     };
-    const auto begin = std::chrono::steady_clock::now();
-    while (std::chrono::steady_clock::now() - begin < kWarmUp) again();
-    std::vector<double> times(kRunsInARow);
-    for (double& time : times) time = again();
-    return median(times);
+    const auto end = std::chrono::steady_clock::now() + kMostInARow;
+    double best = std::numeric_limits<double>::infinity();
+    for (int slower = 0; slower < kGroups && std::chrono::steady_clock::now() < end;) {
+      std::vector<double> times(kRunsInARow);
+      for (double& time : times) time = again();
+      const double group = median(times);
+      slower = group < kFaster * best ? 0 : slower + 1;
+      best = std::min(best, group);
+    }
+    return best;
   }
 
   // One pass of each to warm up, then passes in turn.

@@ -57,24 +57,17 @@ float scarp_sample(int col, int row) {
   return float(bitfieldExtract(word, (col & 1) << 4, 16));
 }
 
-// Two words of memory: one load, where two indices would make two.
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GroundPair { uvec2 words; };
-// The address of a word.
-Address ground_address(Address begin, uint index) {
-  uint low = begin.x + (index << 2);
-  return Address(low, begin.y + (index >> 30) + (low < begin.x ? 1u : 0u));
-}
-
 /// The samples of a cell, by rows.
 vec4 scarp_corners(int col, int row) {
   if (SCARP_GROUND_TYPE != kGroundFloat32) {
     return vec4(scarp_sample(col, row), scarp_sample(col + 1, row), scarp_sample(col, row + 1),
                 scarp_sample(col + 1, row + 1));
   }
-  Address north = ground_address(opened_samples, uint(row) * opened_words + uint(col));
-  Address south = ground_address(north, opened_words);
-  uvec2 north_pair = GroundPair(north).words;
-  uvec2 south_pair = GroundPair(south).words;
+  GroundWords samples = GroundWords(opened_samples);
+  uint north = uint(row) * opened_words + uint(col);
+  uint south = north + opened_words;
+  uvec2 north_pair = uvec2(samples.words[north], samples.words[north + 1u]);
+  uvec2 south_pair = uvec2(samples.words[south], samples.words[south + 1u]);
   return uintBitsToFloat(uvec4(north_pair, south_pair));
 }
 
