@@ -30,7 +30,18 @@ TwoFloats two_floats(double x) {
   return sum;
 }
 
-bool inside(double o, int cells) { return o >= 0 && o <= cells; }
+// The part of a ray that counts as over the field along one axis: with the allowance of the border, within which a
+// nearly vertical ray may come down to it.
+template <bool Wraps>
+struct AxisTimes {
+  double enter, exit;
+  explicit AxisTimes(const GridAxis<Wraps>& axis) {
+    const double off = HeightField::rounding_of_line(axis.origin, axis.cells);
+    const double late = axis.moves() ? off * std::abs(axis.per_direction) : 0;
+    enter = axis.enter_time() - late, exit = axis.exit_time() + late;
+    if (!axis.moves() && !(axis.origin >= -off && axis.origin <= axis.cells + off)) exit = -HUGE_VAL;
+  }
+};
 
 // A ray as two floats per number. Times beyond kScarpNever are told as that.
 void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
@@ -97,11 +108,11 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     y.begin_in(cell.row, begin);
     flags |= glsl::kScarpOnSurface;
   }
+  const AxisTimes<Wraps> across_x(x), across_y(y);
   if constexpr (!Wraps) {
-    if ((!x.moves() && !inside(local.origin.x, x.cells)) || (!y.moves() && !inside(local.origin.y, y.cells)))
-      return result;
-    const double border = std::max(x.enter_time(), y.enter_time());
-    way = std::min({last, x.exit_time(), y.exit_time()});
+    const double border = std::max(across_x.enter, across_y.enter);
+    way = std::min({last, across_x.exit, across_y.exit});
+    if (!(way > -HUGE_VAL)) return result;
     if (!strict) {
       if (border >= begin) flags |= glsl::kScarpFromOutside;
       begin = std::max(begin, border);
@@ -122,7 +133,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   if (!strict)
     cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
 
-  const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
+  double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
   // What is left of the way: only walls are met above or below all ground.
   const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
   const bool walls = field.settings().solid && field.nodata_count() > 0;
@@ -137,11 +148,16 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   };
   dvec3 direction{stands(x) ? 0 : x.direction, stands(y) ? 0 : y.direction, dz};
   // Who stands still does not come to a border by himself.
-  if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, x.exit_time());
-  if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, y.exit_time());
+  if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, across_x.exit);
+  if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, across_y.exit);
   double length = std::max(end - begin, 0.0);
   if ((direction.x == 0 && direction.y == 0) || std::abs(dz) > kSteepest) {
     flags |= glsl::kScarpUpright;
+    // One cell: that with ground, beside the rim of a hole.
+    if (!strict) {
+      const HeightField::Place ground = field.ground_at({cell, u, v});
+      cell = ground.cell, u = ground.u, v = ground.v;
+    }
     const int upright = dz == 0 ? 0 : std::ilogb(dz);
     direction = {0, 0, std::ldexp(dz, -upright)};
     length = std::ldexp(std::min(end, exit) - begin, upright);

@@ -34,6 +34,7 @@ struct Piece {
   Cell cell;
   double col, row;       // of the cell; in a wrapped field, of the copy below the ray
   double a, b, c, last;  // last: f at the span's end
+  bool rim = false;      // beside the cell, over its edge
 
   double length() const { return span.end - span.begin; }
   // The two roots of f, the lower first; nullopt if there are none.
@@ -59,7 +60,9 @@ struct Piece {
 
 class Ground {
  public:
-  Ground(const HeightField& field, const Ray& ray, Sides side) : field_(field), up_(side == Sides::below ? -1 : 1) {
+  Ground(const HeightTarget& target, const Ray& ray, Sides side)
+      : field_(*target.field), up_(side == Sides::below ? -1 : 1) {
+    const HeightField& field = field_;
     const HeightFieldSettings& to = field.settings();
     ox_ = ray.origin.x / to.cell_x;
     oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
@@ -67,6 +70,9 @@ class Ground {
     dx_ = ray.direction.x / to.cell_x;
     dy_ = -ray.direction.y / to.cell_y;
     dz_ = up_ * ray.direction.z / (to.exaggeration * to.scale);
+    // 8 roundings of a position and of a line's time, for each of two fields that meet.
+    off_x_ = target.seam + 16 * 0x1p-53 * (std::abs(ox_) + field.cell_cols());
+    off_y_ = target.seam + 16 * 0x1p-53 * (std::abs(oy_) + field.cell_rows());
   }
 
   void move_height(double by) { oz_ += by; }
@@ -154,18 +160,31 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // How far below the surface a ray may come in over the line at the start of a piece and count as touching it, where
-  // fields that meet are placed apart by rounding (HeightTarget::seam).
-  double seam_height(const Piece& p, const HeightTarget& target) const {
-    const auto time = [&](double o, double d, double near) {
-      return d == 0 ? -kInfinity : (near + (d > 0 ? 0 : 1) - o) / d;
-    };
-    const bool over_column = time(ox_, dx_, p.col) >= time(oy_, dy_, p.row);
-    const double across = std::abs(over_column ? dx_ : dy_), along = std::abs(over_column ? dy_ : dx_);
-    // A ray that almost runs along the line comes in at most a cell later.
-    const double late = std::min(target.seam / across, 1 / along);
-    const double relief = field_.max_sample() - field_.min_sample();
-    return target.seam_step + late * (std::abs(dz_) + along * relief) + target.seam * relief;
+  // How far below the surface a ray may come in and count as touching it, where fields that meet are placed apart by
+  // rounding (HeightTarget::seam).
+  static double seam_height(const HeightTarget& target) {
+    return target.seam_step + target.seam * (target.field->max_sample() - target.field->min_sample());
+  }
+
+  // The pieces over the rims of the ground around a cell without: the ground continues level beside them, as far as
+  // rounding may move the ray.
+  void add_rims(double col, double row, Span span, std::vector<Piece>& to) const {
+    for (double y = row - 1; y <= row + 1; ++y) {
+      for (double x = col - 1; x <= col + 1; ++x) {
+        const Span near =
+            common(strip(ox_, dx_, x - off_x_, 1 + 2 * off_x_), strip(oy_, dy_, y - off_y_, 1 + 2 * off_y_));
+        const Span over = common(span, near);
+        if (over.empty() || !is_ground(x, y)) continue;
+        const Cell cell{within(x, field_.cell_cols()), within(y, field_.cell_rows())};
+        const CellHeights h = *heights(cell);
+        Piece p = field_.settings().surface == Surface::bilinear ? bilinear_piece(h, cell, x, y, over)
+                                                                 : triangle_piece(h, cell, x, y, over);
+        p.rim = true;
+        p.a = 0;
+        p.b = std::isinf(p.last) || p.length() == 0 ? dz_ : (p.last - p.c) / p.length();
+        to.push_back(p);
+      }
+    }
   }
 
   bool is_ground(double col, double row) const {
@@ -186,7 +205,9 @@ class Ground {
     const auto touched = [&](double o, double d, Span over, int cells) {
       const double from = d == 0 ? o : o + d * over.begin, to = d == 0 ? o : o + d * over.end;
       const double first = std::floor(std::min(from, to)) - 1, last = std::floor(std::max(from, to)) + 1;
-      return wraps ? Span{first, last} : Span{std::clamp(first, 0.0, cells - 1.0), std::clamp(last, 0.0, cells - 1.0)};
+      // One more beside the field, for its border.
+      const double most = cells;
+      return wraps ? Span{first, last} : Span{std::clamp(first, -1.0, most), std::clamp(last, -1.0, most)};
     };
     const Span over_rows = touched(oy_, dy_, range, rows);
     for (double row = over_rows.begin; row <= over_rows.end; ++row) {
@@ -207,11 +228,18 @@ class Ground {
           std::swap(over_cell.begin, over_cell.end);
           over_cell.begin = std::max(over_cell.begin, range.begin);
         }
-        if (!over_cell.empty() && over_cell.begin <= range.end) add_pieces(col, row, over_cell, found);
+        if (over_cell.empty() || over_cell.begin > range.end) continue;
+        if (is_ground(col, row)) {
+          add_pieces(col, row, over_cell, found);
+        } else if (!start) {
+          add_rims(col, row, over_cell, found);
+        }
       }
     }
     std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
-      return p.span.begin != q.span.begin ? p.span.begin < q.span.begin : p.span.end < q.span.end;
+      if (p.span.begin != q.span.begin) return p.span.begin < q.span.begin;
+      if (p.span.end != q.span.end) return p.span.end < q.span.end;
+      return !p.rim && q.rim;  // ground comes before the rims beside it: an upright ray on the border is over both
     });
     return found;
   }
@@ -249,6 +277,7 @@ class Ground {
   const HeightField& field_;
   double up_;
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
+  double off_x_, off_y_;                // cells by which rounding may move it from a line
 };
 
 // First s in the piece at which a ray from above is on or below the surface. A ray that started on the surface must be
@@ -290,7 +319,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
   };
   HitStatus without = HitStatus::miss;
   if (!field.has_cells()) return without;
-  Ground ground(field, ray, from);
+  Ground ground(target, ray, from);
   enum class Side { unknown, above, below } side = Side::unknown;
   if (on_surface) {
     const auto start = ground.clearance_at(ray.start_cell, ray.t_min);
@@ -323,22 +352,23 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (p.length() > 0 && p.span.end <= reached) continue;
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
+    const bool came_to_rim = p.rim && side == Side::unknown;
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
       side = p.c < 0 ? Side::below : Side::above;
       const bool meets = target.seam > 0 || target.seam_step > 0;
-      if (side == Side::below && meets && came_in && !on_surface && -p.c <= ground.seam_height(p, target)) {
+      if (side == Side::below && meets && came_in && !on_surface && -p.c <= Ground::seam_height(target)) {
         if (!found(ground.hit(p, 0))) return without;
       }
-      if (side == Side::below && field.settings().solid && from == Sides::above && came_in) {
+      if (side == Side::below && field.settings().solid && from == Sides::above && came_in && !p.rim) {
         Hit hit = ground.hit(p, 0);
         hit.wall = true;
         if (!found(hit)) return without;
       }
     }
     // Where it only passes a corner of the ground, into a hole, it does not begin there.
-    const bool begins = p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
+    const bool begins = !p.rim && p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
     if (side == Side::below && !on_surface && begins) without = HitStatus::below;
     // A ray from below has risen only beyond rounding: otherwise it could be above at one line and, by rounding, not
     // above at the next.
@@ -346,7 +376,8 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (side == Side::below && p.c > rounding) side = Side::above;
     const auto depth = on_surface ? std::optional(rounding) : std::nullopt;
     // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece.
-    if (side == Side::above && !depth && p.c <= 0) {
+    // Where it does not sink beside the rim, it reaches the surface behind the rim.
+    if (side == Side::above && !depth && p.c <= 0 && !(p.rim && p.last >= 0)) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
     }
@@ -358,6 +389,9 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
       side = Side::below;
     }
     if (side == Side::below && (p.last > rounding || (rises && !s))) side = Side::above;
+    // A wall behind the rim is met by the ray that comes in below it.
+    if (came_to_rim && side == Side::below && from == Sides::above && !s && field.settings().solid)
+      side = Side::unknown;
   }
   return without;
 }
@@ -421,9 +455,8 @@ Hit march_exhaustive_by_rules(const HeightTarget& target, const Ray& ray, const 
   // A ray that may be on either side of the surface that it starts on does not hit it there.
   const bool leaves = rules.sides == Sides::both && ray.start == RayStart::on_surface;
   const double started =
-      leaves
-          ? usual.ray().t_min + 2 * Ground(*target.field, usual.ray(), Sides::above).rounding_of_time(usual.ray().t_min)
-          : -kInfinity;
+      leaves ? usual.ray().t_min + 2 * Ground(target, usual.ray(), Sides::above).rounding_of_time(usual.ray().t_min)
+             : -kInfinity;
   for (const Sides side : {Sides::above, Sides::below}) {
     if (rules.sides != Sides::both && rules.sides != side) continue;
     const HitStatus without = follow(target, usual.ray(), side, stats, [&](const Hit& found) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "scarp/march/height/cells_beside.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/height/max_mip_rims.h"
 #include "scarp/march/height/rounding.h"
 #include "scarp/march/height/walk_ground.h"
 #include "scarp/march/height/walk_query.h"
@@ -22,10 +24,6 @@
 // cell is inlined, and the rare ones are not.
 namespace scarp::max_mip {
 namespace {
-
-// Side of the ray at the entry of the current cell, as far as known. Without holes it is unknown in the first cell
-// only.
-enum class Side { unknown, above, below };
 
 // How the ray got to its position: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
@@ -62,14 +60,16 @@ class Walk {
       if (wanted_.t_clear > t_in_ && !skip_on(wanted_.t_clear)) return;
     } else {
       if (!enter()) {
-        if (!Wraps && side_ == Side::above) touch_border_on_exit();
+        if (!Wraps && side_ == Side::above) follow_rim_on_exit();
         return;
       }
       if (!x_.moves() && !y_.moves()) return vertical();
       if (Holes && side_ == Side::unknown && ground_.is_hole(col_, row_) && touches(t_in_)) return;
     }
+    // Blocks do not have the rims of those beside them.
+    if (Holes && !strict_ && rim(grid_ray()).slow(t_in_, t_end_)) top_ = level_ = 0, slow_ = true;
     while (walk()) enter_next_copy();
-    if (!Wraps) touch_border_on_exit();
+    if (!Wraps) follow_rim_on_exit();
   }
 
   /// For a ray from the surface: processes the first cell only.
@@ -131,11 +131,8 @@ class Walk {
       }
       // A coarse block may extend beyond the last row or column; the ray's end does not.
       t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
-      // A ray parallel to an axis is inside the strip or not; written so that NaN is a miss.
-      const auto beside = [&](const Axis& axis) {
-        return !axis.moves() && !(axis.origin >= -seam_ && axis.origin <= axis.cells + seam_);
-      };
-      if (beside(x_) || beside(y_)) return false;
+      if (!rim(grid_ray()).over_strips()) return false;
+      if ((from_outside_ || !(t_in_ <= t_end_)) && follow_rim_on_entry()) return false;
     }
     if (!(t_in_ <= t_end_)) return false;
     bound_rounding();
@@ -273,7 +270,10 @@ class Walk {
   // Straight up or down: one cell, one height.
   void vertical() {
     ++stats.steps;
-    if (Holes && ground_.is_hole(col_, row_)) return;
+    if (Holes && ground_.is_hole(col_, row_)) {
+      follow_rim(t_in_, t_end_, {col_ - 1, col_ + 1, row_ - 1, row_ + 1}, side_);
+      return;
+    }
     ++stats.cell_tests;
     const double ground = surface(ground_.cell(col_, row_), t_in_), above = ray_height(t_in_) - ground;
     if (above < 0 && side_ != Side::above) {
@@ -302,7 +302,9 @@ class Walk {
     const double t_exit = std::min(x.exit_time(), y.exit_time()), t_end = Wraps ? std::min(t_end_, t_exit) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
-    const double beside_node = Holes ? rounding_of_node() : 0;
+    const double beside_node =
+        Holes ? std::max(rounding_of_line(field_, grid_ray(), 0, seam_), rounding_of_line(field_, grid_ray(), 1, seam_))
+              : 0;
     // Passing the corner of a hole or block does not leave the ground: in over one line, out over the other, and at
     // once by the axis that does not have the second.
     const auto cuts_corner = [&](bool out_over_x, double begin, double end) {
@@ -350,7 +352,10 @@ class Walk {
           continue;
         }
       } else if (Holes && ground_.is_hole(col, row)) {
-        if (begun_ && side_ != Side::below && touches(t_in)) break;
+        if (slow_ ? follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, side_)
+                  : begun_ && side_ != Side::below && touches(t_in)) {
+          break;
+        }
         if (!cuts_corner(through_x, t_in, t_line)) side_ = Side::unknown;
         if (lost(t_in)) break;
       } else {
@@ -464,30 +469,11 @@ class Walk {
     return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
   }
 
-  double rounding_of_node() const {
-    return std::max(rounding_of_line(field_, grid_ray(), 0, seam_), rounding_of_line(field_, grid_ray(), 1, seam_));
-  }
-
-  // Whether a ray that is not below the ground touches it at t, on a line: in any of the cells there, since rims are
-  // closed. Returns true if that is the answer.
+  // Whether a ray that is not below the ground touches it at t, on a line. Returns true if that is the answer.
   [[gnu::noinline]] bool touches(double t) {
     if (strict_) return false;
-    const GridRay ray = grid_ray();
-    const CellsBeside x(x_, t, rounding_of_line(field_, ray, 0, seam_));
-    const CellsBeside y(y_, t, rounding_of_line(field_, ray, 1, seam_));
-    for (int i = 0; i < x.count * y.count; ++i) {
-      const int west = i % x.count, north = i / x.count, col = x.cell[west], row = y.cell[north];
-      if (!x_.inside(col) || !y_.inside(row) || (Holes && ground_.is_hole(col, row))) continue;
-      const CellHeights h = ground_.cell(col, row);
-      const double u = x.place[west], v = y.place[north];
-      const double above = ray_height(t) - height_in_cell(field_.settings().surface, h, u, v);
-      // Of the cell: less than what a ray from below has to rise.
-      const double rounding = scarp::rounding_of_clearance(field_, ray, t, relief(h));
-      if (!(std::abs(above) <= rounding)) continue;
-      if (touch(col, row, t, {u, v})) return true;
-      if constexpr (ask != Ask::accepted) return false;
-    }
-    return false;
+    const auto record = [&](int col, int row, const dvec2& place) { return touch(col, row, t, place); };
+    return rim(grid_ray()).touched_at(t, ask == Ask::accepted, record);
   }
 
   // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
@@ -505,30 +491,42 @@ class Walk {
     return answered;
   }
 
-  void touch_border_on_exit() {
-    if ((ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
-    const double t = std::min(x_.exit_time(), y_.exit_time());
-    if (!(t <= ray_.t_max && t >= ray_.t_min)) return;
-    // Most rays leave above all ground; what rounding adds to the highest sample of a cell is part of this one's.
-    if (ray_height(t) - ground_.highest() > 2 * rounding_) return;
-    touches(t);
+  // Follows the ray beside the ground, in a time in which it is over none. `side`: at the start. Returns true if the
+  // query is answered.
+  [[gnu::noinline]] bool follow_rim(double begin, double end, const RimBox& box, Side side, bool goes_in = false) {
+    return rim(grid_ray())
+        .follow(begin, end, box, goes_in, side, [&](const RimStretch& s, double t, const dvec2& place) {
+          const bool answered = touch(x_.within(s.col), y_.within(s.row), t, place);
+          side_ = side;
+          return answered;
+        });
   }
-
-  double rounding_at_rim(const CellHeights& h, double t) const {
-    if (through_ == Through::point) return scarp::rounding_of_clearance(field_, grid_ray(), t, relief(h));
-    return seam_step_ +
-           scarp::rounding_at_rim(field_, grid_ray(), t, relief(h), through_ == Through::x_line ? 0 : 1, seam_);
+  // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
+  bool follow_rim_on_entry() {
+    const GridRay ray = grid_ray();
+    const auto beside = rim(ray);
+    const double begin = std::max(beside.first_time(), ray_.t_min);
+    const double end = std::min(t_in_ <= t_end_ ? t_in_ : beside.last_time(), ray_.t_max);
+    return beside.may_touch(begin, end) &&
+           follow_rim(begin, end, beside.cells_under(begin, end), Side::unknown, t_in_ <= t_end_);
   }
-  static double relief(const CellHeights& h) {
-    return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+  void follow_rim_on_exit() {
+    if (strict_ || (ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
+    const GridRay ray = grid_ray();
+    const auto beside = rim(ray);
+    const double begin = std::max(std::min(x_.exit_time(), y_.exit_time()), ray_.t_min);
+    const double end = std::min(beside.last_time(), ray_.t_max);
+    if (beside.may_touch(begin, end)) follow_rim(begin, end, beside.cells_under(begin, end), side_);
   }
+  Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
 
   // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
   // crosses a rim within rounding of it touches it, whatever the sign: otherwise a ray through the corner of a hole,
   // above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
-    const bool on_rim = in <= 0 && -in <= rounding_at_rim(h, t_in_);
+    const int axis = through_ == Through::point ? -1 : through_ == Through::x_line ? 0 : 1;
+    const bool on_rim = in <= 0 && -in <= rim(grid_ray()).rounding_at(t_in_, relief(h), axis, Holes && begun_, slow_);
     if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
@@ -643,6 +641,7 @@ class Walk {
     if constexpr (ask == Ask::any) return true;
     answer_.t = t;
     answer_.cell = {col_, row_};
+    assert(ask == Ask::bisected || rim(grid_ray()).is_height_of_ground(t, wall));
     answer_.u = place ? place->x : x_.place(t, col_);
     answer_.v = place ? place->y : y_.place(t, row_);
     answer_.height = ground_.metres(ray_height(t));
@@ -693,6 +692,7 @@ class Walk {
   bool from_outside_ = false;                                  // whether the ray entered through the border
   // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
+  bool slow_ = false;  // with holes: whether rims are followed
   Hit& answer_;
 };
 
