@@ -25,6 +25,13 @@ Real height_of_triangle(const CellHeights& h, bool south_east, Real u, Real v) {
   return h.h11 + (1 - u) * (static_cast<Real>(h.h01) - h.h11) + (1 - v) * (static_cast<Real>(h.h10) - h.h11);
 }
 
+// Whether doubles divide by this without rounding.
+bool divides_exactly(double cell) {
+  int exponent = 0;
+  return std::frexp(cell, &exponent) == 0.5;
+}
+bool is_double(Real x) { return static_cast<Real>(static_cast<double>(x)) == x; }
+
 Real clamped(Real x) { return std::clamp<Real>(x, 0, 1); }
 int within(Real cell, int cells) {
   const auto c = static_cast<std::int64_t>(cell) % cells;
@@ -49,8 +56,8 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   dz_ = ray.direction.z / (Real{to.exaggeration} * to.scale);
   low_ = field_.min_sample(), high_ = field_.max_sample();
   offset_ = std::abs(to.offset) / Real{to.scale};
-  const GridRay local = field_.grid_from_world(ray);
-  exact_plan_ = local.origin.x == ox_ && local.origin.y == oy_ && local.direction.x == dx_ && local.direction.y == dy_;
+  exact_plan_ = divides_exactly(to.cell_x) && divides_exactly(to.cell_y) && is_double(oy_) &&
+                field_.rows() - 1 - oy_ == ray.origin.y / Real{to.cell_y};
   t0_ = ray.t_min, t1_ = ray.t_max;
   // A ray that by rounding begins outside of the field, and comes in later, is on the surface where it begins.
   if (on_surface_) put_on_surface();
@@ -288,9 +295,9 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const auto place = place_of(hit);
   if (!place) return "in a hole";
   const Real t = hit.t, e = sideways(t), b = bound(t);
-  // A rim may be touched from beside it.
-  if (std::abs(x(t) - place->col - hit.u) > std::max(e, allowance(0)) ||
-      std::abs(y(t) - place->row - hit.v) > std::max(e, allowance(1))) {
+  // A rim may be touched from beside it, as far as rounding can tell.
+  if (std::abs(x(t) - place->col - hit.u) > e + allowance(0) ||
+      std::abs(y(t) - place->row - hit.v) > e + allowance(1)) {
     return "not where the ray is";
   }
   const Real ground =

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace scarp {
@@ -37,6 +38,14 @@ struct Piece {
   bool rim = false;      // beside the cell, over its edge
 
   double length() const { return span.end - span.begin; }
+  // A part of a piece whose clearance is linear.
+  Piece part(Span of) const {
+    Piece p = *this;
+    p.span = of;
+    p.c = c + b * (of.begin - span.begin);
+    if (of.end < span.end) p.last = c + b * (of.end - span.begin);
+    return p;
+  }
   // The two roots of f, the lower first; nullopt if there are none.
   std::optional<Span> roots() const {
     if (a == 0) {
@@ -167,7 +176,7 @@ class Ground {
   }
 
   // The pieces over the rims of the ground around a cell without: the ground continues level beside them, as far as
-  // rounding may move the ray.
+  // rounding may move the ray. Where the ray passes the end of an edge, its clearance has a corner.
   void add_rims(double col, double row, Span span, std::vector<Piece>& to) const {
     for (double y = row - 1; y <= row + 1; ++y) {
       for (double x = col - 1; x <= col + 1; ++x) {
@@ -175,15 +184,48 @@ class Ground {
             common(strip(ox_, dx_, x - off_x_, 1 + 2 * off_x_), strip(oy_, dy_, y - off_y_, 1 + 2 * off_y_));
         const Span over = common(span, near);
         if (over.empty() || !is_ground(x, y)) continue;
-        const Cell cell{within(x, field_.cell_cols()), within(y, field_.cell_rows())};
-        const CellHeights h = *heights(cell);
-        Piece p = field_.settings().surface == Surface::bilinear ? bilinear_piece(h, cell, x, y, over)
-                                                                 : triangle_piece(h, cell, x, y, over);
-        p.rim = true;
-        p.a = 0;
-        p.b = std::isinf(p.last) || p.length() == 0 ? dz_ : (p.last - p.c) / p.length();
-        to.push_back(p);
+        const Span over_col = strip(ox_, dx_, x, 1), over_row = strip(oy_, dy_, y, 1);
+        double corners[] = {over_col.begin, over_col.end, over_row.begin, over_row.end};
+        std::sort(std::begin(corners), std::end(corners));
+        double begin = over.begin;
+        for (const double t : corners) {
+          if (t > begin && t < over.end) add_rim(x, y, {std::exchange(begin, t), t}, to);
+        }
+        add_rim(x, y, {begin, over.end}, to);
       }
+    }
+  }
+
+  void add_rim(double col, double row, Span span, std::vector<Piece>& to) const {
+    const Cell cell{within(col, field_.cell_cols()), within(row, field_.cell_rows())};
+    const CellHeights h = *heights(cell);
+    Piece p = field_.settings().surface == Surface::bilinear ? bilinear_piece(h, cell, col, row, span)
+                                                             : triangle_piece(h, cell, col, row, span);
+    p.rim = true;
+    p.a = 0;
+    p.b = std::isinf(p.last) || p.length() == 0 ? dz_ : (p.last - p.c) / p.length();
+    to.push_back(p);
+  }
+
+  // Where the ray is over ground, it is not beside it. Pieces are in order of their begin.
+  static void take_ground_from_rims(std::vector<Piece>& pieces) {
+    std::vector<Piece> rims;
+    for (const Piece& p : pieces) {
+      if (p.rim) rims.push_back(p);
+    }
+    if (rims.empty()) return;
+    std::erase_if(pieces, [](const Piece& p) { return p.rim; });
+    const std::size_t grounds = pieces.size();
+    for (const Piece& rim : rims) {
+      double reached = rim.span.begin;
+      bool touched = false;
+      for (std::size_t i = 0; i < grounds && pieces[i].span.begin <= rim.span.end; ++i) {
+        const Span over = pieces[i].span;
+        if (over.end < rim.span.begin) continue;
+        if (over.begin > reached) pieces.push_back(rim.part({reached, over.begin}));
+        reached = std::max(reached, over.end), touched = true;
+      }
+      if (reached < rim.span.end || !touched) pieces.push_back(rim.part({reached, rim.span.end}));
     }
   }
 
@@ -236,11 +278,12 @@ class Ground {
         }
       }
     }
-    std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
-      if (p.span.begin != q.span.begin) return p.span.begin < q.span.begin;
-      if (p.span.end != q.span.end) return p.span.end < q.span.end;
-      return !p.rim && q.rim;  // ground comes before the rims beside it: an upright ray on the border is over both
-    });
+    const auto earlier = [](const Piece& p, const Piece& q) {
+      return p.span.begin != q.span.begin ? p.span.begin < q.span.begin : p.span.end < q.span.end;
+    };
+    std::stable_sort(found.begin(), found.end(), earlier);
+    take_ground_from_rims(found);
+    std::stable_sort(found.begin(), found.end(), earlier);
     return found;
   }
 
@@ -335,7 +378,9 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
   const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
   double reached = start;
   bool first = on_surface;
-  for (const Piece& p : pieces) {
+  for (Piece p : pieces) {
+    // Rims of neighbours overlap: the ray has been followed up to here.
+    if (p.rim && p.span.begin < reached && p.span.end > reached) p = p.part({reached, p.span.end});
     if (first && p.cell == ray.start_cell && p.span.begin <= start) {
       // f = s (a s + b): the root at the start is not a hit.
       reached = std::max(reached, p.span.end);

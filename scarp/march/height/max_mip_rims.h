@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -39,6 +40,13 @@ struct RimBox {
 inline double relief(const CellHeights& h) {
   return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
 }
+
+// A ray beside the ground: its side, and whether it came there from outside or over a hole. What has come below the
+// rim so is not in the ground: walls are ahead, and where it rises through the rim nothing is hit.
+struct RimSide {
+  Side side = Side::unknown;
+  bool came = true;
+};
 
 // The part of a ray within the allowance of a cell with ground, and its clearances there.
 struct RimStretch {
@@ -145,17 +153,20 @@ struct Rim {
     return false;
   }
 
-  // Follows the ray from `begin` to `end` past the cells of `box` with ground. `side`: of the ray at `begin`, and then
-  // at `end`. `goes_in`: whether it is over the field then. touch(stretch, t, place) records a hit and returns whether
-  // that is the answer, as does the function.
+  // Follows the ray from `begin` to `end` past the cells of `box` with ground. `at`: of the ray at `begin`, and then at
+  // `end`, where its side is unknown if no ground is beside it. `goes_in`: whether it is over the field then.
+  // touch(stretch, t, place) records a hit and returns whether that is the answer, as does the function.
   template <class Touch>
-  bool follow(double begin, double end, const RimBox& box, bool goes_in, Side& side, const Touch& touch) const {
+  bool follow(double begin, double end, const RimBox& box, bool goes_in, RimSide& at, const Touch& touch) const {
+    const double last = end;
     double reached = begin;
+    RimSide to = std::exchange(at, {});
     if (!clip_to_heights(begin, end)) return false;
+    Side& side = to.side;
     bool first = true;
     for (RimStretch s : stretches(begin, end, box)) {
       if (!std::exchange(first, false) && s.end <= reached) continue;
-      if (s.begin > reached) side = Side::unknown;
+      if (s.begin > reached) to = {};
       // Cells that share a rim overlap: the ray has been followed up to here.
       if (s.begin < reached) {
         s.above_begin += (reached - s.begin) / (s.end - s.begin) * (s.above_end - s.above_begin);
@@ -176,10 +187,12 @@ struct Rim {
       }
       if (!touches) continue;
       const double share = s.above_begin > 0 ? s.above_begin / (s.above_begin - s.above_end) : 0.0;
+      to.came = false;
       const double t = std::min(s.begin + share * (s.end - s.begin), s.end);
       side = s.above_end > rounding ? Side::above : Side::below;
       if (touch(s, t, dvec2{x.place(t, s.col), y.place(t, s.row)})) return true;
     }
+    if (reached >= last) at = to;
     return false;
   }
 
@@ -202,6 +215,7 @@ struct Rim {
     return begin <= end;
   }
 
+  // In order of their begin. Where the ray passes the end of an edge, its clearance has a corner.
   std::vector<RimStretch> stretches(double begin, double end, const RimBox& box) const {
     std::vector<RimStretch> found;
     for (int row = box.north; row <= box.south; ++row) {
@@ -215,9 +229,19 @@ struct Rim {
         const auto above = [&](double t) {
           return height(t) - height_in_cell(field.settings().surface, h, x.place(t, col), y.place(t, row));
         };
-        s.above_begin = above(s.begin), s.above_end = above(s.end);
-        s.relief = relief(h);
-        found.push_back(s);
+        s.above_begin = above(s.begin), s.relief = relief(h);
+        double corners[] = {x.line_time(col), x.line_time(col + 1), y.line_time(row), y.line_time(row + 1)};
+        std::sort(std::begin(corners), std::end(corners));
+        const auto add = [&](double to) {
+          const double last = std::exchange(s.end, to);
+          s.above_end = above(s.end);
+          found.push_back(s);
+          s.begin = std::exchange(s.end, last), s.above_begin = s.above_end;
+        };
+        for (const double t : corners) {
+          if (t > s.begin && t < s.end) add(t);
+        }
+        add(s.end);
       }
     }
     std::sort(found.begin(), found.end(), [](const RimStretch& a, const RimStretch& b) { return a.begin < b.begin; });

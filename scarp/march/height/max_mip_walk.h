@@ -64,7 +64,7 @@ class Walk {
         return;
       }
       if (!x_.moves() && !y_.moves()) return vertical();
-      if (Holes && side_ == Side::unknown && ground_.is_hole(col_, row_) && touches(t_in_)) return;
+      if (Holes && side_ == Side::unknown && !below_rim_ && ground_.is_hole(col_, row_) && touches(t_in_)) return;
     }
     // Blocks do not have the rims of those beside them.
     if (Holes && !strict_ && rim(grid_ray()).slow(t_in_, t_end_)) top_ = level_ = 0, slow_ = true;
@@ -271,7 +271,7 @@ class Walk {
   void vertical() {
     ++stats.steps;
     if (Holes && ground_.is_hole(col_, row_)) {
-      follow_rim(t_in_, t_end_, {col_ - 1, col_ + 1, row_ - 1, row_ + 1}, side_);
+      follow_rim(t_in_, t_end_, {col_ - 1, col_ + 1, row_ - 1, row_ + 1});
       return;
     }
     ++stats.cell_tests;
@@ -352,11 +352,12 @@ class Walk {
           continue;
         }
       } else if (Holes && ground_.is_hole(col, row)) {
-        if (slow_ ? follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, side_)
+        const bool corner = cuts_corner(through_x, t_in, t_line);
+        if (slow_ ? follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, corner)
                   : begun_ && side_ != Side::below && touches(t_in)) {
           break;
         }
-        if (!cuts_corner(through_x, t_in, t_line)) side_ = Side::unknown;
+        if (!slow_ && !corner) side_ = Side::unknown, below_rim_ = false;
         if (lost(t_in)) break;
       } else {
         const CellHeights h = ground_.cell(col, row);
@@ -371,7 +372,7 @@ class Walk {
         }
       }
       if (Holes) {
-        if (side_ != Side::below && t_line <= t_end &&
+        if (side_ != Side::below && !below_rim_ && t_line <= t_end &&
             passes_node(through_x ? y.at(t_line) : x.at(t_line), beside_node) && touches(t_line)) {
           break;
         }
@@ -491,15 +492,19 @@ class Walk {
     return answered;
   }
 
-  // Follows the ray beside the ground, in a time in which it is over none. `side`: at the start. Returns true if the
-  // query is answered.
-  [[gnu::noinline]] bool follow_rim(double begin, double end, const RimBox& box, Side side, bool goes_in = false) {
-    return rim(grid_ray())
-        .follow(begin, end, box, goes_in, side, [&](const RimStretch& s, double t, const dvec2& place) {
-          const bool answered = touch(x_.within(s.col), y_.within(s.row), t, place);
-          side_ = side;
-          return answered;
-        });
+  // Follows the ray beside the ground, in a time in which it is over none; its side is then that at the end, unless it
+  // is to stay. Returns true if the query is answered.
+  [[gnu::noinline]] bool follow_rim(double begin, double end, const RimBox& box, bool stay = false,
+                                    bool goes_in = false) {
+    RimSide at{below_rim_ ? Side::below : side_, below_rim_ || side_ == Side::unknown};
+    const auto record = [&](const RimStretch& s, double t, const dvec2& place) {
+      return touch(x_.within(s.col), y_.within(s.row), t, place);
+    };
+    if (rim(grid_ray()).follow(begin, end, box, goes_in, at, record)) return true;
+    if (stay && at.side == Side::unknown) return false;
+    side_ = at.came ? Side::unknown : at.side;
+    below_rim_ = at.came && at.side == Side::below;
+    return false;
   }
   // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
   bool follow_rim_on_entry() {
@@ -508,7 +513,7 @@ class Walk {
     const double begin = std::max(beside.first_time(), ray_.t_min);
     const double end = std::min(t_in_ <= t_end_ ? t_in_ : beside.last_time(), ray_.t_max);
     return beside.may_touch(begin, end) &&
-           follow_rim(begin, end, beside.cells_under(begin, end), Side::unknown, t_in_ <= t_end_);
+           follow_rim(begin, end, beside.cells_under(begin, end), false, t_in_ <= t_end_);
   }
   void follow_rim_on_exit() {
     if (strict_ || (ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
@@ -516,7 +521,7 @@ class Walk {
     const auto beside = rim(ray);
     const double begin = std::max(std::min(x_.exit_time(), y_.exit_time()), ray_.t_min);
     const double end = std::min(beside.last_time(), ray_.t_max);
-    if (beside.may_touch(begin, end)) follow_rim(begin, end, beside.cells_under(begin, end), side_);
+    if (beside.may_touch(begin, end)) follow_rim(begin, end, beside.cells_under(begin, end));
   }
   Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
 
@@ -526,12 +531,15 @@ class Walk {
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
     const int axis = through_ == Through::point ? -1 : through_ == Through::x_line ? 0 : 1;
-    const bool on_rim = in <= 0 && -in <= rim(grid_ray()).rounding_at(t_in_, relief(h), axis, Holes && begun_, slow_);
+    const bool on_rim = !below_rim_ && in <= 0 &&
+                        -in <= rim(grid_ray()).rounding_at(t_in_, relief(h), axis, Holes && begun_, slow_);
     if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
     }
-    side_ = in >= 0 || on_rim ? Side::above : Side::below;
+    // What has come below the rim has risen only beyond rounding.
+    const double risen = std::exchange(below_rim_, false) ? rounding_of_clearance(t_in_) : 0.0;
+    side_ = (risen > 0 ? in > risen : in >= 0) || on_rim ? Side::above : Side::below;
     if (side_ == Side::above) return false;
     if (solid_ && (begun_ || from_outside_)) return answer(0.0, true);
     if (!begun_ && answer_.status == HitStatus::miss) answer_.status = HitStatus::below;
@@ -693,6 +701,7 @@ class Walk {
   // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
   bool slow_ = false;  // with holes: whether rims are followed
+  bool below_rim_ = false;  // whether it has come below the rim that it is beside, from outside or over a hole
   Hit& answer_;
 };
 
