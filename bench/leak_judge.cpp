@@ -86,7 +86,7 @@ void LeakJudge::put_on_surface() {
 void LeakJudge::clip() {
   const auto axis = [&](Real o, Real d, int cells) {
     if (d == 0) {
-      if (!(o >= 0 && o <= cells)) t1_ = t0_ - 1;
+      if (!(o >= 0 && o <= cells)) t1_ = -std::numeric_limits<Real>::infinity();
       return;
     }
     const Real a = -o / d, b = (cells - o) / d;
@@ -279,7 +279,7 @@ Real LeakJudge::bound_at_rim(const Hit& hit, const CellHeights& h, Real t, Real 
     if (field_.nodata_count() > 0 && across > 0)
       quick = std::min(allowance(axis) / across * (std::abs(dz_) + along * relief),
                        kQuick * allowance(axis) * (high_ - low_));
-    most = std::max(most, bound(t) + allowance(axis) * relief + quick);
+    most = std::max(most, bound(t) + std::max(allowance(0), allowance(1)) * relief + quick);
   }
   return most;
 }
@@ -368,7 +368,7 @@ std::optional<double> LeakJudge::cut_behind(const Hit& hit) const {
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
   if (f.b > 0 || f.b + 2 * f.a * length > 0) return {};
   if (f.f + f.b * length + f.a * length * length > -2 * bound(t)) return {};
-  return t < ray_.t_max ? std::optional(t) : std::nullopt;
+  return t < ray_.t_max && t > hit.t ? std::optional(t) : std::nullopt;
 }
 
 std::optional<double> LeakJudge::cut_before(const Hit& hit) const {
@@ -380,7 +380,7 @@ std::optional<double> LeakJudge::cut_before(const Hit& hit) const {
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
   if (f.b > 0 || f.b - 2 * f.a * length > 0) return {};
   if (f.f - f.b * length + f.a * length * length < 2 * bound(t)) return {};
-  return t > ray_.t_min ? std::optional(t) : std::nullopt;
+  return t > ray_.t_min && t < hit.t ? std::optional(t) : std::nullopt;
 }
 
 bool LeakJudge::same(const Hit& a, const Hit& b) const {

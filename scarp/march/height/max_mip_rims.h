@@ -131,7 +131,7 @@ struct Rim {
   double rounding_at(double t, double of_cell, int axis, bool from_hole, bool followed) const {
     if (axis < 0) return rounding_of_clearance(field, ray, t, of_cell);
     if (from_hole && !followed) return rounding_at_hole(field, ray, t, of_cell, axis, seam);
-    return seam_step + rounding_at_rim(field, ray, t, of_cell, axis, seam);
+    return seam_step + rounding_at_rim(field, ray, t, of_cell, seam);
   }
 
   // Calls touch(col, row, place) for the cells that meet at the ray's place on a line, if it touches their ground:
@@ -175,8 +175,8 @@ struct Rim {
       reached = s.end;
       const double rounding = rounding_of_clearance(field, ray, s.begin, s.relief);
       if (side == Side::unknown) {
-        const double beside = rounding + seam_step + std::max(off(0), off(1)) * s.relief;
-        side = s.above_begin >= -beside ? Side::above : Side::below;
+        const double touched = seam_step + rounding_at_rim(field, ray, s.begin, s.relief, seam);
+        side = s.above_begin >= -touched ? Side::above : Side::below;
       }
       bool touches = false;
       if (side == Side::above) {

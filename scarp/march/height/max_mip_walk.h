@@ -302,9 +302,7 @@ class Walk {
     const double t_exit = std::min(x.exit_time(), y.exit_time()), t_end = Wraps ? std::min(t_end_, t_exit) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
-    const double beside_node =
-        Holes ? std::max(rounding_of_line(field_, grid_ray(), 0, seam_), rounding_of_line(field_, grid_ray(), 1, seam_))
-              : 0;
+    const double beside_node = Holes ? widest_rounding_of_line(field_, grid_ray(), seam_) : 0;
     // Passing the corner of a hole or block does not leave the ground: in over one line, out over the other, and at
     // once by the axis that does not have the second.
     const auto cuts_corner = [&](bool out_over_x, double begin, double end) {
