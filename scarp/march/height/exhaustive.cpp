@@ -70,7 +70,7 @@ struct Piece {
 class Ground {
  public:
   Ground(const HeightTarget& target, const Ray& ray, Sides side)
-      : field_(*target.field), up_(side == Sides::below ? -1 : 1) {
+      : field_(*target.field), up_(side == Sides::below ? -1 : 1), seam_step_(target.seam_step) {
     const HeightField& field = field_;
     const HeightFieldSettings& to = field.settings();
     ox_ = ray.origin.x / to.cell_x;
@@ -169,10 +169,10 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // How far below the surface a ray may come in and count as touching it, where fields that meet are placed apart by
-  // rounding (HeightTarget::seam).
-  static double seam_height(const HeightTarget& target) {
-    return target.seam_step + target.seam * (target.field->max_sample() - target.field->min_sample());
+  // How far below a rim a ray may come to it and count as touching it: the rounding of its clearance, and the change of
+  // the edge's height between two places that count as one.
+  double rounding_at_rim(double t) const {
+    return seam_step_ + rounding(t) + std::max(off_x_, off_y_) * (field_.max_sample() - field_.min_sample());
   }
 
   // The pieces over the rims of the ground around a cell without: the ground continues level beside them, as far as
@@ -319,6 +319,7 @@ class Ground {
 
   const HeightField& field_;
   double up_;
+  double seam_step_;
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
   double off_x_, off_y_;                // cells by which rounding may move it from a line
 };
@@ -377,8 +378,10 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
   // A ray from the surface may enter its cell a rounding later.
   const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
   double reached = start;
-  bool first = on_surface;
-  for (Piece p : pieces) {
+  bool first = on_surface, below_rim = false;
+  const bool has_walls = field.settings().solid && from == Sides::above;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Piece p = pieces[i];
     // Rims of neighbours overlap: the ray has been followed up to here.
     if (p.rim && p.span.begin < reached && p.span.end > reached) p = p.part({reached, p.span.end});
     if (first && p.cell == ray.start_cell && p.span.begin <= start) {
@@ -397,46 +400,47 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (p.length() > 0 && p.span.end <= reached) continue;
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
-    const bool came_to_rim = p.rim && side == Side::unknown;
+    const double rounding = ground.rounding(p.span.begin);
+    const auto meet_wall = [&] {
+      Hit hit = ground.hit(p, 0);
+      hit.wall = true;
+      return found(hit);
+    };
+    // A wall behind the rim is met by the ray that has come to it below the rim, and stayed there.
+    const bool came_below = std::exchange(below_rim, false) && side == Side::below;
+    if (came_below && !p.rim && p.c <= rounding && has_walls && !meet_wall()) return without;
+    bool outside = p.rim && (came_below || side == Side::unknown);
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
-      side = p.c < 0 ? Side::below : Side::above;
-      const bool meets = target.seam > 0 || target.seam_step > 0;
-      if (side == Side::below && meets && came_in && !on_surface && -p.c <= Ground::seam_height(target)) {
-        if (!found(ground.hit(p, 0))) return without;
-      }
-      if (side == Side::below && field.settings().solid && from == Sides::above && came_in && !p.rim) {
-        Hit hit = ground.hit(p, 0);
-        hit.wall = true;
-        if (!found(hit)) return without;
-      }
+      side = p.c < (p.rim ? -ground.rounding_at_rim(p.span.begin) : 0.0) ? Side::below : Side::above;
+      if (side == Side::below && has_walls && came_in && !p.rim && !meet_wall()) return without;
     }
     // Where it only passes a corner of the ground, into a hole, it does not begin there.
     const bool begins = !p.rim && p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
     if (side == Side::below && !on_surface && begins) without = HitStatus::below;
     // A ray from below has risen only beyond rounding: otherwise it could be above at one line and, by rounding, not
     // above at the next.
-    const double rounding = ground.rounding(p.span.begin);
     if (side == Side::below && p.c > rounding) side = Side::above;
     const auto depth = on_surface ? std::optional(rounding) : std::nullopt;
-    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece.
-    // Where it does not sink beside the rim, it reaches the surface behind the rim.
-    if (side == Side::above && !depth && p.c <= 0 && !(p.rim && p.last >= 0)) {
+    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece. What does not sink
+    // beside the rim reaches the surface behind the rim, if it comes there.
+    const bool goes_on = i + 1 < pieces.size() && pieces[i + 1].span.begin <= p.span.end;
+    const bool waits = p.rim && p.last >= 0;
+    if (side == Side::above && !depth && p.c <= 0 && !(waits && goes_on)) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
+      outside = false;
     }
     const bool rises = side == Side::below && rises_inside(p, rounding);
-    const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
+    const auto s = side == Side::above && !waits ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
     if (rises) side = Side::above;
     if (s) {
       if (!found(ground.hit(p, *s))) return without;
       side = Side::below;
     }
     if (side == Side::below && (p.last > rounding || (rises && !s))) side = Side::above;
-    // A wall behind the rim is met by the ray that comes in below it.
-    if (came_to_rim && side == Side::below && from == Sides::above && !s && field.settings().solid)
-      side = Side::unknown;
+    below_rim = outside && side == Side::below && !s;
   }
   return without;
 }
