@@ -7,6 +7,7 @@
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/base/two_floats.h"
 #include "scarp/march/height/grid_axis.h"
+#include "scarp/march/height/rim_time.h"
 #include "scarp/march/ray_clip.h"
 
 namespace scarp {
@@ -133,7 +134,8 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   if (!strict)
     cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
 
-  double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
+  result.lingers = !strict && field.nodata_count() > 0 && lingers_at_line(field, local, lowest, highest, begin, way, 0);
+  const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
   // What is left of the way: only walls are met above or below all ground.
   const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
   const bool walls = field.settings().solid && field.nodata_count() > 0;
@@ -153,11 +155,6 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   double length = std::max(end - begin, 0.0);
   if ((direction.x == 0 && direction.y == 0) || std::abs(dz) > kSteepest) {
     flags |= glsl::kScarpUpright;
-    // One cell: that with ground, beside the rim of a hole.
-    if (!strict) {
-      const HeightField::Place ground = field.ground_at({cell, u, v});
-      cell = ground.cell, u = ground.u, v = ground.v;
-    }
     const int upright = dz == 0 ? 0 : std::ilogb(dz);
     direction = {0, 0, std::ldexp(dz, -upright)};
     length = std::ldexp(std::min(end, exit) - begin, upright);

@@ -433,7 +433,9 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
       outside = false;
     }
     const bool rises = side == Side::below && rises_inside(p, rounding);
-    const auto s = side == Side::above && !waits ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
+    const auto s = side == Side::above && !waits ? descent(p, depth)
+                   : rises                       ? descent_after_rise(p, depth)
+                                                 : std::nullopt;
     if (rises) side = Side::above;
     if (s) {
       if (!found(ground.hit(p, *s))) return without;

@@ -22,6 +22,7 @@
 
 #include "scarp/march/height/cells_beside.h"
 #include "scarp/march/height/grid_axis.h"
+#include "scarp/march/height/rim_time.h"
 #include "scarp/march/height/rounding.h"
 #include "scarp/march/height/walk_ground.h"
 
@@ -107,23 +108,9 @@ struct Rim {
     return !(height(t) > ground.highest() + room) && (wall || !(height(t) < ground.lowest() - room));
   }
 
-  // Limits a time range to that in which the ray is between the lowest and the highest ground, and a margin that is
-  // far beyond rounding. Returns whether any is left.
-  bool clip_to_heights(double& begin, double& end) const {
-    const double low = ground.lowest(), high = ground.highest();
-    const double room = (high - low) + 0x1p-40 * (std::abs(ray.origin.z) + std::abs(low) + std::abs(high));
-    const double z = ray.origin.z, dz = ray.direction.z;
-    if (dz == 0) return begin <= end && z >= low - room && z <= high + room;
-    const double a = (low - room - z) / dz, b = (high + room - z) / dz;
-    begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
-    return begin <= end;
-  }
-
-  // Whether the ray, in this time, stays so long within the allowance of a line that its height there is not known to
-  // kQuickRim: then it is followed cell by cell.
+  // Whether the ray, in this time, has to be followed along rims, cell by cell.
   bool slow(double begin, double end) const {
-    if (!clip_to_heights(begin, end)) return false;
-    return slow_across(x, 0, begin, end) || slow_across(y, 1, begin, end);
+    return lingers_at_line(field, ray, ground.lowest(), ground.highest(), begin, end, seam);
   }
 
   // The height by which the ray may be below the ground at t and touch it: where it crosses a line of an axis (-1: no
@@ -161,7 +148,7 @@ struct Rim {
     const double last = end;
     double reached = begin;
     RimSide to = std::exchange(at, {});
-    if (!clip_to_heights(begin, end)) return false;
+    if (!clip_to_heights(ray, ground.lowest(), ground.highest(), begin, end)) return false;
     Side& side = to.side;
     bool first = true;
     for (RimStretch s : stretches(begin, end, box)) {
@@ -197,14 +184,6 @@ struct Rim {
   }
 
  private:
-  bool slow_across(const Axis& axis, int number, double begin, double end) const {
-    const double own = std::abs(axis.direction), along = std::abs(number == 0 ? y.direction : x.direction);
-    const double relief = ground.highest() - ground.lowest();
-    if (axis.moves() && std::abs(ray.direction.z) + along * relief <= kQuickRim * relief * own) return false;
-    const double a = axis.at(begin), b = axis.at(end), allowance = off(number);
-    return std::floor(std::max(a, b) + allowance) >= std::ceil(std::min(a, b) - allowance);
-  }
-
   // When the ray is at most `allowance` beside a cell.
   static bool clip_to_cell(const Axis& axis, int cell, double allowance, double& begin, double& end) {
     const auto low = static_cast<double>(axis.global_line(cell)) - allowance;

@@ -529,8 +529,8 @@ class Walk {
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
     const int axis = through_ == Through::point ? -1 : through_ == Through::x_line ? 0 : 1;
-    const bool on_rim = !below_rim_ && in <= 0 &&
-                        -in <= rim(grid_ray()).rounding_at(t_in_, relief(h), axis, Holes && begun_, slow_);
+    const bool on_rim =
+        !below_rim_ && in <= 0 && -in <= rim(grid_ray()).rounding_at(t_in_, relief(h), axis, Holes && begun_, slow_);
     if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
@@ -665,14 +665,7 @@ class Walk {
 
   using Level = MaxPyramid::Level;
 
-  // Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
-  static constexpr std::uint32_t kPatience =
-      3;                                 // traversal steps before the first look-ahead: half of the rays need no more
-  static constexpr int kProbeLevel = 3;  // blocks of 8 x 8 cells
-  static constexpr int kProbes = 24;
-  static constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
-  static constexpr double kShortWay = 128;                      // cells up to which the traversal is as fast
-  static constexpr double kUnit = 0x1p-53;                      // unit roundoff of double
+  static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   // 6 on the way to a code, 2 more to the base of codes upside down; see numerics.md.
   static constexpr double kCodeRoundings = UpsideDown ? 12 : 8;
 
@@ -698,7 +691,7 @@ class Walk {
   bool from_outside_ = false;                                  // whether the ray entered through the border
   // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
-  bool slow_ = false;  // with holes: whether rims are followed
+  bool slow_ = false;       // with holes: whether rims are followed
   bool below_rim_ = false;  // whether it has come below the rim that it is beside, from outside or over a hole
   Hit& answer_;
 };
