@@ -121,10 +121,10 @@ struct Rim {
     return seam_step + rounding_at_rim(field, ray, t, of_cell, seam);
   }
 
-  // Calls touch(col, row, place) for the cells that meet at the ray's place on a line, if it touches their ground:
-  // since rims are closed, any of them will do. Returns true if touch() does; otherwise after the first, unless `all`.
-  template <class Touch>
-  bool touched_at(double t, bool all, const Touch& touch) const {
+  // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's place on a line,
+  // until it returns true, as does the function then: since rims are closed, any of them will do.
+  template <class F>
+  bool any_beside(double t, const F& f) const {
     const CellsBeside cols(x, t, off(0)), rows(y, t, off(1));
     for (int i = 0; i < cols.count * rows.count; ++i) {
       const int west = i % cols.count, north = i / cols.count, col = cols.cell[west], row = rows.cell[north];
@@ -132,12 +132,31 @@ struct Rim {
       const CellHeights h = ground.cell(col, row);
       const dvec2 place(cols.place[west], rows.place[north]);
       const double above = height(t) - height_in_cell(field.settings().surface, h, place.x, place.y);
-      // Of the cell: less than what a ray from below has to rise.
-      if (!(std::abs(above) <= rounding_of_clearance(field, ray, t, relief(h)))) continue;
-      if (touch(col, row, place)) return true;
-      if (!all) return false;
+      if (f(col, row, place, above, relief(h))) return true;
     }
     return false;
+  }
+
+  // Calls touch(col, row, place) where the ray touches ground at its place on a line. Returns true if touch() does;
+  // otherwise after the first, unless `all`.
+  template <class Touch>
+  bool touched_at(double t, bool all, const Touch& touch) const {
+    bool answered = false;
+    any_beside(t, [&](int col, int row, const dvec2& place, double above, double of_cell) {
+      // Of the cell: less than what a ray from below has to rise.
+      if (!(std::abs(above) <= rounding_of_clearance(field, ray, t, of_cell))) return false;
+      answered = touch(col, row, place);
+      return answered || !all;
+    });
+    return answered;
+  }
+
+  // Whether a ray that leaves the ground over a line of an axis, into a hole, may sink through the rim before it leaves
+  // the allowance.
+  bool may_sink(double t, int axis) const {
+    return any_beside(t, [&](int, int, const dvec2&, double above, double of_cell) {
+      return above <= rounding_at_hole(field, ray, t, of_cell, axis, seam);
+    });
   }
 
   // Follows the ray from `begin` to `end` past the cells of `box` with ground. `at`: of the ray at `begin`, and then at

@@ -60,7 +60,7 @@ class Walk {
       if (wanted_.t_clear > t_in_ && !skip_on(wanted_.t_clear)) return;
     } else {
       if (!enter()) {
-        if (!Wraps && side_ == Side::above) follow_rim_on_exit();
+        if (!Wraps && side_ == Side::above) follow_border_on_exit();
         return;
       }
       if (!x_.moves() && !y_.moves()) return vertical();
@@ -69,7 +69,7 @@ class Walk {
     // Blocks do not have the rims of those beside them.
     if (Holes && !strict_ && rim(grid_ray()).slow(t_in_, t_end_)) top_ = level_ = 0, slow_ = true;
     while (walk()) enter_next_copy();
-    if (!Wraps) follow_rim_on_exit();
+    if (!Wraps) follow_border_on_exit();
   }
 
   /// For a ray from the surface: processes the first cell only.
@@ -132,7 +132,7 @@ class Walk {
       // A coarse block may extend beyond the last row or column; the ray's end does not.
       t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
       if (!rim(grid_ray()).over_strips()) return false;
-      if ((from_outside_ || !(t_in_ <= t_end_)) && follow_rim_on_entry()) return false;
+      if ((from_outside_ || !(t_in_ <= t_end_)) && follow_border_on_entry()) return false;
     }
     if (!(t_in_ <= t_end_)) return false;
     bound_rounding();
@@ -295,7 +295,7 @@ class Walk {
     const double per_step = ground_.per_step(), highest = ground_.highest(), base = ground_.base();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
     const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(base) + std::abs(highest);
-    const double rounding = kCodeRoundings * kUnit * upright + rounding_;
+    const double rounding = ground_.kRoundingOfCode * upright + rounding_;
     const double code_z = (z_ - base - rounding) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - base) * per_step;
     // A coarse block may extend beyond the last row or column; the traversal does not.
@@ -303,8 +303,7 @@ class Walk {
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
     const double beside_node = Holes ? widest_rounding_of_line(field_, grid_ray(), seam_) : 0;
-    // Passing the corner of a hole or block does not leave the ground: in over one line, out over the other, and at
-    // once by the axis that does not have the second.
+    // Passing the corner of a hole or block, in over one line and out over the other, does not leave the ground.
     const auto cuts_corner = [&](bool out_over_x, double begin, double end) {
       if (through_ != (out_over_x ? Through::y_line : Through::x_line)) return end <= begin;
       return (end - begin) * std::abs(out_over_x ? y.direction : x.direction) <= beside_node;
@@ -351,8 +350,11 @@ class Walk {
         }
       } else if (Holes && ground_.is_hole(col, row)) {
         const bool corner = cuts_corner(through_x, t_in, t_line);
-        if (slow_ ? follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, corner)
-                  : begun_ && side_ != Side::below && touches(t_in)) {
+        const auto follow = [&] {
+          return follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, corner);
+        };
+        if (slow_ ? follow()
+                  : begun_ && side_ != Side::below && (touches(t_in) || (sinks_over_rim(t_in) && follow()))) {
           break;
         }
         if (!slow_ && !corner) side_ = Side::unknown, below_rim_ = false;
@@ -444,8 +446,8 @@ class Walk {
     return minimum != MaxPyramid::kNoMinimum && highest < ground_.height(minimum);
   }
 
-  // Whether a ray that was above is at t, over a block without holes, below the whole block: it has crossed the
-  // surface. By more than rounding, so that closest() finds the hit, too.
+  // Whether a ray that was above is at t, over a block without holes, below it: it has crossed the surface. By more
+  // than rounding, so that closest() finds the hit, too.
   bool falls_under(std::uint16_t minimum, double t) const {
     const double height = ray_height(t);
     return under(height, minimum) && ground_.height(minimum) - height > 2 * rounding_of_clearance(t);
@@ -473,6 +475,11 @@ class Walk {
     if (strict_) return false;
     const auto record = [&](int col, int row, const dvec2& place) { return touch(col, row, t, place); };
     return rim(grid_ray()).touched_at(t, ask == Ask::accepted, record);
+  }
+
+  // Whether a ray that comes from over the ground may sink through its rim behind the line that it crosses at t.
+  [[gnu::noinline]] bool sinks_over_rim(double t) const {
+    return !strict_ && side_ == Side::above && rim(grid_ray()).may_sink(t, through_ == Through::x_line ? 0 : 1);
   }
 
   // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
@@ -504,22 +511,20 @@ class Walk {
     below_rim_ = at.came && at.side == Side::below;
     return false;
   }
-  // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
-  bool follow_rim_on_entry() {
+  [[gnu::noinline]] bool follow_border(double begin, double end, bool goes_in) {
     const GridRay ray = grid_ray();
     const auto beside = rim(ray);
-    const double begin = std::max(beside.first_time(), ray_.t_min);
-    const double end = std::min(t_in_ <= t_end_ ? t_in_ : beside.last_time(), ray_.t_max);
-    return beside.may_touch(begin, end) &&
-           follow_rim(begin, end, beside.cells_under(begin, end), false, t_in_ <= t_end_);
+    begin = std::max(begin, ray_.t_min), end = std::min(end, ray_.t_max);
+    return beside.may_touch(begin, end) && follow_rim(begin, end, beside.cells_under(begin, end), false, goes_in);
   }
-  void follow_rim_on_exit() {
+  // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
+  bool follow_border_on_entry() {
+    const bool goes_in = t_in_ <= t_end_;
+    return follow_border(rim(grid_ray()).first_time(), goes_in ? t_in_ : rim(grid_ray()).last_time(), goes_in);
+  }
+  void follow_border_on_exit() {
     if (strict_ || (ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
-    const GridRay ray = grid_ray();
-    const auto beside = rim(ray);
-    const double begin = std::max(std::min(x_.exit_time(), y_.exit_time()), ray_.t_min);
-    const double end = std::min(beside.last_time(), ray_.t_max);
-    if (beside.may_touch(begin, end)) follow_rim(begin, end, beside.cells_under(begin, end));
+    follow_border(std::min(x_.exit_time(), y_.exit_time()), rim(grid_ray()).last_time(), false);
   }
   Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
 
@@ -578,8 +583,7 @@ class Walk {
     return lost(t_out);
   }
 
-  // Two triangles: the signs at the entry, at the diagonal if crossed, and at the exit; the clearance is linear in
-  // between.
+  // Two triangles: signs at the entry, at the diagonal if crossed, and at the exit, with linear clearance in between.
   [[gnu::noinline]] bool test_triangles(const CellHeights& h, double out, double t_out) {
     const double sum = static_cast<double>(x_.global_line(col_) + y_.global_line(row_) + 1);
     const double t_diagonal = (sum - (x_.origin + y_.origin)) / (x_.direction + y_.direction);
@@ -664,10 +668,6 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-
-  static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
-  // 6 on the way to a code, 2 more to the base of codes upside down; see numerics.md.
-  static constexpr double kCodeRoundings = UpsideDown ? 12 : 8;
 
   const HeightField& field_;
   double seam_, seam_step_;
