@@ -53,6 +53,7 @@ class SteepRays {
       const Hit hits[] = {march_max_mip(target_, ray), march_exhaustive(target_, ray), batch[i],
                           all.empty() ? Hit{} : all[0]};
       bool good = (blocked[i] != 0) == (t >= 0) && occluded_max_mip(target_, ray) == (t >= 0);
+      good = good && std::is_sorted(all.begin(), all.end(), [](const Hit& a, const Hit& b) { return a.t < b.t; });
       for (const Hit& hit : hits) {
         if (t < 0) {
           good = good && !hit;
@@ -197,7 +198,8 @@ TEST(SteepRims, HitTheRimsOfHolesAtTheHeightOfTheirEdges) {
         for (const double lean : leans()) {
           for (const int line : {first, last}) {
             const int along = wrapped ? whole(random, 0, 1) : whole(random, kSide / 3, 2 * kSide / 3 - 1);
-            const double share = uniform(random, 0.01, 0.99), high = uniform(random, 10, 20);
+            // A quarter of them at nodes.
+            const double share = std::max(0.0, uniform(random, -0.33, 0.99)), high = uniform(random, 10, 20);
             const auto add = [&](dvec3 p, dvec3 d, double ground) {
               const double t = high - ground;
               p.x -= d.x * t, p.y -= d.y * t, p.z = high;
@@ -230,6 +232,57 @@ TEST(SteepRims, AreHitByRaysAlongThem) {
           const double middle = (kSide / 2 + 0.3) * cell;
           const dvec3 d(lean * cell, cell, -0.4);
           rays.expect_hit({dvec3(line * cell, middle, 0) - 5.0 * d, d}, 5);
+        }
+      }
+      rays.check();
+    }
+  }
+}
+
+// From the ground into the hole, not so steep that they are followed all the way: rounding may let them pass the line
+// above the ground through which they sink behind it.
+TEST(SteepRims, AreHitByRaysThatLeaveTheGroundThere) {
+  constexpr int kSide = 24;
+  Random random(9);
+  std::vector<float> samples(kSide * kSide);
+  for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 5));
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const double cell : {1.0, 0.7, 7.7, 92.6}) {
+      const HeightField field = with_hole(samples, kSide, cell, surface, false, false);
+      SteepRays rays(field);
+      for (int i = 0; i < 2000; ++i) {
+        const int col = kSide / 3 - 1, row = whole(random, kSide / 3, 2 * kSide / 3 - 1);
+        const double share = uniform(random, 0.01, 0.99), high = uniform(random, 10, 20);
+        const double ground = on_edge(samples[static_cast<std::size_t>(row * kSide + col)],
+                                      samples[static_cast<std::size_t>((row + 1) * kSide + col)], share);
+        const dvec3 p(col * cell, (kSide - 1 - row - share) * cell, ground);
+        const dvec3 d(std::ldexp(uniform(random, 0.5, 1) * cell, -whole(random, 4, 12)), 0, -(high - ground));
+        rays.expect_hit({.origin = p - d, .direction = d, .t_max = 2}, 1);
+      }
+      rays.check(1e-9);
+    }
+  }
+}
+
+// Level rays that start below the ground, along the rim of the hole and beside it by rounding. They touch the lowest
+// nodes from below, which is no hit.
+TEST(SteepRims, AreNotHitFromBelow) {
+  constexpr int kSide = 24;
+  std::vector<float> samples(kSide * kSide, 4);
+  const int line = kSide / 3 - 1;
+  for (int i = 1; i < kSide; i += 2) {
+    samples[static_cast<std::size_t>(i * kSide + line)] = samples[static_cast<std::size_t>(line * kSide + i)] = 0;
+  }
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const double cell : {1.0, 0.1, 7.7, 30.7, 1.0 / 3}) {
+      const HeightField field = with_hole(samples, kSide, cell, surface, false, false);
+      SteepRays rays(field);
+      for (int ulps = -3; ulps <= 3; ++ulps) {
+        for (const double lean : {0.0, 6.123233995736766e-17, -6.123233995736766e-17}) {
+          // One row or column of ground on both sides before the hole.
+          const double x = line * cell * (1 + 0x1p-53 * ulps), y = (kSide - 1 - line) * cell * (1 + 0x1p-53 * ulps);
+          rays.expect_none({{x, (kSide - 1 - 2.5) * cell, 0}, {lean * cell, -cell, 0}});
+          rays.expect_none({{2.5 * cell, y, 0}, {cell, lean * cell, 0}});
         }
       }
       rays.check();
