@@ -35,7 +35,7 @@ inline bool is_followable(const Ray& ray) {
 inline Ray scaled_down(const Ray& ray, int exponent) {
   Ray scaled = ray;
   for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
-  scaled.t_min = std::ldexp(ray.t_min, exponent);
+  scaled.t_min = std::max(std::ldexp(ray.t_min, exponent), std::numeric_limits<double>::lowest());
   scaled.t_max = std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent);
   return scaled;
 }

@@ -361,7 +361,7 @@ void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::sp
   if (alone_) return field_of(0).closest_hits_on_all_threads(rays, hits, steps, from);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (steps.empty() && !has_too_long(rays.subspan(first, count))) {
+    if (steps.empty() && !any_odd(rays.subspan(first, count))) {
       return closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                               hits.subspan(first, count));
     }
@@ -381,7 +381,7 @@ void Scene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
   if (sole_) return field_of(sole_object_).occluded_on_all_threads(rays, blocked, from);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (has_too_long(rays.subspan(first, count))) {
+    if (any_odd(rays.subspan(first, count))) {
       for (std::size_t i = first; i < first + count; ++i) blocked[i] = any({rays, from, i});
       return;
     }

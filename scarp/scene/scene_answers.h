@@ -42,8 +42,9 @@ inline std::uint8_t frame_of(const Placement& placement) {
 /// Whether placements may turn the direction into no number. Such a ray is 2^kShorter times shorter, and its t longer.
 constexpr int kShorter = 100;
 inline bool is_too_long(const Ray& ray) { return !(longest_of(ray.direction) < 0x1p900); }
-inline bool has_too_long(std::span<const Ray> rays) {
-  return std::any_of(rays.begin(), rays.end(), [](const Ray& ray) { return is_too_long(ray); });
+/// Whether one of the rays is such, or has numbers that cast() refuses: then each is followed by itself.
+inline bool any_odd(std::span<const Ray> rays) {
+  return std::any_of(rays.begin(), rays.end(), [](const Ray& ray) { return is_too_long(ray) || !is_followable(ray); });
 }
 
 /// Whether a query by rules, or without, sees an object.

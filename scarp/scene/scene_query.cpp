@@ -55,7 +55,7 @@ void SceneQuery::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, st
   if (!from.empty()) require_same_length(rays.size(), from.size());
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (!about_hits(&rules_) && !has_too_long(rays.subspan(first, count))) {
+    if (!about_hits(&rules_) && !any_odd(rays.subspan(first, count))) {
       return scene_.closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                                      hits.subspan(first, count), &rules_);
     }
@@ -70,7 +70,7 @@ void SceneQuery::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blo
   if (!from.empty()) require_same_length(rays.size(), from.size());
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (!about_hits(&rules_) && !has_too_long(rays.subspan(first, count))) {
+    if (!about_hits(&rules_) && !any_odd(rays.subspan(first, count))) {
       return scene_.occluded_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                                       blocked.subspan(first, count), &rules_);
     }

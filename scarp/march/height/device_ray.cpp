@@ -9,6 +9,7 @@
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/rim_time.h"
 #include "scarp/march/ray_clip.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -195,13 +196,13 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
 }
 
 DeviceRay device_ray(const HeightField& field, const Ray& ray) {
-  if (!field.has_cells() || field.all_nodata()) return {};
+  if (!field.has_cells() || field.all_nodata() || !is_followable(ray)) return {};
   return field.wraps() ? on_grid<true>(field, ray) : on_grid<false>(field, ray);
 }
 
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top) {
   DeviceRay result;
-  if (!field.has_cells() || field.all_nodata()) return result;
+  if (!field.has_cells() || field.all_nodata() || !is_followable(ray)) return result;
   GridRay local = field.grid_from_world(ray);
   const double longest =
       std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});

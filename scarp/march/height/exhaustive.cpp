@@ -456,7 +456,7 @@ class OfUsualLength {
     std::frexp(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), &exponent_);
     if (std::abs(exponent_) < 128) exponent_ = 0;
     for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(d[axis], -exponent_);
-    ray_.t_min = std::ldexp(ray.t_min, exponent_);
+    ray_.t_min = std::max(std::ldexp(ray.t_min, exponent_), std::numeric_limits<double>::lowest());
     // The range ends where the t of the ray are no longer finite.
     ray_.t_max =
         exponent_ == 0 ? ray.t_max : std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent_);

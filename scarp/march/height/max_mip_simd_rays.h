@@ -172,7 +172,8 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   const V per_exit = hn::IfThenElse(hn::Le(x.exit, y.exit), x.per, y.per);
   const V at_seam = hn::Mul(hn::Set(tag, f.seam), hn::Max(per_enter, per_exit));
   const V slack = hn::Add(hn::Add(x.slack, y.slack), at_seam), slack_cells = hn::Mul(slack, longest);
-  const auto numbers = hn::And(hn::Eq(oz, oz), hn::Le(t_min, t_max));
+  const auto range = hn::And(hn::Le(t_min, t_max), hn::Gt(t_min, hn::Set(tag, -HUGE_VAL)));
+  const auto numbers = hn::And(hn::Eq(oz, oz), range);
   const auto clear_of_borders = hn::AndNot(hn::Or(x.beside, y.beside), hn::And(usual, numbers));
   const auto sound =
       hn::And(clear_of_borders, hn::And(hn::Lt(slack_cells, hn::Set(tag, kSideways)),
