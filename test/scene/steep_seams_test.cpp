@@ -126,23 +126,42 @@ TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
 
 TEST(SteepSeams, QueriesEndWhateverTheirNumbers) {
   const TerrainTiles tiles = flat_tiles(1, 4, 4, kTileCells);
-  const Scene& scene = tiles;
+  const Terrain flat(HeightField::own(std::vector<float>(81), 9, 9));
   constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> odd{kInf, -kInf, kNan, 1e300, 1.7e308, -1.7e308, 5e-324, -5e-324, 0, 1, -1};
-  EXPECT_FALSE(scene.closest_hit({{-kInf, -1, 1}, {1e300, -5e-324, kInf}}));
   Random random(13);
   const auto any = [&] { return odd[static_cast<std::size_t>(whole(random, 0, static_cast<int>(odd.size()) - 1))]; };
-  std::vector<Ray> rays;
+  std::vector<Ray> rays{{{-kInf, -1, 1}, {1e300, -5e-324, kInf}}};
   for (int i = 0; i < 20000; ++i) {
     Ray ray{{any(), any(), any()}, {any(), any(), any()}};
     if (i % 3 == 0) ray.t_min = any(), ray.t_max = any();
     rays.push_back(ray);
-    const Hit hit = scene.closest_hit(ray);
-    EXPECT_EQ(static_cast<bool>(hit), scene.occluded(ray));
-    EXPECT_TRUE(!hit || std::isfinite(hit.t));
   }
-  std::vector<Hit> hits(rays.size());
-  scene.closest_hits(rays, hits);
+  const Scene scenes[] = {static_cast<const Scene&>(tiles), combine({{flat}}),
+                          combine({{tiles, {.origin = {5, 5, 5}}}, {flat}})};
+  for (const Scene& scene : scenes) {
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size());
+    scene.closest_hits(rays, hits);
+    scene.occluded(rays, blocked);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
+      const Hit hit = scene.closest_hit(ray);
+      EXPECT_EQ(static_cast<bool>(hit), scene.occluded(ray));
+      EXPECT_EQ(hits[i].status, hit.status);
+      EXPECT_EQ(blocked[i] != 0, static_cast<bool>(hit));
+      EXPECT_TRUE(!hit || std::isfinite(hit.t + hit.height + hit.u + hit.v));
+      bool refused = !(ray.t_min <= ray.t_max) || !std::isfinite(ray.t_min) || ray.direction == dvec3(0.0);
+      for (int axis = 0; axis < 3; ++axis)
+        refused = refused || !std::isfinite(ray.origin[axis]) || !std::isfinite(ray.direction[axis]);
+      EXPECT_FALSE(refused && hit.status != HitStatus::miss) << static_cast<int>(hit.status);
+      if (testing::Test::HasFailure()) {
+        FAIL() << i << ": from " << ray.origin.x << " " << ray.origin.y << " " << ray.origin.z << " along "
+               << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z << ", t " << ray.t_min << " to "
+               << ray.t_max;
+      }
+    }
+  }
 }
 
 TEST(SteepSeams, LongDirectionsNeverAnswerWithNan) {
