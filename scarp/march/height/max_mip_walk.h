@@ -102,8 +102,7 @@ class Walk {
     return triangles_ ? plane(h, south_east(t), t).surface : quadratic(h, t).surface;
   }
 
-  // Clearance of the ray where it enters or leaves the current cell. At a line, both neighbours compute the same value
-  // from the same two nodes.
+  // Clearance where the ray enters or leaves the current cell: at a line, of the same two nodes for both neighbours.
   double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
     switch (through) {
       case Through::x_line: {
@@ -161,8 +160,8 @@ class Walk {
     return true;
   }
 
-  // Advances to the cell that contains a time up to which the ray is above the ground, and back to where that cell
-  // starts, so that a peak which the ray just touches is still ahead. Returns false if the ray ends before.
+  // Advances to the start of the cell with a time up to which the ray is above the ground, so that a peak which it just
+  // touches is still ahead. Returns false if the ray ends before.
   bool skip_to(double t) {
     if (t > t_end_) return false;
     side_ = Side::above;
@@ -172,8 +171,7 @@ class Walk {
     return true;
   }
 
-  // The same from within a cell, never to a previous one: next to a start on a line, which belongs to the given start
-  // cell, not all lines behind are crossed before.
+  // The same from within a cell, never to a previous one: lines beside a start on a line may count as ahead.
   bool skip_on(double t) {
     const int col = col_, row = row_;
     const double t_in = t_in_;
@@ -186,8 +184,8 @@ class Walk {
     return true;
   }
 
-  // Rays that start on the surface: their height is that of the surface; the root at the start is divided out of the
-  // clearance in the first cell, and the rest decides. Returns false if the answer is known.
+  // From the surface: the root at the start is divided out of the clearance in the first cell, and the rest decides.
+  // Returns false if the answer is known.
   bool leave_start_cell() {
     col_ = ray_.start_cell.col;
     row_ = ray_.start_cell.row;
@@ -427,8 +425,7 @@ class Walk {
     return left;
   }
 
-  // Across the seam: like any line, the column before the row when both are crossed at once. A seam separates blocks of
-  // all levels, so the traversal goes one level up.
+  // Across the seam: as over any line, column before row. It separates blocks of all levels, so one level up.
   void enter_next_copy() {
     after_x_ = x_.exit_time() <= y_.exit_time();
     (after_x_ ? col_ : row_) = (after_x_ ? x_ : y_).enter_next_copy();
