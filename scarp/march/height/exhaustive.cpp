@@ -70,7 +70,7 @@ struct Piece {
 class Ground {
  public:
   Ground(const HeightTarget& target, const Ray& ray, Sides side)
-      : field_(*target.field), up_(side == Sides::below ? -1 : 1), seam_step_(target.seam_step) {
+      : field_(*target.field), up_(side == Sides::below ? -1 : 1), seam_(target.seam), seam_step_(target.seam_step) {
     const HeightField& field = field_;
     const HeightFieldSettings& to = field.settings();
     ox_ = ray.origin.x / to.cell_x;
@@ -169,9 +169,10 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // How far below a rim a ray may come to it and count as touching it: the rounding of its clearance, and the change of
-  // the edge's height between two places that count as one.
-  double rounding_at_rim(double t) const {
+  // How far below a rim a ray may come to it and count as touching it, where fields that meet are placed apart
+  // (HeightTarget::seam): the change of the edge's height between two places that count as one, and rounding.
+  double rounding_at_seam(double t) const {
+    if (seam_ == 0 && seam_step_ == 0) return 0;
     return seam_step_ + rounding(t) + std::max(off_x_, off_y_) * (field_.max_sample() - field_.min_sample());
   }
 
@@ -319,7 +320,7 @@ class Ground {
 
   const HeightField& field_;
   double up_;
-  double seam_step_;
+  double seam_, seam_step_;
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
   double off_x_, off_y_;                // cells by which rounding may move it from a line
 };
@@ -409,11 +410,14 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     // A wall behind the rim is met by the ray that has come to it below the rim, and stayed there.
     const bool came_below = std::exchange(below_rim, false) && side == Side::below;
     if (came_below && !p.rim && p.c <= rounding && has_walls && !meet_wall()) return without;
-    bool outside = p.rim && (came_below || side == Side::unknown);
+    bool outside = p.rim && (came_below || side == Side::unknown), rises_to_rim = false;
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
-      side = p.c < (p.rim ? -ground.rounding_at_rim(p.span.begin) : 0.0) ? Side::below : Side::above;
+      // A ray that has risen to the rim where it comes to the ground touches it there.
+      rises_to_rim = p.rim && p.c < 0 && p.last >= 0;
+      const double touched = p.rim ? -ground.rounding_at_seam(p.span.begin) : 0.0;
+      side = p.c < touched && !rises_to_rim ? Side::below : Side::above;
       if (side == Side::below && has_walls && came_in && !p.rim && !meet_wall()) return without;
     }
     // Where it only passes a corner of the ground, into a hole, it does not begin there.
@@ -427,7 +431,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     // beside the rim reaches the surface behind the rim, if it comes there.
     const bool goes_on = i + 1 < pieces.size() && pieces[i + 1].span.begin <= p.span.end;
     const bool waits = p.rim && p.last >= 0;
-    if (side == Side::above && !depth && p.c <= 0 && !(waits && goes_on)) {
+    if (side == Side::above && !depth && p.c <= 0 && !(waits && goes_on) && !rises_to_rim) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
       outside = false;
