@@ -169,12 +169,13 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // How far below a rim a ray may come to it and count as touching it, where fields that meet are placed apart
-  // (HeightTarget::seam): the change of the edge's height between two places that count as one, and rounding.
-  double rounding_at_seam(double t) const {
-    if (seam_ == 0 && seam_step_ == 0) return 0;
+  // How far below a rim a ray may come to it and touch it: the rounding of its clearance, and the change of the edge's
+  // height between two places that count as one.
+  double rounding_at_rim(double t) const {
     return seam_step_ + rounding(t) + std::max(off_x_, off_y_) * (field_.max_sample() - field_.min_sample());
   }
+  // Whether fields that are placed apart by rounding meet here: all that comes so near touches.
+  bool meets() const { return seam_ > 0 || seam_step_ > 0; }
 
   // The pieces over the rims of the ground around a cell without: the ground continues level beside them, as far as
   // rounding may move the ray. Where the ray passes the end of an edge, its clearance has a corner.
@@ -414,9 +415,10 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
-      // A ray that has risen to the rim where it comes to the ground touches it there.
-      rises_to_rim = p.rim && p.c < 0 && p.last >= 0;
-      const double touched = p.rim ? -ground.rounding_at_seam(p.span.begin) : 0.0;
+      // A ray from so near that has risen to the rim where it comes to the ground touches it there.
+      const double bound = p.rim ? ground.rounding_at_rim(p.span.begin) : 0.0;
+      rises_to_rim = p.c < 0 && p.c >= -bound && p.last >= 0;
+      const double touched = ground.meets() ? -bound : 0.0;
       side = p.c < touched && !rises_to_rim ? Side::below : Side::above;
       if (side == Side::below && has_walls && came_in && !p.rim && !meet_wall()) return without;
     }
