@@ -127,6 +127,19 @@ std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embr
         }));
   }
   add("oblong cells", rough(67, 131, {.cell_x = 6.75, .cell_y = 0.625, .exaggeration = 2.5}));
+  add("decimal cells", rough(61, 47, {.cell_x = 30.7, .cell_y = 92.65}));
+  const auto with_holes = [&](const char* name, HeightFieldSettings settings) {
+    Random r = random();
+    settings.cell_x = 7.7, settings.cell_y = 0.71;
+    add(name, make<float>(93, 57, settings, [&](int, int) {
+          const double z = r.uniform(0, 5);
+          return r.below(30) == 0 ? kNaN : z;
+        }));
+  };
+  with_holes("decimal cells, holes", {});
+  with_holes("decimal cells, triangles, holes", {.surface = Surface::triangles});
+  with_holes("decimal cells, solid, holes", {.solid = true});
+  with_holes("decimal cells, periodic, holes", {.wrap = Wrap::periodic});
   add("high above the datum", rough(67, 61, {.cell_x = 0.5, .cell_y = 0.5, .offset = 1e6}));
   add("periodic", rough(64, 48, {.wrap = Wrap::periodic}));
   {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "scarp/march/height/rounding.h"
-
 namespace scarp::bench {
 namespace {
 
@@ -26,6 +24,13 @@ Real height_of_triangle(const CellHeights& h, bool south_east, Real u, Real v) {
   if (!south_east) return h.h00 + u * (static_cast<Real>(h.h10) - h.h00) + v * (static_cast<Real>(h.h01) - h.h00);
   return h.h11 + (1 - u) * (static_cast<Real>(h.h01) - h.h11) + (1 - v) * (static_cast<Real>(h.h10) - h.h11);
 }
+
+// Whether doubles divide by this without rounding.
+bool divides_exactly(double cell) {
+  int exponent = 0;
+  return std::frexp(cell, &exponent) == 0.5;
+}
+bool is_double(Real x) { return static_cast<Real>(static_cast<double>(x)) == x; }
 
 Real clamped(Real x) { return std::clamp<Real>(x, 0, 1); }
 int within(Real cell, int cells) {
@@ -51,12 +56,13 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   dz_ = ray.direction.z / (Real{to.exaggeration} * to.scale);
   low_ = field_.min_sample(), high_ = field_.max_sample();
   offset_ = std::abs(to.offset) / Real{to.scale};
-  const GridRay local = field_.grid_from_world(ray);
-  exact_plan_ = local.origin.x == ox_ && local.origin.y == oy_ && local.direction.x == dx_ && local.direction.y == dy_;
+  exact_plan_ = divides_exactly(to.cell_x) && divides_exactly(to.cell_y) && is_double(oy_) &&
+                field_.rows() - 1 - oy_ == ray.origin.y / Real{to.cell_y};
   t0_ = ray.t_min, t1_ = ray.t_max;
   // A ray that by rounding begins outside of the field, and comes in later, is on the surface where it begins.
   if (on_surface_) put_on_surface();
   if (!wraps_) clip();
+  if (stands_on_ground()) must_hit_ = true;
   if (!(t0_ <= t1_)) return;
   c0_ = on_surface_ ? Real{0} : clearance(t0_);
   if (!c0_ || hugs_border() || holes_between(t0_, t1_)) return;
@@ -80,7 +86,7 @@ void LeakJudge::put_on_surface() {
 void LeakJudge::clip() {
   const auto axis = [&](Real o, Real d, int cells) {
     if (d == 0) {
-      if (!(o >= 0 && o <= cells)) t1_ = t0_ - 1;
+      if (!(o >= 0 && o <= cells)) t1_ = -std::numeric_limits<Real>::infinity();
       return;
     }
     const Real a = -o / d, b = (cells - o) / d;
@@ -220,8 +226,8 @@ LeakJudge::Real LeakJudge::deepest(const Place& place, Real t) const {
 
 const char* LeakJudge::lost(const Hit& hit, double share) const {
   if (hit.status == HitStatus::exhausted) return "given up";
-  if (!(t0_ <= t1_) || !c0_) return nullptr;
-  if (!hit) return must_hit_ ? "a ray that must hit" : nullptr;
+  if (!hit && must_hit_) return "a ray that must hit";
+  if (!hit || !(t0_ <= t1_) || !c0_) return nullptr;
   const Real from = t0_, t = from + share * (hit.t - from);
   // It is known to be above only where it has come in for certain.
   if (!begins_above_ || t < from + late_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
@@ -229,17 +235,53 @@ const char* LeakJudge::lost(const Hit& hit, double share) const {
   return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
 }
 
+// Cells by which rounding may move a line from the ray: numerics.md, "Rims and seams".
+LeakJudge::Real LeakJudge::allowance(int axis) const {
+  return kRoundings * kUnit * (std::abs(axis == 0 ? ox_ : oy_) + (axis == 0 ? field_.cell_cols() : field_.cell_rows()));
+}
+
+// By a quarter of the allowance, it is a vertical ray through a point of ground.
+bool LeakJudge::stands_on_ground() const {
+  if (on_surface_ || dz_ == 0) return false;
+  const Real room = bound(0) + (high_ - low_) * 0x1p-20L;
+  const Real a = (high_ + room - oz_) / dz_, b = (low_ - room - oz_) / dz_;
+  if (!(a < b && a >= ray_.t_min && b <= ray_.t_max)) return false;
+  const auto cells_at = [&](int axis, std::int64_t(&cell)[2]) {
+    const Real p = axis == 0 ? x(a) : y(a), q = axis == 0 ? x(b) : y(b), off = allowance(axis) / 4;
+    if (std::abs(p - q) > off) return false;
+    cell[0] = static_cast<std::int64_t>(std::floor(std::max(p, q) - off));
+    cell[1] = static_cast<std::int64_t>(std::floor(std::min(p, q) + off));
+    return true;
+  };
+  std::int64_t cols[2], rows[2];
+  if (!cells_at(0, cols) || !cells_at(1, rows)) return false;
+  for (const std::int64_t col : cols) {
+    for (const std::int64_t row : rows) {
+      const int width = field_.cell_cols(), depth = field_.cell_rows();
+      if (!wraps_ && !(col >= 0 && row >= 0 && col < width && row < depth)) continue;
+      if (field_.cell_heights({within(static_cast<Real>(col), width), within(static_cast<Real>(row), depth)}))
+        return true;
+    }
+  }
+  return false;
+}
+
 // What numerics.md lets a march take for a touch of the line, or of either line of a node.
 Real LeakJudge::bound_at_rim(const Hit& hit, const CellHeights& h, Real t, Real off) const {
-  const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
-  const GridRay ray = field_.grid_from_world(ray_);
-  double bound = 0;
+  const Real relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+  constexpr Real kQuick = 0x1p10L;  // numerics.md, "Rims and seams"
+  Real most = bound(t);
   for (const int axis : {0, 1}) {
     const double place = axis == 0 ? hit.u : hit.v;
-    if (std::min(place, 1 - place) <= off && ray.direction[axis] != 0)
-      bound = std::max(bound, scarp::rounding_at_rim(field_, ray, static_cast<double>(t), relief, axis, 0));
+    const Real across = std::abs(axis == 0 ? dx_ : dy_), along = std::abs(axis == 0 ? dy_ : dx_);
+    if (std::min(place, 1 - place) > off) continue;
+    Real quick = 0;
+    if (field_.nodata_count() > 0 && across > 0)
+      quick = std::min(allowance(axis) / across * (std::abs(dz_) + along * relief),
+                       kQuick * allowance(axis) * (high_ - low_));
+    most = std::max(most, bound(t) + std::max(allowance(0), allowance(1)) * relief + quick);
   }
-  return bound;
+  return most;
 }
 
 const char* LeakJudge::false_hit(const Hit& hit) const {
@@ -253,15 +295,16 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const auto place = place_of(hit);
   if (!place) return "in a hole";
   const Real t = hit.t, e = sideways(t), b = bound(t);
-  // A rim may be touched from beside it.
-  const GridRay ray = field_.grid_from_world(ray_);
-  if (std::abs(x(t) - place->col - hit.u) > std::max<Real>(e, rounding_of_line(field_, ray, 0, 0)) ||
-      std::abs(y(t) - place->row - hit.v) > std::max<Real>(e, rounding_of_line(field_, ray, 1, 0))) {
+  // A rim may be touched from beside it, as far as rounding can tell.
+  if (std::abs(x(t) - place->col - hit.u) > e + allowance(0) ||
+      std::abs(y(t) - place->row - hit.v) > e + allowance(1)) {
     return "not where the ray is";
   }
   const Real ground =
       triangles_ ? height_of_triangle(place->h, south_east(*place, t), hit.u, hit.v) : height(place->h, hit.u, hit.v);
   const Real c = z(t) - ground;
+  const Real room = 2 * bound_at_rim(hit, place->h, t, 1);
+  if (z(t) > high_ + room || (!hit.wall && z(t) < low_ - room)) return "not at a height of the ground";
   if (hit.wall) {
     if (!field_.settings().solid) return "a wall in a sheet";
     if (c > b) return "a wall above the ground";
@@ -325,7 +368,7 @@ std::optional<double> LeakJudge::cut_behind(const Hit& hit) const {
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
   if (f.b > 0 || f.b + 2 * f.a * length > 0) return {};
   if (f.f + f.b * length + f.a * length * length > -2 * bound(t)) return {};
-  return t < ray_.t_max ? std::optional(t) : std::nullopt;
+  return t < ray_.t_max && t > hit.t ? std::optional(t) : std::nullopt;
 }
 
 std::optional<double> LeakJudge::cut_before(const Hit& hit) const {
@@ -337,7 +380,7 @@ std::optional<double> LeakJudge::cut_before(const Hit& hit) const {
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
   if (f.b > 0 || f.b - 2 * f.a * length > 0) return {};
   if (f.f - f.b * length + f.a * length * length < 2 * bound(t)) return {};
-  return t > ray_.t_min ? std::optional(t) : std::nullopt;
+  return t > ray_.t_min && t < hit.t ? std::optional(t) : std::nullopt;
 }
 
 bool LeakJudge::same(const Hit& a, const Hit& b) const {

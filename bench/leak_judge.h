@@ -5,7 +5,7 @@
 // All is computed in 64-bit-mantissa long double from world coordinates, so the judge's own rounding is 2^-11 of the
 // marches'. B below is what rounding may add to a clearance in a march: 16 u (abs(o_z) + abs(d_z t) + max abs(sample) +
 // (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md. What lies inside B of a
-// decision is not judged.
+// decision is not judged. None of the marches' own rules are used.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,8 @@ class LeakJudge {
   /// Whether the ray hits for certain: above the ground by more than B where it begins (or from the surface, which is
   /// above by definition), under it by more than B where it ends, and no hole under any cell that it can touch in
   /// between: the clearance is continuous, so it goes through zero. Or, in solid ground, in through the border under
-  /// the surface.
+  /// the surface. Or it comes from above all ground to below it, and moves so little sideways that rounding cannot tell
+  /// it from a vertical ray through a point of ground, borders and rims included.
   bool must_hit() const { return must_hit_; }
 
   /// Why an answer has lost a hit, or null: it tells none, or one behind a place where a ray from above is already
@@ -78,6 +79,8 @@ class LeakJudge {
   void put_on_surface();
   void clip();
   bool hugs_border() const;
+  bool stands_on_ground() const;
+  Real allowance(int axis) const;
   bool holes_between(Real from, Real to) const;
   std::optional<Place> place_at(Real t) const;
   std::optional<Place> place_of(const Hit& hit) const;

@@ -154,6 +154,40 @@ class Maker {
     return ray;
   }
 
+  // Off the vertical by the cosine of 90 degrees, the noise of quaternions, or 2^-30 to 2^-1000; at a node or an edge,
+  // half of them at a border or a rim, a quarter beside it by the rounding of the place.
+  Ray leaning() {
+    Node node = any_node();
+    if (!ground_.rim.empty() && r_.below(2))
+      node = ground_.rim[static_cast<std::size_t>(r_.below(static_cast<int>(ground_.rim.size())))];
+    else if (r_.below(2))
+      (r_.below(2) ? node.col : node.row) = 0;
+    else if (r_.below(2))
+      node.col = f_.cell_cols();
+    dvec3 on = at(node);
+    if (r_.below(2)) on[r_.below(2)] += r_.uniform(0, 1) * cell_;
+    if (r_.below(4) == 0) on[r_.below(2)] *= 1 + 0x1p-53 * r_.uniform(-2, 2);
+    const auto lean = [&] {
+      const double sign = r_.below(2) ? 1 : -1;
+      switch (r_.below(4)) {
+        case 0:
+          return sign * 6.123233995736766e-17;
+        case 1:
+          return r_.uniform(-4, 4) * 0x1p-53;
+        case 2:
+          return sign * std::ldexp(1.0, -30 - r_.below(60));
+        default:
+          return sign * std::ldexp(1.0, -30 - r_.below(971));
+      }
+    };
+    const double high = height_above();
+    dvec3 direction(lean(), r_.below(2) ? lean() : 0, -1);
+    if (r_.below(2)) std::swap(direction.x, direction.y);
+    on.z = f_.min_height();
+    const double down = relief_ + high;
+    return along(on - direction * down, direction, down + high);
+  }
+
   Ray far() {
     const dvec3 to = r_.below(2) ? at(any_node()) : anywhere();
     const double away = std::pow(10.0, 5 + r_.below(3)), azimuth = r_.uniform(0, 2 * kPi);
@@ -270,7 +304,7 @@ class Maker {
 std::string_view name_of(LeakClass leak_class) {
   constexpr std::string_view kNames[] = {"nodes",     "edges",   "diagonals", "axis", "vertical", "tangent",
                                          "two-nodes", "border",  "rims",      "seam", "below",    "plane",
-                                         "saddles",   "surface", "far",       "any"};
+                                         "saddles",   "surface", "leaning",   "far",  "any"};
   static_assert(std::size(kNames) == std::size(kLeakClasses));
   return kNames[static_cast<std::size_t>(leak_class)];
 }
@@ -323,6 +357,8 @@ Ray make_leak_ray(LeakClass leak_class, const LeakField& ground, Random& random,
       return make.saddles();
     case LeakClass::surface:
       return make.surface();
+    case LeakClass::leaning:
+      return make.leaning();
     case LeakClass::far:
       return make.far();
     case LeakClass::any:

@@ -27,13 +27,15 @@ enum class LeakClass : std::uint8_t {
   plane,      ///< from the surface of a plane, in it and a hair beside it
   saddles,    ///< from the surface of saddles
   surface,    ///< from the surface, anywhere
+  leaning,    ///< nearly vertical, at nodes and edges, on borders and rims
   far,        ///< at nodes from 10^5 to 10^7 m away
   any,        ///< from anywhere to anywhere
 };
 constexpr LeakClass kLeakClasses[] = {LeakClass::nodes,    LeakClass::edges,   LeakClass::diagonals, LeakClass::axis,
                                       LeakClass::vertical, LeakClass::tangent, LeakClass::two_nodes, LeakClass::border,
                                       LeakClass::rims,     LeakClass::seam,    LeakClass::below,     LeakClass::plane,
-                                      LeakClass::saddles,  LeakClass::surface, LeakClass::far,       LeakClass::any};
+                                      LeakClass::saddles,  LeakClass::surface, LeakClass::leaning,   LeakClass::far,
+                                      LeakClass::any};
 std::string_view name_of(LeakClass leak_class);
 
 /// Whether the class is about that kind of ground at all: rims need holes, the seam a field that wraps round.

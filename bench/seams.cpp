@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench seams`: very many rays at the lines where height fields meet, as fields of a scene and as tiles. A ray
-// that comes from above all ground and is below all of it before it leaves the terrain must hit, whatever is between.
+// that comes from above all ground and is below all of it before it leaves the terrain must hit, whatever is between,
+// and where it hits the ground is as high as the ray: the judge interpolates the samples in long double.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,102 +25,182 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kTiles = 4, kCells = 32, kSide = kTiles * kCells + 1;
+constexpr int kTiles = 4;
 constexpr std::int64_t kPiece = 4096;
 constexpr double kRelief = 6;  // metres from the lowest to the highest ground
 
-// A terrain of kTiles x kTiles fields, with a corner of the world at its south-west sample.
+// A terrain of kTiles x kTiles fields of `cells` x `cells`, with its south-west sample at the origin of `place`.
 struct SeamTerrain {
   std::string name;
-  Scene scene;
-  double cell, corner, base;
+  int cells;
+  double cell, base;
+  Surface surface;
+  bool levels;  // of resolution
+  Placement place{};
+  std::optional<Scene> scene{};
+
+  int side() const { return kTiles * cells + 1; }
 };
 
-// The share of the relief at a node of the whole terrain, the same for all fields that meet there.
-double relief_at(int col, int row, std::uint64_t seed) {
-  const double rough = Random(seed, static_cast<std::uint64_t>(row * kSide + col)).uniform();
-  return 0.5 + 0.3 * std::sin(0.17 * col) * std::cos(0.13 * row) + 0.2 * (2 * rough - 1);
+// A node of the whole terrain, the same for all fields that meet there.
+float sample_at(const SeamTerrain& of, int col, int row, std::uint64_t seed) {
+  const double rough = Random(seed, static_cast<std::uint64_t>(row * of.side() + col)).uniform();
+  const double share = 0.5 + 0.3 * std::sin(0.17 * col) * std::cos(0.13 * row) + 0.2 * (2 * rough - 1);
+  return static_cast<float>(of.base + kRelief * share);
 }
 
-HeightField field_of_tile(int tile_col, int tile_row, int level, double cell, double base, Surface surface,
-                          std::uint64_t seed) {
-  const int step = 1 << level, side = kCells / step + 1;
+// The ground at a place of a terrain of one resolution, in the terrain's own space.
+long double ground_at(const SeamTerrain& of, long double x, long double y, std::uint64_t seed) {
+  const long double at_col = x / of.cell, at_row = of.side() - 1 - y / of.cell;
+  const auto cell = [&](long double at) { return static_cast<int>(std::clamp<long double>(at, 0, of.side() - 2)); };
+  const int col = cell(at_col), row = cell(at_row);
+  const long double u = at_col - col, v = at_row - row;
+  const long double h00 = sample_at(of, col, row, seed), h10 = sample_at(of, col + 1, row, seed),
+                    h01 = sample_at(of, col, row + 1, seed), h11 = sample_at(of, col + 1, row + 1, seed);
+  if (of.surface == Surface::bilinear) return (h00 * (1 - u) + h10 * u) * (1 - v) + (h01 * (1 - u) + h11 * u) * v;
+  return u + v <= 1 ? h00 * (1 - u - v) + h10 * u + h01 * v : h11 * (u + v - 1) + h10 * (1 - v) + h01 * (1 - u);
+}
+
+HeightField field_of_tile(const SeamTerrain& of, int tile_col, int tile_row, int level, std::uint64_t seed) {
+  const int step = 1 << level, side = of.cells / step + 1;
   std::vector<float> samples;
   for (int row = 0; row < side; ++row) {
-    for (int col = 0; col < side; ++col) {
-      const double share = relief_at(tile_col * kCells + col * step, tile_row * kCells + row * step, seed);
-      samples.push_back(static_cast<float>(base + kRelief * share));
-    }
+    for (int col = 0; col < side; ++col)
+      samples.push_back(sample_at(of, tile_col * of.cells + col * step, tile_row * of.cells + row * step, seed));
   }
   return HeightField::own(std::move(samples), side, side,
-                          {.cell_x = cell * step, .cell_y = cell * step, .surface = surface});
+                          {.cell_x = of.cell * step, .cell_y = of.cell * step, .surface = of.surface});
 }
 
-SeamTerrain fields_in_a_scene(double cell, double corner, Surface surface, std::uint64_t seed) {
+std::string name_of(Surface surface) { return surface == Surface::bilinear ? "bilinear" : "triangles"; }
+
+SeamTerrain fields_in_a_scene(double cell, int cells, const Placement& place, Surface surface, std::uint64_t seed) {
+  SeamTerrain made{fmt::format("scene, {}, cell {} at {:.0f}", name_of(surface), cell, length(place.origin)),
+                   cells,
+                   cell,
+                   0,
+                   surface,
+                   false,
+                   place};
   std::vector<ScenePart> parts;
   for (int i = 0; i < kTiles * kTiles; ++i) {
     const int col = i % kTiles, row = i / kTiles;
-    const double x = corner + col * kCells * cell, y = corner + (kTiles - 1 - row) * kCells * cell;
-    parts.push_back({Terrain(field_of_tile(col, row, 0, cell, 0, surface, seed)), {.origin = {x, y, 0}}});
+    const dvec3 corner(col * cells * cell, (kTiles - 1 - row) * cells * cell, 0);
+    parts.push_back({Terrain(field_of_tile(made, col, row, 0, seed)), placed(place, {.origin = corner})});
   }
-  return {
-      fmt::format("scene, {}, cell {} at {}", surface == Surface::bilinear ? "bilinear" : "triangles", cell, corner),
-      combine(parts), cell, corner, 0};
+  made.scene = combine(parts);
+  return made;
 }
 
-SeamTerrain tiles(double cell, double base, bool levels, Surface surface, std::uint64_t seed) {
-  TiledTerrain terrain({kTiles, kTiles, kCells, kCells, {.cell_x = cell, .cell_y = cell, .surface = surface}});
+SeamTerrain tiles(double cell, int cells, double base, bool levels, const Placement& place, Surface surface,
+                  std::uint64_t seed) {
+  SeamTerrain made{fmt::format("tiles{}, {}, cell {}, base {} m at {:.0f}", levels ? " of 4 levels" : "",
+                               name_of(surface), cell, base, length(place.origin)),
+                   cells,
+                   cell,
+                   base,
+                   surface,
+                   levels,
+                   place};
+  TiledTerrain terrain({kTiles, kTiles, cells, cells, {.cell_x = cell, .cell_y = cell, .surface = surface}});
   terrain.edit([&](auto& editor) {
     for (int i = 0; i < kTiles * kTiles; ++i) {
       const int col = i % kTiles, row = i / kTiles;
-      editor.put({col, row}, field_of_tile(col, row, levels ? (3 * col + row) % 4 : 0, cell, base, surface, seed));
+      editor.put({col, row}, field_of_tile(made, col, row, levels ? (3 * col + row) % 4 : 0, seed));
     }
   });
-  return {fmt::format("tiles{}, {}, cell {}, base {} m", levels ? " of 4 levels" : "",
-                      surface == Surface::bilinear ? "bilinear" : "triangles", cell, base),
-          terrain.read().scene(), cell, 0, base};
+  made.scene = place.identity() ? terrain.read().scene() : combine({{terrain.read(), place}});
+  return made;
 }
 
 std::vector<SeamTerrain> terrains(std::uint64_t seed) {
+  const auto turned = [](double radians, const dvec3& axis) {
+    return glm::dmat3(glm::rotate(glm::dmat4(1), radians, axis));
+  };
+  const Placement far{.origin = {123456.7, 123456.7, 0}},
+      askew{.turn = turned(0.6, {0, 0, 1}), .origin = {1e3, -2e3, 5}};
+  // On the surface of the earth, counted from its centre.
+  const Placement earth{.turn = turned(0.9, {1, 2, 3}), .origin = {4.1e6, 3.2e6, -3.7e6}};
   std::vector<SeamTerrain> all;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
-    all.push_back(fields_in_a_scene(1, 0, surface, seed));
-    all.push_back(fields_in_a_scene(0.3, 0, surface, seed));
-    all.push_back(fields_in_a_scene(0.1, 123456.7, surface, seed));
-    all.push_back(tiles(0.3, 0, false, surface, seed));
-    all.push_back(tiles(0.3, 0, true, surface, seed));
-    all.push_back(tiles(1.0 / 3, 8000, true, surface, seed));
+    all.push_back(fields_in_a_scene(1, 32, {}, surface, seed));
+    all.push_back(fields_in_a_scene(0.3, 31, {}, surface, seed));
+    all.push_back(fields_in_a_scene(0.1, 32, far, surface, seed));
+    all.push_back(fields_in_a_scene(30.7, 23, askew, surface, seed));
+    all.push_back(fields_in_a_scene(7.7, 24, earth, surface, seed));
+    all.push_back(fields_in_a_scene(92.65, 17, earth, surface, seed));
+    all.push_back(tiles(0.3, 32, 0, false, {}, surface, seed));
+    all.push_back(tiles(0.3, 32, 0, true, {}, surface, seed));
+    all.push_back(tiles(1.0 / 3, 32, 8000, true, {}, surface, seed));
+    all.push_back(tiles(30.7, 16, 0, false, {}, surface, seed));
+    all.push_back(tiles(0.71, 24, 0, true, {}, surface, seed));
+    all.push_back(tiles(92.6, 19, 0, false, earth, surface, seed));
   }
   return all;
 }
 
 // How a ray comes to the seam; each crosses a line where fields meet near the ground there.
-enum class Aim { steep, flat, corner, along, upright };
-constexpr std::array kAims{Aim::steep, Aim::flat, Aim::corner, Aim::along, Aim::upright};
-constexpr std::array kAimNames{"steep", "flat", "corner", "along a seam", "upright"};
+enum class Aim { steep, flat, corner, along, upright, leaning, leaning_corner };
+constexpr std::array kAims{Aim::steep,   Aim::flat,    Aim::corner,        Aim::along,
+                           Aim::upright, Aim::leaning, Aim::leaning_corner};
+constexpr std::array kAimNames{
+    "steep", "flat", "corner", "along a seam", "upright", "nearly upright", "corner, nearly upright"};
 
-// A ray from above all ground to below it within the terrain.
+// By how much a direction is off the vertical: the cosine of 90 degrees, the noise of quaternions, 2^-30 to 2^-1000.
+double lean(Random& random) {
+  const double sign = random.below(2) ? 1 : -1;
+  switch (random.below(4)) {
+    case 0:
+      return sign * 6.123233995736766e-17;
+    case 1:
+      return random.uniform(-4, 4) * 0x1p-53;
+    case 2:
+      return sign * std::ldexp(random.uniform(0.5, 1), -30 - random.below(60));
+    default:
+      return sign * std::ldexp(random.uniform(0.5, 1), -30 - random.below(971));
+  }
+}
+
+// A ray from above all ground to below it within the terrain, in the terrain's own space.
 Ray ray_to_seam(const SeamTerrain& to, Aim aim, Random& random) {
-  const double length = kTiles * kCells * to.cell, tile = kCells * to.cell;
+  const double length = kTiles * to.cells * to.cell, tile = to.cells * to.cell;
   const auto seam = [&] { return tile * (1 + random.below(kTiles - 1)); };
   for (;;) {
     dvec3 p(seam(), random.uniform(0, length), to.base + kRelief * random.uniform());
-    if (aim == Aim::corner) p.y = seam();
+    if (aim == Aim::corner || aim == Aim::leaning_corner) p.y = seam();
     dvec3 d(random.uniform(-1, 1), random.uniform(-1, 1), -1);
     if (aim == Aim::steep) d.x *= 0.1, d.y *= 0.1;
     if (aim == Aim::flat) d.z = -random.uniform(0.2, 0.5) * kRelief / tile;
     if (aim == Aim::along) d.x = 0;
     if (aim == Aim::upright) d.x = d.y = 0;
+    if (aim == Aim::leaning || aim == Aim::leaning_corner) {
+      d.x = lean(random), d.y = random.below(2) ? lean(random) : 0;
+      // Beside the seam by rounding, of this place or of the world's.
+      if (random.below(2)) p.x += random.uniform(-2, 2) * 0x1p-53 * (p.x + glm::length(to.place.origin));
+    }
     if (random.below(2)) std::swap(p.x, p.y), std::swap(d.x, d.y);
-    p += dvec3(to.corner, to.corner, 0);
     const Ray ray{.origin = p - d * ((to.base + kRelief + 1 - p.z) / -d.z), .direction = d};
     const dvec3 end = ray.at((kRelief + 2) / -d.z);
-    const auto inside = [&](const dvec3& q) {
-      const double x = q.x - to.corner, y = q.y - to.corner;
-      return std::min(x, y) > 0 && std::max(x, y) < length;
-    };
+    const auto inside = [&](const dvec3& q) { return std::min(q.x, q.y) > 0 && std::max(q.x, q.y) < length; };
     if (inside(ray.origin) && inside(end)) return ray;
   }
+}
+
+Ray placed_ray(const SeamTerrain& to, const Ray& ray) {
+  Ray world = ray;
+  world.origin = to.place.world_from_field(ray.origin);
+  world.direction = to.place.turn * ray.direction;
+  return world;
+}
+
+// Whether a hit is where the ray meets the ground, to the accuracy that is promised: a thousandth of a cell,
+// vertically.
+bool is_on_ground(const SeamTerrain& of, const Ray& ray, const Hit& hit, std::uint64_t seed) {
+  const long double t = hit.t, z = ray.origin.z + ray.direction.z * t, room = 1e-3L * of.cell;
+  if (std::abs(hit.height - z) > room || z < of.base - room || z > of.base + kRelief + room) return false;
+  if (of.levels) return true;
+  return std::abs(z - ground_at(of, ray.origin.x + ray.direction.x * t, ray.origin.y + ray.direction.y * t, seed)) <=
+         room;
 }
 
 }  // namespace
@@ -126,7 +209,7 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
   const Stopwatch watch;
   const std::vector<SeamTerrain> all = terrains(options.seed);
   struct Count {
-    std::atomic<std::int64_t> rays{0}, lost{0}, any_lost{0};
+    std::atomic<std::int64_t> rays{0}, lost{0}, any_lost{0}, wrong{0};
   };
   std::vector<Count> counts(all.size() * kAims.size());
   const std::int64_t pieces = (options.rays + kPiece - 1) / kPiece;
@@ -135,23 +218,29 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
       const std::size_t which = static_cast<std::size_t>(piece) % counts.size();
       const SeamTerrain& terrain = all[which / kAims.size()];
       const std::int64_t first = piece * kPiece, count = std::min(kPiece, options.rays - first);
-      std::vector<Ray> rays;
+      std::vector<Ray> own, rays;
       for (std::int64_t i = 0; i < count; ++i) {
         Random random(options.seed + 1, static_cast<std::uint64_t>(first + i));
-        rays.push_back(ray_to_seam(terrain, kAims[which % kAims.size()], random));
+        own.push_back(ray_to_seam(terrain, kAims[which % kAims.size()], random));
+        rays.push_back(placed_ray(terrain, own.back()));
       }
       std::vector<Hit> hits(rays.size());
       std::vector<std::uint8_t> blocked(rays.size());
-      terrain.scene.closest_hits(rays, hits);
-      terrain.scene.occluded(rays, blocked);
+      terrain.scene->closest_hits(rays, hits);
+      terrain.scene->occluded(rays, blocked);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit alone = terrain.scene->closest_hit(rays[i]);
+        counts[which].wrong +=
+            !(alone == hits[i]) || (hits[i] && !is_on_ground(terrain, own[i], hits[i], options.seed));
+      }
       counts[which].rays += count;
       counts[which].lost += std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit; });
       counts[which].any_lost += std::count(blocked.begin(), blocked.end(), 0);
     }
   });
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{{"terrain", "rays to", "rays", "lost", "any-hit lost"}};
-  std::int64_t lost = 0;
+  std::vector<std::vector<std::string>> lines{{"terrain", "rays to", "rays", "lost", "any-hit lost", "wrong"}};
+  std::int64_t lost = 0, wrong = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     Json row;
     row["terrain"] = all[i / kAims.size()].name;
@@ -159,10 +248,12 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
     row["rays"] = counts[i].rays.load();
     row["lost"] = counts[i].lost.load();
     row["any_hit_lost"] = counts[i].any_lost.load();
+    row["wrong"] = counts[i].wrong.load();
     row["seed"] = options.seed;
     lost += counts[i].lost + counts[i].any_lost;
+    wrong += counts[i].wrong;
     lines.push_back({row["terrain"], row["aim"], short_number(row["rays"]), short_number(row["lost"]),
-                     short_number(row["any_hit_lost"])});
+                     short_number(row["any_hit_lost"]), short_number(row["wrong"])});
     rows.push_back(row);
   }
   fmt::print("{} rays, seed {}\n", options.rays, options.seed);
@@ -170,7 +261,8 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
   fmt::print("{:.0f} s, {:.3g} us of processor time per ray\n", watch.wall_s(),
              1e6 * watch.cpu_s() / static_cast<double>(options.rays));
   write_json(report, rows);
-  if (lost > 0) throw Error(fmt::format("seams: {} of {} rays were lost", lost, options.rays));
+  if (lost > 0 || wrong > 0)
+    throw Error(fmt::format("seams: {} of {} rays were lost, {} hit elsewhere", lost, options.rays, wrong));
 }
 
 }  // namespace scarp::bench

@@ -239,22 +239,36 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
     col -= std::floor(col / cols) * cols;
     row -= std::floor(row / rows) * rows;
   }
-  // NaN counts as outside.
-  if (!(col >= 0 && col <= cols && row >= 0 && row <= rows)) return {};
+  // NaN counts as outside, and rounding beside the border as on it.
+  const auto inside = [](double position, int cells) {
+    const double off = rounding_of_line(position, cells);
+    return position >= -off && position <= cells + off;
+  };
+  if (!(inside(col, cols) && inside(row, rows))) return {};
+  col = std::clamp(col, 0.0, static_cast<double>(cols)), row = std::clamp(row, 0.0, static_cast<double>(rows));
   return ground_at({{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)},
                     col - std::min(std::floor(col), cols - 1.0),
                     row - std::min(std::floor(row), rows - 1.0)});
 }
 
 HeightField::Place HeightField::ground_at(const Place& place) const {
-  if (nodata_count() == 0 || (place.u != 0 && place.v != 0) || cell_heights(place.cell)) return place;
+  if (nodata_count() == 0 || cell_heights(place.cell)) return place;
   const int cols = cell_cols(), rows = cell_rows();
-  for (const auto& [west, north] : {std::pair(1, 0), {0, 1}, {1, 1}}) {
-    if ((west && place.u != 0) || (north && place.v != 0)) continue;
-    Place before = place;
-    if (west) before.cell.col = wraps() ? (place.cell.col + cols - 1) % cols : place.cell.col - 1, before.u = 1;
-    if (north) before.cell.row = wraps() ? (place.cell.row + rows - 1) % rows : place.cell.row - 1, before.v = 1;
-    if (before.cell.col >= 0 && before.cell.row >= 0 && cell_heights(before.cell)) return before;
+  const double off_u = rounding_of_line(place.cell.col + place.u, cols),
+               off_v = rounding_of_line(place.cell.row + place.v, rows);
+  // Steps to the cells that have this place on their rims, too: one before, none, one behind.
+  const auto reaches = [](int step, double at, double off) {
+    return step < 0 ? at <= off : step > 0 ? at >= 1 - off : true;
+  };
+  const auto stepped = [&](int cell, int step, int cells) {
+    return wraps() ? (cell + step + cells) % cells : cell + step;
+  };
+  for (const auto& [east, south] : {std::pair(-1, 0), {0, -1}, {-1, -1}, {1, 0}, {0, 1}, {1, -1}, {-1, 1}, {1, 1}}) {
+    if (!reaches(east, place.u, off_u) || !reaches(south, place.v, off_v)) continue;
+    const Cell cell{stepped(place.cell.col, east, cols), stepped(place.cell.row, south, rows)};
+    if (cell.col < 0 || cell.row < 0 || cell.col >= cols || cell.row >= rows || !cell_heights(cell)) continue;
+    const auto beside = [](int step, double at) { return step < 0 ? 1.0 : step > 0 ? 0.0 : at; };
+    return {cell, beside(east, place.u), beside(south, place.v)};
   }
   return place;
 }

@@ -153,15 +153,26 @@ class HeightField {
   }
 
   /// Returns the cell that contains a world position, [col, col+1) x [row, row+1) with the last column and row closed,
-  /// and the position (u, v) in it. On the rim of a hole that is a cell with ground; otherwise it may be a hole.
-  /// Returns nullopt outside a field without wrap.
+  /// and the position (u, v) in it. On the rim of a hole that is a cell with ground; otherwise it may be a hole. A
+  /// position beside the border or a rim by no more than rounding_of_line() is on it. Returns nullopt outside a field
+  /// without wrap.
   struct Place {
     Cell cell;
     double u, v;
   };
   std::optional<Place> place(double x, double y) const;
-  /// Returns the same place in a cell with ground, if it is on the rim of its cell, a hole, and that of a cell before.
+  /// Returns the same place in a cell with ground, if it is on the rim of its cell, a hole, and that of a cell with
+  /// ground: of those before, to the west, the north or both, the first, otherwise of those behind.
   Place ground_at(const Place& place) const;
+
+  /// Cells by which rounding may move a position from a grid line that it is on, for a field of so many cells along the
+  /// axis. A world coordinate turned into grid units takes 3 roundings (the cell as 1 / size, the product, the
+  /// difference), a ray at a time 3 more, and the coordinates of a caller, col * cell, 1: together 7 of the position,
+  /// or of the number of cells, each 2^-53. With as many for the line's own time, that is below 16.
+  static double rounding_of_line(double position, int cells) {
+    constexpr double kUnit = 0x1p-53, kRoundings = 16;
+    return kRoundings * kUnit * (std::abs(position) + cells);
+  }
 
   /// Returns the corner heights of a cell, or nullopt for a hole. The cell must exist.
   std::optional<CellHeights> cell_heights(Cell cell) const;

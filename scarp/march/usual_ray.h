@@ -21,12 +21,21 @@ inline bool is_usual(double longest) { return longest > kShortestUsual && longes
 /// Whether there is a direction at all: neither zero nor infinite nor NaN.
 inline bool is_direction(double longest) { return longest > 0 && std::isfinite(longest); }
 
+/// Whether validate() accepts the ray's numbers; marches need not end for others.
+inline bool is_followable(const Ray& ray) {
+  const double origin = longest_of(ray.origin);
+  const bool numbers =
+      std::isfinite(ray.origin.x + ray.origin.y + ray.origin.z) || (std::isfinite(origin) && ray.origin == ray.origin);
+  return numbers && is_direction(longest_of(ray.direction)) && ray.direction == ray.direction &&
+         std::isfinite(ray.t_min) && ray.t_min <= ray.t_max;
+}
+
 /// The ray with its direction divided by 2^exponent, and its range multiplied; its t are 2^exponent times those of
 /// `ray`. Its range ends where the t of `ray` are no longer finite: what is farther is missed.
 inline Ray scaled_down(const Ray& ray, int exponent) {
   Ray scaled = ray;
   for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
-  scaled.t_min = std::ldexp(ray.t_min, exponent);
+  scaled.t_min = std::max(std::ldexp(ray.t_min, exponent), std::numeric_limits<double>::lowest());
   scaled.t_max = std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent);
   return scaled;
 }

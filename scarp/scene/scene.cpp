@@ -14,6 +14,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
+#include "scarp/march/usual_ray.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
 #include "scarp/scene/scene_limits.h"
@@ -206,6 +207,13 @@ void Scene::trace_tree(const StartedRay& ray, Hit& best, MarchStats* stats) cons
 Hit Scene::closest(const StartedRay& ray, MarchStats* stats) const {
   Hit best;
   if (stats) *stats = {};
+  if (!is_followable(ray.ray)) return best;
+  if (is_too_long(ray.ray)) {
+    const Ray shorter = scaled_down(ray.ray, kShorter);
+    best = closest(ray.with(shorter), stats);
+    best.t = std::ldexp(best.t, -kShorter);
+    return best;
+  }
   for (const std::uint32_t object : beside_tree_) trace(ray, object, best, stats);
   trace_tree(ray, best, stats);
   return best;
@@ -221,7 +229,7 @@ Hit Scene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const
     if (stats) *stats = {.steps = steps};
     return hit;
   }
-  if (alone_) return field_of(0).closest_hit(ray, from, stats);
+  if (alone_ && is_followable(ray)) return field_of(0).closest_hit(ray, from, stats);
   return closest({ray, from}, stats);
 }
 
@@ -262,10 +270,15 @@ bool Scene::occluded(const Ray& ray, const Hit* from) const {
     occluded_by_back_end({&ray, 1}, {&blocked, 1}, from ? From(&from, 1) : From());
     return blocked != 0;
   }
-  return sole_ ? field_of(sole_object_).occluded(ray, from) : any({ray, from});
+  return sole_ && is_followable(ray) ? field_of(sole_object_).occluded(ray, from) : any({ray, from});
 }
 
 bool Scene::any(const StartedRay& ray) const {
+  if (!is_followable(ray.ray)) return false;
+  if (is_too_long(ray.ray)) {
+    const Ray shorter = scaled_down(ray.ray, kShorter);
+    return any(ray.with(shorter));
+  }
   return std::any_of(beside_tree_.begin(), beside_tree_.end(),
                      [&](std::uint32_t object) { return blocks(ray, object); }) ||
          tree_blocks(ray);
@@ -348,14 +361,14 @@ void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::sp
   if (alone_) return field_of(0).closest_hits_on_all_threads(rays, hits, steps, from);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (steps.empty()) {
+    if (steps.empty() && !any_odd(rays.subspan(first, count))) {
       return closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                               hits.subspan(first, count));
     }
     for (std::size_t i = first; i < first + count; ++i) {
       MarchStats stats;
       hits[i] = closest({rays, from, i}, &stats);
-      steps[i] = stats.steps;
+      if (!steps.empty()) steps[i] = stats.steps;
     }
   });
 }
@@ -368,6 +381,10 @@ void Scene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
   if (sole_) return field_of(sole_object_).occluded_on_all_threads(rays, blocked, from);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+    if (any_odd(rays.subspan(first, count))) {
+      for (std::size_t i = first; i < first + count; ++i) blocked[i] = any({rays, from, i});
+      return;
+    }
     occluded_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                       blocked.subspan(first, count));
   });

@@ -97,11 +97,11 @@ class Scene {
   /// all other scenes. A plinth does not count.
   const DeviceTerrain* device_terrain() const;
 
-  /// Returns the closest hit. Without a hit, the status is `exhausted` if a march reached its limit, else `below` if
-  /// the ray starts below the ground of an object and never emerges, else `miss`. Objects whose bounding boxes the ray
-  /// misses are not queried, so a ray that starts below bounded ground may also return `miss`; within() tests whether a
-  /// point is below ground. If a march reaches its limit, hits on other objects are still found. Overwrites `stats` if
-  /// not null; back ends set only its steps.
+  /// Returns the closest hit; `miss` for a ray whose numbers cast() refuses. Without a hit, the status is `exhausted`
+  /// if a march reached its limit, else `below` if the ray starts below the ground of an object and never emerges, else
+  /// `miss`. Objects whose bounding boxes the ray misses are not queried, so a ray that starts below bounded ground may
+  /// also return `miss`; within() tests whether a point is below ground. If a march reaches its limit, hits on other
+  /// objects are still found. Overwrites `stats` if not null; back ends set only its steps.
   Hit closest_hit(const Ray& ray, const Hit* from = nullptr, MarchStats* stats = nullptr) const;
   /// Returns whether anything blocks the ray: true if closest_hit() returns a hit, with three exceptions. Plinths block
   /// nothing. Terrain functions may have a different number of octaves for shadows (Octaves in field/function_node.h).
@@ -118,7 +118,8 @@ class Scene {
                 std::span<const Hit* const> from = {}) const;
 
   /// Returns the queries by rules: masks, sides, a filter. See scene_query.h.
-  SceneQuery query(SceneRules rules) const;
+  SceneQuery query(SceneRules rules) const&;
+  SceneQuery query(SceneRules rules) && = delete;  ///< the query refers to the scene
 
   /// Returns the surface at a hit of this ray: position, normals, material, colour.
   SceneSurface surface(const Ray& ray, const Hit& hit) const;

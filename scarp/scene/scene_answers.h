@@ -2,6 +2,10 @@
 // Private to the station: shared by single-ray and batch queries of a scene.
 #pragma once
 
+#include <algorithm>
+#include <span>
+
+#include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_ray.h"
 #include "scarp/scene/scene.h"
 
@@ -20,6 +24,12 @@ struct Scene::StartedRay {
   StartedRay(std::span<const Ray> rays, From hits, std::size_t i, const SceneRules* scene_rules = nullptr)
       : ray(rays[i]), own(hits.empty()), from(own ? nullptr : hits[i]), rules(scene_rules) {}
 
+  /// The same start of another ray, which must exist as long.
+  StartedRay with(const Ray& other) const {
+    StartedRay started(other, from, rules);
+    started.own = own;
+    return started;
+  }
   /// Returns the hit on this object on which the ray starts, or null.
   const Hit* from_on(std::uint32_t object) const { return from && from->object == object ? from : nullptr; }
 };
@@ -27,6 +37,14 @@ struct Scene::StartedRay {
 /// Returns Ray::frame of rays in the space of a field that stands there.
 inline std::uint8_t frame_of(const Placement& placement) {
   return static_cast<std::uint8_t>(VoxelTies(transpose(placement.turn)).bits);
+}
+
+/// Whether placements may turn the direction into no number. Such a ray is 2^kShorter times shorter, and its t longer.
+constexpr int kShorter = 100;
+inline bool is_too_long(const Ray& ray) { return !(longest_of(ray.direction) < 0x1p900); }
+/// Whether one of the rays is such, or has numbers that cast() refuses: then each is followed by itself.
+inline bool any_odd(std::span<const Ray> rays) {
+  return std::any_of(rays.begin(), rays.end(), [](const Ray& ray) { return is_too_long(ray) || !is_followable(ray); });
 }
 
 /// Whether a query by rules, or without, sees an object.

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/usual_ray.h"
 #include "scarp/scene/scene_limits.h"
 
 namespace scarp {
@@ -14,6 +17,8 @@ const Hit* at(std::span<const Hit* const> from, std::size_t i) { return from.emp
 std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t first, std::size_t count) {
   return from.empty() ? from : from.subspan(first, count);
 }
+
+bool all_followable(std::span<const Ray> rays) { return std::all_of(rays.begin(), rays.end(), is_followable); }
 
 // piece(first, count) on all threads.
 template <class Piece>
@@ -74,13 +79,15 @@ void SceneField::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blo
 void SceneField::closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits,
                                              std::span<std::uint32_t> steps, std::span<const Hit* const> from) const {
   for_each_piece(rays.size(), [&](std::size_t first, std::size_t count) {
-    if (steps.empty())
+    if (steps.empty() && all_followable(rays.subspan(first, count)))
       return closest_hits(rays.subspan(first, count), hits.subspan(first, count), part(from, first, count));
     for (std::size_t i = first; i < first + count; ++i) {
       const Hit* hit = at(from, i);
       MarchStats stats;
-      hits[i] = closest_hit(from.empty() || hit ? rays[i] : started(rays[i], nullptr), hit, &stats);
-      steps[i] = stats.steps;
+      hits[i] = is_followable(rays[i])
+                    ? closest_hit(from.empty() || hit ? rays[i] : started(rays[i], nullptr), hit, &stats)
+                    : Hit{};
+      if (!steps.empty()) steps[i] = stats.steps;
     }
   });
 }
@@ -88,7 +95,12 @@ void SceneField::closest_hits_on_all_threads(std::span<const Ray> rays, std::spa
 void SceneField::occluded_on_all_threads(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                                          std::span<const Hit* const> from) const {
   for_each_piece(rays.size(), [&](std::size_t first, std::size_t count) {
-    occluded(rays.subspan(first, count), blocked.subspan(first, count), part(from, first, count));
+    if (all_followable(rays.subspan(first, count)))
+      return occluded(rays.subspan(first, count), blocked.subspan(first, count), part(from, first, count));
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Hit* hit = at(from, i);
+      blocked[i] = is_followable(rays[i]) && occluded(from.empty() || hit ? rays[i] : started(rays[i], nullptr), hit);
+    }
   });
 }
 

@@ -22,9 +22,10 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerCopy = 4096;
-// Neighbours may be placed so far apart or over each other, in cells, and meet without a gap: world coordinates of 2^20
-// cells are doubles to 2^-33 of a cell, and placing a field takes some operations.
-constexpr double kSeam = 0x1p-30;
+// Neighbours may be placed so far apart or over each other, in cells, and meet without a gap. The origin of each is
+// rounded, by 2^-53 of it along every axis, and the way of a ray from the world to a field takes 8 roundings of their
+// distance: together less than 16 for both, if neither is beyond 2^23 cells (an earth-centred field with cells of 1 m).
+constexpr double kSeam = 0x1p-26;
 constexpr const char* kNotOnCpu =
     "scene: these heights were made for a back end, and nothing was built for rays on the CPU";
 

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/usual_ray.h"
 #include "scarp/scene/contact_search.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
@@ -26,7 +28,7 @@ WorldBox padded_box(const Placement& to, const WorldBox& box) {
 
 }  // namespace
 
-SceneQuery Scene::query(SceneRules rules) const { return {*this, std::move(rules)}; }
+SceneQuery Scene::query(SceneRules rules) const& { return {*this, std::move(rules)}; }
 
 SceneQuery::SceneQuery(const Scene& scene, SceneRules rules) : scene_(scene), rules_(std::move(rules)) {
   if (scene.on_device()) throw Error("scene: masks, sides and filters are for rays on the CPU (query another scene)");
@@ -53,7 +55,7 @@ void SceneQuery::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, st
   if (!from.empty()) require_same_length(rays.size(), from.size());
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (!about_hits(&rules_)) {
+    if (!about_hits(&rules_) && !any_odd(rays.subspan(first, count))) {
       return scene_.closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                                      hits.subspan(first, count), &rules_);
     }
@@ -68,7 +70,7 @@ void SceneQuery::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blo
   if (!from.empty()) require_same_length(rays.size(), from.size());
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (!about_hits(&rules_)) {
+    if (!about_hits(&rules_) && !any_odd(rays.subspan(first, count))) {
       return scene_.occluded_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
                                       blocked.subspan(first, count), &rules_);
     }
@@ -137,6 +139,8 @@ bool SceneQuery::overlaps(const TurnedBox& box) const {
 }
 
 std::optional<ScenePoint> SceneQuery::closest_point(const dvec3& p, double max_distance) const {
+  if (!(p == p) || !std::isfinite(longest_of(p)) || std::isnan(max_distance))
+    throw Error("closest point: the point must be finite and the distance a number");
   std::optional<ScenePoint> best;
   const auto distance = [&] { return best ? std::optional(best->distance) : std::nullopt; };
   const auto bound = [&](const WorldBox& box) { return distance_bound(p, box); };

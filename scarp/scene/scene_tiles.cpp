@@ -10,6 +10,7 @@
 #include "scarp/march/height/closest_point.h"
 #include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
+#include "scarp/march/usual_ray.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/tile_map.h"
 
@@ -269,7 +270,7 @@ class Tiles final : public SceneField {
   // is over this tile where it comes to the terrain.
   template <class F>
   void for_each_on_way(const Ray& ray, const Hit& best, bool only_from_above, const F& f) const {
-    if (box_.empty()) return;
+    if (box_.empty() || !is_followable(ray)) return;
     const dvec3& o = ray.origin;
     const dvec3& d = ray.direction;
     const double width = map_->tile_width(), depth = map_->tile_depth();

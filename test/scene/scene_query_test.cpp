@@ -142,7 +142,8 @@ TEST_F(TowerOnGround, IsHitFromBelowByTheGroundOnly) {
   const SceneQuery both = scene_.query({.sides = Sides::both});
   const Hit hit = both.closest_hit(up);
   EXPECT_FALSE(both.closest_hit({up.at(hit.t), up.direction}, &hit));
-  EXPECT_EQ(scene_.judge().query({.sides = Sides::both}).closest_hit(up).t, 5);
+  const Scene judge = scene_.judge();
+  EXPECT_EQ(judge.query({.sides = Sides::both}).closest_hit(up).t, 5);
 }
 
 TEST_F(TowerOnGround, RefusesRulesThatSelectNothing) {
@@ -153,7 +154,8 @@ TEST_F(TowerOnGround, RefusesRulesThatSelectNothing) {
               combine({{Terrain(flat(2, 0)), {}, {}, 0}});
             }),
             "scene: object 0: its mask is 0, so no query would see it");
-  EXPECT_EQ(refusal([&] { Scene({}, {}).query({.mask = 1}); }), "");
+  const Scene nothing({}, {});
+  EXPECT_EQ(refusal([&] { nothing.query({.mask = 1}); }), "");
 }
 
 TEST(SceneRules, AreForMarchesThatCanFollowThem) {

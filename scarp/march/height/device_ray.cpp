@@ -7,7 +7,9 @@
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/base/two_floats.h"
 #include "scarp/march/height/grid_axis.h"
+#include "scarp/march/height/rim_time.h"
 #include "scarp/march/ray_clip.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -30,7 +32,18 @@ TwoFloats two_floats(double x) {
   return sum;
 }
 
-bool inside(double o, int cells) { return o >= 0 && o <= cells; }
+// The part of a ray that counts as over the field along one axis: with the allowance of the border, within which a
+// nearly vertical ray may come down to it.
+template <bool Wraps>
+struct AxisTimes {
+  double enter, exit;
+  explicit AxisTimes(const GridAxis<Wraps>& axis) {
+    const double off = HeightField::rounding_of_line(axis.origin, axis.cells);
+    const double late = axis.moves() ? off * std::abs(axis.per_direction) : 0;
+    enter = axis.enter_time() - late, exit = axis.exit_time() + late;
+    if (!axis.moves() && !(axis.origin >= -off && axis.origin <= axis.cells + off)) exit = -HUGE_VAL;
+  }
+};
 
 // A ray as two floats per number. Times beyond kScarpNever are told as that.
 void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
@@ -97,11 +110,11 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     y.begin_in(cell.row, begin);
     flags |= glsl::kScarpOnSurface;
   }
+  const AxisTimes<Wraps> across_x(x), across_y(y);
   if constexpr (!Wraps) {
-    if ((!x.moves() && !inside(local.origin.x, x.cells)) || (!y.moves() && !inside(local.origin.y, y.cells)))
-      return result;
-    const double border = std::max(x.enter_time(), y.enter_time());
-    way = std::min({last, x.exit_time(), y.exit_time()});
+    const double border = std::max(across_x.enter, across_y.enter);
+    way = std::min({last, across_x.exit, across_y.exit});
+    if (!(way > -HUGE_VAL)) return result;
     if (!strict) {
       if (border >= begin) flags |= glsl::kScarpFromOutside;
       begin = std::max(begin, border);
@@ -122,6 +135,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   if (!strict)
     cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
 
+  result.lingers = !strict && field.nodata_count() > 0 && lingers_at_line(field, local, lowest, highest, begin, way, 0);
   const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
   // What is left of the way: only walls are met above or below all ground.
   const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
@@ -137,8 +151,8 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   };
   dvec3 direction{stands(x) ? 0 : x.direction, stands(y) ? 0 : y.direction, dz};
   // Who stands still does not come to a border by himself.
-  if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, x.exit_time());
-  if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, y.exit_time());
+  if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, across_x.exit);
+  if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, across_y.exit);
   double length = std::max(end - begin, 0.0);
   if ((direction.x == 0 && direction.y == 0) || std::abs(dz) > kSteepest) {
     flags |= glsl::kScarpUpright;
@@ -182,13 +196,13 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
 }
 
 DeviceRay device_ray(const HeightField& field, const Ray& ray) {
-  if (!field.has_cells() || field.all_nodata()) return {};
+  if (!field.has_cells() || field.all_nodata() || !is_followable(ray)) return {};
   return field.wraps() ? on_grid<true>(field, ray) : on_grid<false>(field, ray);
 }
 
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top) {
   DeviceRay result;
-  if (!field.has_cells() || field.all_nodata()) return result;
+  if (!field.has_cells() || field.all_nodata() || !is_followable(ray)) return result;
   GridRay local = field.grid_from_world(ray);
   const double longest =
       std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});

@@ -27,6 +27,9 @@ struct DeviceRay {
   double begin = 0;      ///< t = (begin + time) * per_time for a time that the march tells
   double per_time = 1;   ///< a power of two
   bool marches = false;  ///< whether there is anything to march: else `known` is the answer
+  /// Whether it stays beside a line too long for floats to tell the ground from a hole there: the exhaustive march on
+  /// the host has the answer.
+  bool lingers = false;
   HitStatus known = HitStatus::miss;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace scarp {
@@ -34,8 +35,17 @@ struct Piece {
   Cell cell;
   double col, row;       // of the cell; in a wrapped field, of the copy below the ray
   double a, b, c, last;  // last: f at the span's end
+  bool rim = false;      // beside the cell, over its edge
 
   double length() const { return span.end - span.begin; }
+  // A part of a piece whose clearance is linear.
+  Piece part(Span of) const {
+    Piece p = *this;
+    p.span = of;
+    p.c = c + b * (of.begin - span.begin);
+    if (of.end < span.end) p.last = c + b * (of.end - span.begin);
+    return p;
+  }
   // The two roots of f, the lower first; nullopt if there are none.
   std::optional<Span> roots() const {
     if (a == 0) {
@@ -59,7 +69,9 @@ struct Piece {
 
 class Ground {
  public:
-  Ground(const HeightField& field, const Ray& ray, Sides side) : field_(field), up_(side == Sides::below ? -1 : 1) {
+  Ground(const HeightTarget& target, const Ray& ray, Sides side)
+      : field_(*target.field), up_(side == Sides::below ? -1 : 1), seam_(target.seam), seam_step_(target.seam_step) {
+    const HeightField& field = field_;
     const HeightFieldSettings& to = field.settings();
     ox_ = ray.origin.x / to.cell_x;
     oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
@@ -67,6 +79,9 @@ class Ground {
     dx_ = ray.direction.x / to.cell_x;
     dy_ = -ray.direction.y / to.cell_y;
     dz_ = up_ * ray.direction.z / (to.exaggeration * to.scale);
+    // 8 roundings of a position and of a line's time, for each of two fields that meet.
+    off_x_ = target.seam + 16 * 0x1p-53 * (std::abs(ox_) + field.cell_cols());
+    off_y_ = target.seam + 16 * 0x1p-53 * (std::abs(oy_) + field.cell_rows());
   }
 
   void move_height(double by) { oz_ += by; }
@@ -154,18 +169,66 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // How far below the surface a ray may come in over the line at the start of a piece and count as touching it, where
-  // fields that meet are placed apart by rounding (HeightTarget::seam).
-  double seam_height(const Piece& p, const HeightTarget& target) const {
-    const auto time = [&](double o, double d, double near) {
-      return d == 0 ? -kInfinity : (near + (d > 0 ? 0 : 1) - o) / d;
-    };
-    const bool over_column = time(ox_, dx_, p.col) >= time(oy_, dy_, p.row);
-    const double across = std::abs(over_column ? dx_ : dy_), along = std::abs(over_column ? dy_ : dx_);
-    // A ray that almost runs along the line comes in at most a cell later.
-    const double late = std::min(target.seam / across, 1 / along);
-    const double relief = field_.max_sample() - field_.min_sample();
-    return target.seam_step + late * (std::abs(dz_) + along * relief) + target.seam * relief;
+  // How far below a rim a ray may come to it and touch it: the rounding of its clearance, and the change of the edge's
+  // height between two places that count as one.
+  double rounding_at_rim(double t) const {
+    return seam_step_ + rounding(t) + std::max(off_x_, off_y_) * (field_.max_sample() - field_.min_sample());
+  }
+  // Whether fields that are placed apart by rounding meet here: all that comes so near touches.
+  bool meets() const { return seam_ > 0 || seam_step_ > 0; }
+
+  // The pieces over the rims of the ground around a cell without: the ground continues level beside them, as far as
+  // rounding may move the ray. Where the ray passes the end of an edge, its clearance has a corner.
+  void add_rims(double col, double row, Span span, std::vector<Piece>& to) const {
+    for (double y = row - 1; y <= row + 1; ++y) {
+      for (double x = col - 1; x <= col + 1; ++x) {
+        const Span near =
+            common(strip(ox_, dx_, x - off_x_, 1 + 2 * off_x_), strip(oy_, dy_, y - off_y_, 1 + 2 * off_y_));
+        const Span over = common(span, near);
+        if (over.empty() || !is_ground(x, y)) continue;
+        const Span over_col = strip(ox_, dx_, x, 1), over_row = strip(oy_, dy_, y, 1);
+        double corners[] = {over_col.begin, over_col.end, over_row.begin, over_row.end};
+        std::sort(std::begin(corners), std::end(corners));
+        double begin = over.begin;
+        for (const double t : corners) {
+          if (t > begin && t < over.end) add_rim(x, y, {std::exchange(begin, t), t}, to);
+        }
+        add_rim(x, y, {begin, over.end}, to);
+      }
+    }
+  }
+
+  void add_rim(double col, double row, Span span, std::vector<Piece>& to) const {
+    const Cell cell{within(col, field_.cell_cols()), within(row, field_.cell_rows())};
+    const CellHeights h = *heights(cell);
+    Piece p = field_.settings().surface == Surface::bilinear ? bilinear_piece(h, cell, col, row, span)
+                                                             : triangle_piece(h, cell, col, row, span);
+    p.rim = true;
+    p.a = 0;
+    p.b = std::isinf(p.last) || p.length() == 0 ? dz_ : (p.last - p.c) / p.length();
+    to.push_back(p);
+  }
+
+  // Where the ray is over ground, it is not beside it. Pieces are in order of their begin.
+  static void take_ground_from_rims(std::vector<Piece>& pieces) {
+    std::vector<Piece> rims;
+    for (const Piece& p : pieces) {
+      if (p.rim) rims.push_back(p);
+    }
+    if (rims.empty()) return;
+    std::erase_if(pieces, [](const Piece& p) { return p.rim; });
+    const std::size_t grounds = pieces.size();
+    for (const Piece& rim : rims) {
+      double reached = rim.span.begin;
+      bool touched = false;
+      for (std::size_t i = 0; i < grounds && pieces[i].span.begin <= rim.span.end; ++i) {
+        const Span over = pieces[i].span;
+        if (over.end < rim.span.begin) continue;
+        if (over.begin > reached) pieces.push_back(rim.part({reached, over.begin}));
+        reached = std::max(reached, over.end), touched = true;
+      }
+      if (reached < rim.span.end || !touched) pieces.push_back(rim.part({reached, rim.span.end}));
+    }
   }
 
   bool is_ground(double col, double row) const {
@@ -186,7 +249,9 @@ class Ground {
     const auto touched = [&](double o, double d, Span over, int cells) {
       const double from = d == 0 ? o : o + d * over.begin, to = d == 0 ? o : o + d * over.end;
       const double first = std::floor(std::min(from, to)) - 1, last = std::floor(std::max(from, to)) + 1;
-      return wraps ? Span{first, last} : Span{std::clamp(first, 0.0, cells - 1.0), std::clamp(last, 0.0, cells - 1.0)};
+      // One more beside the field, for its border.
+      const double most = cells;
+      return wraps ? Span{first, last} : Span{std::clamp(first, -1.0, most), std::clamp(last, -1.0, most)};
     };
     const Span over_rows = touched(oy_, dy_, range, rows);
     for (double row = over_rows.begin; row <= over_rows.end; ++row) {
@@ -207,12 +272,20 @@ class Ground {
           std::swap(over_cell.begin, over_cell.end);
           over_cell.begin = std::max(over_cell.begin, range.begin);
         }
-        if (!over_cell.empty() && over_cell.begin <= range.end) add_pieces(col, row, over_cell, found);
+        if (over_cell.empty() || over_cell.begin > range.end) continue;
+        if (is_ground(col, row)) {
+          add_pieces(col, row, over_cell, found);
+        } else if (!start) {
+          add_rims(col, row, over_cell, found);
+        }
       }
     }
-    std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
+    const auto earlier = [](const Piece& p, const Piece& q) {
       return p.span.begin != q.span.begin ? p.span.begin < q.span.begin : p.span.end < q.span.end;
-    });
+    };
+    std::stable_sort(found.begin(), found.end(), earlier);
+    take_ground_from_rims(found);
+    std::stable_sort(found.begin(), found.end(), earlier);
     return found;
   }
 
@@ -248,7 +321,9 @@ class Ground {
 
   const HeightField& field_;
   double up_;
+  double seam_, seam_step_;
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
+  double off_x_, off_y_;                // cells by which rounding may move it from a line
 };
 
 // First s in the piece at which a ray from above is on or below the surface. A ray that started on the surface must be
@@ -290,7 +365,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
   };
   HitStatus without = HitStatus::miss;
   if (!field.has_cells()) return without;
-  Ground ground(field, ray, from);
+  Ground ground(target, ray, from);
   enum class Side { unknown, above, below } side = Side::unknown;
   if (on_surface) {
     const auto start = ground.clearance_at(ray.start_cell, ray.t_min);
@@ -305,8 +380,12 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
   // A ray from the surface may enter its cell a rounding later.
   const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
   double reached = start;
-  bool first = on_surface;
-  for (const Piece& p : pieces) {
+  bool first = on_surface, below_rim = false;
+  const bool has_walls = field.settings().solid && from == Sides::above;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Piece p = pieces[i];
+    // Rims of neighbours overlap: the ray has been followed up to here.
+    if (p.rim && p.span.begin < reached && p.span.end > reached) p = p.part({reached, p.span.end});
     if (first && p.cell == ray.start_cell && p.span.begin <= start) {
       // f = s (a s + b): the root at the start is not a hit.
       reached = std::max(reached, p.span.end);
@@ -323,41 +402,53 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (p.length() > 0 && p.span.end <= reached) continue;
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
+    const double rounding = ground.rounding(p.span.begin);
+    const auto meet_wall = [&] {
+      Hit hit = ground.hit(p, 0);
+      hit.wall = true;
+      return found(hit);
+    };
+    // A wall behind the rim is met by the ray that has come to it below the rim, and stayed there.
+    const bool came_below = std::exchange(below_rim, false) && side == Side::below;
+    if (came_below && !p.rim && p.c <= rounding && has_walls && !meet_wall()) return without;
+    bool outside = p.rim && (came_below || side == Side::unknown), rises_to_rim = false;
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
-      side = p.c < 0 ? Side::below : Side::above;
-      const bool meets = target.seam > 0 || target.seam_step > 0;
-      if (side == Side::below && meets && came_in && !on_surface && -p.c <= ground.seam_height(p, target)) {
-        if (!found(ground.hit(p, 0))) return without;
-      }
-      if (side == Side::below && field.settings().solid && from == Sides::above && came_in) {
-        Hit hit = ground.hit(p, 0);
-        hit.wall = true;
-        if (!found(hit)) return without;
-      }
+      // A ray from so near that has risen to the rim where it comes to the ground touches it there.
+      const double bound = p.rim ? ground.rounding_at_rim(p.span.begin) : 0.0;
+      rises_to_rim = p.c < 0 && p.c >= -bound && p.last >= 0;
+      const double touched = ground.meets() ? -bound : 0.0;
+      side = p.c < touched && !rises_to_rim ? Side::below : Side::above;
+      if (side == Side::below && has_walls && came_in && !p.rim && !meet_wall()) return without;
     }
     // Where it only passes a corner of the ground, into a hole, it does not begin there.
-    const bool begins = p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
+    const bool begins = !p.rim && p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
     if (side == Side::below && !on_surface && begins) without = HitStatus::below;
     // A ray from below has risen only beyond rounding: otherwise it could be above at one line and, by rounding, not
     // above at the next.
-    const double rounding = ground.rounding(p.span.begin);
     if (side == Side::below && p.c > rounding) side = Side::above;
     const auto depth = on_surface ? std::optional(rounding) : std::nullopt;
-    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece.
-    if (side == Side::above && !depth && p.c <= 0) {
+    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece. What does not sink
+    // beside the rim reaches the surface behind the rim, if it comes there.
+    const bool goes_on = i + 1 < pieces.size() && pieces[i + 1].span.begin <= p.span.end;
+    const bool waits = p.rim && p.last >= 0;
+    if (side == Side::above && !depth && p.c <= 0 && !(waits && goes_on) && !rises_to_rim) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
+      outside = false;
     }
     const bool rises = side == Side::below && rises_inside(p, rounding);
-    const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
+    const auto s = side == Side::above && !waits ? descent(p, depth)
+                   : rises                       ? descent_after_rise(p, depth)
+                                                 : std::nullopt;
     if (rises) side = Side::above;
     if (s) {
       if (!found(ground.hit(p, *s))) return without;
       side = Side::below;
     }
     if (side == Side::below && (p.last > rounding || (rises && !s))) side = Side::above;
+    below_rim = outside && side == Side::below && !s;
   }
   return without;
 }
@@ -371,7 +462,7 @@ class OfUsualLength {
     std::frexp(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), &exponent_);
     if (std::abs(exponent_) < 128) exponent_ = 0;
     for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(d[axis], -exponent_);
-    ray_.t_min = std::ldexp(ray.t_min, exponent_);
+    ray_.t_min = std::max(std::ldexp(ray.t_min, exponent_), std::numeric_limits<double>::lowest());
     // The range ends where the t of the ray are no longer finite.
     ray_.t_max =
         exponent_ == 0 ? ray.t_max : std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent_);
@@ -421,9 +512,8 @@ Hit march_exhaustive_by_rules(const HeightTarget& target, const Ray& ray, const 
   // A ray that may be on either side of the surface that it starts on does not hit it there.
   const bool leaves = rules.sides == Sides::both && ray.start == RayStart::on_surface;
   const double started =
-      leaves
-          ? usual.ray().t_min + 2 * Ground(*target.field, usual.ray(), Sides::above).rounding_of_time(usual.ray().t_min)
-          : -kInfinity;
+      leaves ? usual.ray().t_min + 2 * Ground(target, usual.ray(), Sides::above).rounding_of_time(usual.ray().t_min)
+             : -kInfinity;
   for (const Sides side : {Sides::above, Sides::below}) {
     if (rules.sides != Sides::both && rules.sides != side) continue;
     const HitStatus without = follow(target, usual.ray(), side, stats, [&](const Hit& found) {

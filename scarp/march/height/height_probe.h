@@ -65,7 +65,6 @@ class HeightProbe {
     sample.u = col - sample.cell.col;
     sample.v = row - sample.cell.row;
     if (grid_.is_hole(sample.cell.col, sample.cell.row)) {
-      if (sample.u != 0 && sample.v != 0) return sample;
       // On the rim of a hole, which belongs to the ground beside it.
       const HeightField::Place there = field_.ground_at({sample.cell, sample.u, sample.v});
       sample.cell = there.cell, sample.u = there.u, sample.v = there.v;

@@ -44,12 +44,14 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
   const HeightField& field = *target.field;
   Hit hit;
   if (stats) *stats = {};
-  if (!field.has_cells() || field.all_nodata()) return hit;
+  if (!field.has_cells() || field.all_nodata() || !is_followable(ray)) return hit;
   const GridRay local = field.grid_from_world(ray);
   const double longest = longest_of(local.direction);
   if (!is_usual(longest)) {
-    if (!is_direction(longest)) return hit;
-    const int exponent = std::ilogb(longest);
+    // Finite and not zero in metres, a direction may be neither in cells.
+    const double length = is_direction(longest) ? longest : longest_of(ray.direction);
+    if (!is_direction(length)) return hit;
+    const int exponent = std::ilogb(length);
     const HitFilter accept = [&](Hit one) {
       one.t = std::ldexp(one.t, -exponent);
       return (*wanted.accept)(one);
@@ -57,10 +59,17 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
     Wanted usual = wanted;
     usual.t_clear = kNotClear;
     if (wanted.accept) usual.accept = &accept;
-    hit = march<ask, upside_down>(target, scaled_down(ray, exponent), usual, stats);
+    // Any hit as the closest: it must have a height.
+    constexpr Ask with_height = ask == Ask::any ? Ask::closest : ask;
+    hit = march<with_height, upside_down>(target, scaled_down(ray, exponent), usual, stats);
     hit.t = std::ldexp(hit.t, -exponent);
     if (wanted.all) {
       for (Hit& one : *wanted.all) one.t = std::ldexp(one.t, -exponent);
+    }
+    // From 10^308 cells away, positions overflow.
+    if (hit && !std::isfinite(ask == Ask::all ? wanted.all->front().height : hit.height)) {
+      if (wanted.all) wanted.all->clear();
+      return {};
     }
     return hit;
   }

@@ -109,7 +109,7 @@ HWY_INLINE V rounding(D tag, const FieldFrame& f, V ox, V oy, V oz, V dx, V dy, 
 template <class D>
 struct AxisSpan {
   hn::Vec<D> origin, direction, per, enter, exit;
-  hn::Vec<D> slack;  // rounding error of the border times: larger for slower crossings
+  hn::Vec<D> slack;  // how long the ray is beside the border, within its allowance: longer for slower crossings
   hn::Mask<D> back;
   hn::Mask<D> beside;  // runs along the border, outside
 };
@@ -124,10 +124,12 @@ HWY_INLINE AxisSpan<D> axis_span(D tag, V o, V d, V cells, double seam) {
   // A ray that does not move along the axis is within the field always or never.
   const auto still = hn::Eq(d, zero), within = hn::And(hn::Ge(o, zero), hn::Le(o, cells));
   const V off = hn::Max(hn::Neg(o), hn::Sub(o, cells));
-  s.beside = hn::And(still, hn::AndNot(within, hn::Le(off, hn::Set(tag, seam))));
+  // rounding_of_line()
+  const V line = hn::Mul(hn::Set(tag, 16 * kUnit), hn::Add(cells, hn::Abs(o)));
+  s.beside = hn::And(still, hn::AndNot(within, hn::Le(off, hn::Add(hn::Set(tag, seam), line))));
   s.enter = hn::IfThenElse(still, hn::IfThenElse(within, hn::Neg(far), far), hn::Mul(hn::Neg(s.origin), s.per));
   s.exit = hn::IfThenElse(still, far, hn::Mul(hn::Sub(cells, s.origin), s.per));
-  s.slack = hn::Mul(hn::Mul(hn::Set(tag, 8 * kUnit), hn::Add(cells, hn::Abs(o))), s.per);
+  s.slack = hn::Mul(line, s.per);
   s.slack = hn::IfThenElse(still, hn::Zero(tag), s.slack);
   return s;
 }
@@ -170,7 +172,8 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   const V per_exit = hn::IfThenElse(hn::Le(x.exit, y.exit), x.per, y.per);
   const V at_seam = hn::Mul(hn::Set(tag, f.seam), hn::Max(per_enter, per_exit));
   const V slack = hn::Add(hn::Add(x.slack, y.slack), at_seam), slack_cells = hn::Mul(slack, longest);
-  const auto numbers = hn::And(hn::Eq(oz, oz), hn::Le(t_min, t_max));
+  const auto range = hn::And(hn::Le(t_min, t_max), hn::Gt(t_min, hn::Set(tag, -HUGE_VAL)));
+  const auto numbers = hn::And(hn::Eq(oz, oz), range);
   const auto clear_of_borders = hn::AndNot(hn::Or(x.beside, y.beside), hn::And(usual, numbers));
   const auto sound =
       hn::And(clear_of_borders, hn::And(hn::Lt(slack_cells, hn::Set(tag, kSideways)),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "scarp/march/height/cells_beside.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/height/max_mip_rims.h"
 #include "scarp/march/height/rounding.h"
 #include "scarp/march/height/walk_ground.h"
 #include "scarp/march/height/walk_query.h"
@@ -22,10 +24,6 @@
 // cell is inlined, and the rare ones are not.
 namespace scarp::max_mip {
 namespace {
-
-// Side of the ray at the entry of the current cell, as far as known. Without holes it is unknown in the first cell
-// only.
-enum class Side { unknown, above, below };
 
 // How the ray got to its position: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
@@ -62,14 +60,16 @@ class Walk {
       if (wanted_.t_clear > t_in_ && !skip_on(wanted_.t_clear)) return;
     } else {
       if (!enter()) {
-        if (!Wraps && side_ == Side::above) touch_border_on_exit();
+        if (!Wraps && side_ == Side::above) follow_border_on_exit();
         return;
       }
       if (!x_.moves() && !y_.moves()) return vertical();
-      if (Holes && side_ == Side::unknown && ground_.is_hole(col_, row_) && touches(t_in_)) return;
+      if (Holes && side_ == Side::unknown && !below_rim_ && ground_.is_hole(col_, row_) && touches(t_in_)) return;
     }
+    // Blocks do not have the rims of those beside them.
+    if (Holes && !strict_ && rim(grid_ray()).slow(t_in_, t_end_)) top_ = level_ = 0, slow_ = true;
     while (walk()) enter_next_copy();
-    if (!Wraps) touch_border_on_exit();
+    if (!Wraps) follow_border_on_exit();
   }
 
   /// For a ray from the surface: processes the first cell only.
@@ -102,8 +102,7 @@ class Walk {
     return triangles_ ? plane(h, south_east(t), t).surface : quadratic(h, t).surface;
   }
 
-  // Clearance of the ray where it enters or leaves the current cell. At a line, both neighbours compute the same value
-  // from the same two nodes.
+  // Clearance where the ray enters or leaves the current cell: at a line, of the same two nodes for both neighbours.
   double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
     switch (through) {
       case Through::x_line: {
@@ -131,11 +130,8 @@ class Walk {
       }
       // A coarse block may extend beyond the last row or column; the ray's end does not.
       t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
-      // A ray parallel to an axis is inside the strip or not; written so that NaN is a miss.
-      const auto beside = [&](const Axis& axis) {
-        return !axis.moves() && !(axis.origin >= -seam_ && axis.origin <= axis.cells + seam_);
-      };
-      if (beside(x_) || beside(y_)) return false;
+      if (!rim(grid_ray()).over_strips()) return false;
+      if ((from_outside_ || !(t_in_ <= t_end_)) && follow_border_on_entry()) return false;
     }
     if (!(t_in_ <= t_end_)) return false;
     bound_rounding();
@@ -164,8 +160,8 @@ class Walk {
     return true;
   }
 
-  // Advances to the cell that contains a time up to which the ray is above the ground, and back to where that cell
-  // starts, so that a peak which the ray just touches is still ahead. Returns false if the ray ends before.
+  // Advances to the start of the cell with a time up to which the ray is above the ground, so that a peak which it just
+  // touches is still ahead. Returns false if the ray ends before.
   bool skip_to(double t) {
     if (t > t_end_) return false;
     side_ = Side::above;
@@ -175,8 +171,7 @@ class Walk {
     return true;
   }
 
-  // The same from within a cell, never to a previous one: next to a start on a line, which belongs to the given start
-  // cell, not all lines behind are crossed before.
+  // The same from within a cell, never to a previous one: lines beside a start on a line may count as ahead.
   bool skip_on(double t) {
     const int col = col_, row = row_;
     const double t_in = t_in_;
@@ -189,8 +184,8 @@ class Walk {
     return true;
   }
 
-  // Rays that start on the surface: their height is that of the surface; the root at the start is divided out of the
-  // clearance in the first cell, and the rest decides. Returns false if the answer is known.
+  // From the surface: the root at the start is divided out of the clearance in the first cell, and the rest decides.
+  // Returns false if the answer is known.
   bool leave_start_cell() {
     col_ = ray_.start_cell.col;
     row_ = ray_.start_cell.row;
@@ -273,7 +268,10 @@ class Walk {
   // Straight up or down: one cell, one height.
   void vertical() {
     ++stats.steps;
-    if (Holes && ground_.is_hole(col_, row_)) return;
+    if (Holes && ground_.is_hole(col_, row_)) {
+      follow_rim(t_in_, t_end_, {col_ - 1, col_ + 1, row_ - 1, row_ + 1});
+      return;
+    }
     ++stats.cell_tests;
     const double ground = surface(ground_.cell(col_, row_), t_in_), above = ray_height(t_in_) - ground;
     if (above < 0 && side_ != Side::above) {
@@ -295,16 +293,15 @@ class Walk {
     const double per_step = ground_.per_step(), highest = ground_.highest(), base = ground_.base();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
     const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(base) + std::abs(highest);
-    const double rounding = kCodeRoundings * kUnit * upright + rounding_;
+    const double rounding = ground_.kRoundingOfCode * upright + rounding_;
     const double code_z = (z_ - base - rounding) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - base) * per_step;
     // A coarse block may extend beyond the last row or column; the traversal does not.
     const double t_exit = std::min(x.exit_time(), y.exit_time()), t_end = Wraps ? std::min(t_end_, t_exit) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
-    const double beside_node = Holes ? rounding_of_node() : 0;
-    // Passing the corner of a hole or block does not leave the ground: in over one line, out over the other, and at
-    // once by the axis that does not have the second.
+    const double beside_node = Holes ? widest_rounding_of_line(field_, grid_ray(), seam_) : 0;
+    // Passing the corner of a hole or block, in over one line and out over the other, does not leave the ground.
     const auto cuts_corner = [&](bool out_over_x, double begin, double end) {
       if (through_ != (out_over_x ? Through::y_line : Through::x_line)) return end <= begin;
       return (end - begin) * std::abs(out_over_x ? y.direction : x.direction) <= beside_node;
@@ -350,8 +347,15 @@ class Walk {
           continue;
         }
       } else if (Holes && ground_.is_hole(col, row)) {
-        if (begun_ && side_ != Side::below && touches(t_in)) break;
-        if (!cuts_corner(through_x, t_in, t_line)) side_ = Side::unknown;
+        const bool corner = cuts_corner(through_x, t_in, t_line);
+        const auto follow = [&] {
+          return follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, corner);
+        };
+        if (slow_ ? follow()
+                  : begun_ && side_ != Side::below && (touches(t_in) || (sinks_over_rim(t_in) && follow()))) {
+          break;
+        }
+        if (!slow_ && !corner) side_ = Side::unknown, below_rim_ = false;
         if (lost(t_in)) break;
       } else {
         const CellHeights h = ground_.cell(col, row);
@@ -366,7 +370,7 @@ class Walk {
         }
       }
       if (Holes) {
-        if (side_ != Side::below && t_line <= t_end &&
+        if (side_ != Side::below && !below_rim_ && t_line <= t_end &&
             passes_node(through_x ? y.at(t_line) : x.at(t_line), beside_node) && touches(t_line)) {
           break;
         }
@@ -421,8 +425,7 @@ class Walk {
     return left;
   }
 
-  // Across the seam: like any line, the column before the row when both are crossed at once. A seam separates blocks of
-  // all levels, so the traversal goes one level up.
+  // Across the seam: as over any line, column before row. It separates blocks of all levels, so one level up.
   void enter_next_copy() {
     after_x_ = x_.exit_time() <= y_.exit_time();
     (after_x_ ? col_ : row_) = (after_x_ ? x_ : y_).enter_next_copy();
@@ -440,8 +443,8 @@ class Walk {
     return minimum != MaxPyramid::kNoMinimum && highest < ground_.height(minimum);
   }
 
-  // Whether a ray that was above is at t, over a block without holes, below the whole block: it has crossed the
-  // surface. By more than rounding, so that closest() finds the hit, too.
+  // Whether a ray that was above is at t, over a block without holes, below it: it has crossed the surface. By more
+  // than rounding, so that closest() finds the hit, too.
   bool falls_under(std::uint16_t minimum, double t) const {
     const double height = ray_height(t);
     return under(height, minimum) && ground_.height(minimum) - height > 2 * rounding_of_clearance(t);
@@ -464,30 +467,16 @@ class Walk {
     return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
   }
 
-  double rounding_of_node() const {
-    return std::max(rounding_of_line(field_, grid_ray(), 0, seam_), rounding_of_line(field_, grid_ray(), 1, seam_));
-  }
-
-  // Whether a ray that is not below the ground touches it at t, on a line: in any of the cells there, since rims are
-  // closed. Returns true if that is the answer.
+  // Whether a ray that is not below the ground touches it at t, on a line. Returns true if that is the answer.
   [[gnu::noinline]] bool touches(double t) {
     if (strict_) return false;
-    const GridRay ray = grid_ray();
-    const CellsBeside x(x_, t, rounding_of_line(field_, ray, 0, seam_));
-    const CellsBeside y(y_, t, rounding_of_line(field_, ray, 1, seam_));
-    for (int i = 0; i < x.count * y.count; ++i) {
-      const int west = i % x.count, north = i / x.count, col = x.cell[west], row = y.cell[north];
-      if (!x_.inside(col) || !y_.inside(row) || (Holes && ground_.is_hole(col, row))) continue;
-      const CellHeights h = ground_.cell(col, row);
-      const double u = x.place[west], v = y.place[north];
-      const double above = ray_height(t) - height_in_cell(field_.settings().surface, h, u, v);
-      // Of the cell: less than what a ray from below has to rise.
-      const double rounding = scarp::rounding_of_clearance(field_, ray, t, relief(h));
-      if (!(std::abs(above) <= rounding)) continue;
-      if (touch(col, row, t, {u, v})) return true;
-      if constexpr (ask != Ask::accepted) return false;
-    }
-    return false;
+    const auto record = [&](int col, int row, const dvec2& place) { return touch(col, row, t, place); };
+    return rim(grid_ray()).touched_at(t, ask == Ask::accepted, record);
+  }
+
+  // Whether a ray that comes from over the ground may sink through its rim behind the line that it crosses at t.
+  [[gnu::noinline]] bool sinks_over_rim(double t) const {
+    return !strict_ && side_ == Side::above && rim(grid_ray()).may_sink(t, through_ == Through::x_line ? 0 : 1);
   }
 
   // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
@@ -505,35 +494,52 @@ class Walk {
     return answered;
   }
 
-  void touch_border_on_exit() {
-    if ((ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
-    const double t = std::min(x_.exit_time(), y_.exit_time());
-    if (!(t <= ray_.t_max && t >= ray_.t_min)) return;
-    // Most rays leave above all ground; what rounding adds to the highest sample of a cell is part of this one's.
-    if (ray_height(t) - ground_.highest() > 2 * rounding_) return;
-    touches(t);
+  // Follows the ray beside the ground, in a time in which it is over none; its side is then that at the end, unless it
+  // is to stay. Returns true if the query is answered.
+  [[gnu::noinline]] bool follow_rim(double begin, double end, const RimBox& box, bool stay = false,
+                                    bool goes_in = false) {
+    RimSide at{below_rim_ ? Side::below : side_, below_rim_ || side_ == Side::unknown};
+    const auto record = [&](const RimStretch& s, double t, const dvec2& place) {
+      return touch(x_.within(s.col), y_.within(s.row), t, place);
+    };
+    if (rim(grid_ray()).follow(begin, end, box, goes_in, at, record)) return true;
+    if (stay && at.side == Side::unknown) return false;
+    side_ = at.came ? Side::unknown : at.side;
+    below_rim_ = at.came && at.side == Side::below;
+    return false;
   }
-
-  double rounding_at_rim(const CellHeights& h, double t) const {
-    if (through_ == Through::point) return scarp::rounding_of_clearance(field_, grid_ray(), t, relief(h));
-    return seam_step_ +
-           scarp::rounding_at_rim(field_, grid_ray(), t, relief(h), through_ == Through::x_line ? 0 : 1, seam_);
+  [[gnu::noinline]] bool follow_border(double begin, double end, bool goes_in) {
+    const GridRay ray = grid_ray();
+    const auto beside = rim(ray);
+    begin = std::max(begin, ray_.t_min), end = std::min(end, ray_.t_max);
+    return beside.may_touch(begin, end) && follow_rim(begin, end, beside.cells_under(begin, end), false, goes_in);
   }
-  static double relief(const CellHeights& h) {
-    return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+  // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
+  bool follow_border_on_entry() {
+    const bool goes_in = t_in_ <= t_end_;
+    return follow_border(rim(grid_ray()).first_time(), goes_in ? t_in_ : rim(grid_ray()).last_time(), goes_in);
   }
+  void follow_border_on_exit() {
+    if (strict_ || (ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
+    follow_border(std::min(x_.exit_time(), y_.exit_time()), rim(grid_ray()).last_time(), false);
+  }
+  Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
 
   // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
   // crosses a rim within rounding of it touches it, whatever the sign: otherwise a ray through the corner of a hole,
   // above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
-    const bool on_rim = in <= 0 && -in <= rounding_at_rim(h, t_in_);
+    const int axis = through_ == Through::point ? -1 : through_ == Through::x_line ? 0 : 1;
+    const bool on_rim =
+        !below_rim_ && in <= 0 && -in <= rim(grid_ray()).rounding_at(t_in_, relief(h), axis, Holes && begun_, slow_);
     if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
     }
-    side_ = in >= 0 || on_rim ? Side::above : Side::below;
+    // What has come below the rim has risen only beyond rounding.
+    const double risen = std::exchange(below_rim_, false) ? rounding_of_clearance(t_in_) : 0.0;
+    side_ = (risen > 0 ? in > risen : in >= 0) || on_rim ? Side::above : Side::below;
     if (side_ == Side::above) return false;
     if (solid_ && (begun_ || from_outside_)) return answer(0.0, true);
     if (!begun_ && answer_.status == HitStatus::miss) answer_.status = HitStatus::below;
@@ -574,8 +580,7 @@ class Walk {
     return lost(t_out);
   }
 
-  // Two triangles: the signs at the entry, at the diagonal if crossed, and at the exit; the clearance is linear in
-  // between.
+  // Two triangles: signs at the entry, at the diagonal if crossed, and at the exit, with linear clearance in between.
   [[gnu::noinline]] bool test_triangles(const CellHeights& h, double out, double t_out) {
     const double sum = static_cast<double>(x_.global_line(col_) + y_.global_line(row_) + 1);
     const double t_diagonal = (sum - (x_.origin + y_.origin)) / (x_.direction + y_.direction);
@@ -643,6 +648,7 @@ class Walk {
     if constexpr (ask == Ask::any) return true;
     answer_.t = t;
     answer_.cell = {col_, row_};
+    assert(ask == Ask::bisected || rim(grid_ray()).is_height_of_ground(t, wall));
     answer_.u = place ? place->x : x_.place(t, col_);
     answer_.v = place ? place->y : y_.place(t, row_);
     answer_.height = ground_.metres(ray_height(t));
@@ -659,17 +665,6 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-
-  // Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
-  static constexpr std::uint32_t kPatience =
-      3;                                 // traversal steps before the first look-ahead: half of the rays need no more
-  static constexpr int kProbeLevel = 3;  // blocks of 8 x 8 cells
-  static constexpr int kProbes = 24;
-  static constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
-  static constexpr double kShortWay = 128;                      // cells up to which the traversal is as fast
-  static constexpr double kUnit = 0x1p-53;                      // unit roundoff of double
-  // 6 on the way to a code, 2 more to the base of codes upside down; see numerics.md.
-  static constexpr double kCodeRoundings = UpsideDown ? 12 : 8;
 
   const HeightField& field_;
   double seam_, seam_step_;
@@ -693,6 +688,8 @@ class Walk {
   bool from_outside_ = false;                                  // whether the ray entered through the border
   // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
+  bool slow_ = false;       // with holes: whether rims are followed
+  bool below_rim_ = false;  // whether it has come below the rim that it is beside, from outside or over a hole
   Hit& answer_;
 };
 

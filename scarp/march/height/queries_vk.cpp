@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <string>
 #include <string_view>
 
@@ -12,6 +11,7 @@
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_march_vk.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 
@@ -177,7 +177,7 @@ void DeviceQueries::closest_hits(const DeviceTarget& target, std::span<const Ray
                                  std::span<DeviceRayCost> costs) {
   require_room(rays.size(), hits.size(), costs.size());
   impl_->ask(target, false, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
-    hits[i] = hit_from_device(rays[i], prepared, answer);
+    hits[i] = prepared.lingers ? march_exhaustive({target.field}, rays[i]) : hit_from_device(rays[i], prepared, answer);
   });
 }
 
@@ -185,7 +185,9 @@ void DeviceQueries::occluded(const DeviceTarget& target, std::span<const Ray> ra
                              std::span<DeviceRayCost> costs) {
   require_room(rays.size(), blocked.size(), costs.size());
   impl_->ask(target, true, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
-    blocked[i] = prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
+    blocked[i] = prepared.lingers
+                     ? static_cast<bool>(march_exhaustive({target.field}, rays[i]))
+                     : prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
   });
 }
 

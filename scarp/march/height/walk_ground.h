@@ -48,6 +48,9 @@ class WalkGround {
   /// Height of code 0, to two roundings, and codes per sample unit.
   double base() const { return base_; }
   double per_step() const { return code_.per_step; }
+  /// Rounding of a height on its way to a code: 6 times 2^-53, upside down 2 more to the base of codes; see
+  /// numerics.md.
+  static constexpr double kRoundingOfCode = (UpsideDown ? 12 : 8) * 0x1p-53;
 
  private:
   static constexpr int kHighestCode = 65535;

@@ -2,6 +2,7 @@
 // What a traversal of `max-mip` is asked for.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "scarp/march/height/max_mip_resume.h"
@@ -19,5 +20,12 @@ struct Wanted {
   std::vector<Hit>* all = nullptr;    ///< receives all hits
   const HitFilter* accept = nullptr;  ///< null: the first hit is accepted
 };
+
+// Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
+constexpr std::uint32_t kPatience = 3;  // traversal steps before the first look-ahead: half of the rays need no more
+constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
+constexpr int kProbes = 24;
+constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
+constexpr double kShortWay = 128;                      // cells up to which the traversal is as fast
 
 }  // namespace scarp::max_mip

@@ -245,7 +245,7 @@ class Judge {
       if (local.direction[axis] == 0) continue;
       const double place = local.origin[axis] + local.direction[axis] * t;
       if (std::abs(place - std::round(place)) <= 0x1p-20)
-        most = std::max(most, rounding_at_rim(field_, local, t, relief, axis, 0));
+        most = std::max(most, rounding_at_hole(field_, local, t, relief, axis, 0));
     }
     return most * field_.settings().scale * field_.settings().exaggeration;
   }

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/refusal.h"
@@ -134,6 +136,47 @@ TEST_F(QueriesOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
   queries("lipschitz").closest_hits({&field, &ground, slope_bound(field)}, rays, hits);
   queries("lipschitz").set_march_settings({});
   expect_hits_under_the_ground(field, rays, hits);
+}
+
+// A ray that does not move along an axis, or hardly, on the rim of a hole: ground on either side of the line is met.
+TEST_F(QueriesOnDevice, HitRimsOfHolesThatRaysRunAlong) {
+  constexpr int kNodes = 24;
+  Random random(6);
+  std::vector<float> samples(kNodes * kNodes);
+  for (float& sample : samples) {
+    sample =
+        whole(random, 0, 9) == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(uniform(random, 0, 5));
+  }
+  for (const double cell : {1.0, 7.7, 0.71}) {
+    const HeightField field = HeightField::own(samples, kNodes, kNodes, {.cell_x = cell, .cell_y = cell});
+    const MaxPyramid pyramid(field);
+    const DeviceGround ground(device(), field);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 2000; ++i) {
+      const double lean = whole(random, 0, 1) ? 0 : std::ldexp(whole(random, 0, 1) ? 1 : -1, -whole(random, 40, 60));
+      const double line = whole(random, 1, kNodes - 2) * cell, from = uniform(random, 0.1, 0.9) * (kNodes - 1) * cell;
+      const double along = whole(random, 0, 3) ? uniform(random, -1, 1) * cell : 0;
+      Ray ray{{line, from, uniform(random, 4, 8)}, {lean * cell, along, -uniform(random, 0.1, 2)}};
+      if (whole(random, 0, 1)) std::swap(ray.origin.x, ray.origin.y), std::swap(ray.direction.x, ray.direction.y);
+      rays.push_back(ray);
+    }
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size());
+    queries("max-mip").closest_hits({&field, &ground}, rays, hits);
+    queries("max-mip").occluded({&field, &ground}, rays, blocked);
+    int hit_count = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit exact = march_max_mip({&field, &pyramid}, rays[i]);
+      SCOPED_TRACE(text(rays[i]));
+      EXPECT_EQ(hits[i].status, exact.status);
+      EXPECT_EQ(blocked[i] != 0, static_cast<bool>(exact));
+      if (exact && hits[i]) {
+        EXPECT_NEAR(hits[i].t, exact.t, 1e-5);
+      }
+      hit_count += static_cast<bool>(exact);
+    }
+    EXPECT_GT(hit_count, 1000);
+  }
 }
 
 TEST_F(QueriesOnDevice, RefineTheirHits) {

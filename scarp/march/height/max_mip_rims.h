@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// A ray of `max-mip` beside the ground: outside the field or over a hole, no farther from the rim than its allowance.
+//
+//          ground      | allowance |   hole or outside
+//   ___________________|___________|
+//                      A     o            The ground continues as high as its rim. A ray that sinks through it at o
+//                             \           hits there, at its own t, whether it comes or goes.
+//                              \.
+//
+// The allowance is that of rounding_of_line(): rounding moves the ray and the line by as much. A ray that is nearly
+// vertical stays within it for a long time, in which it passes all heights; what counts is the time at which it is as
+// high as the rim. The clearance above one edge is linear, because the position is clamped to it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "scarp/march/height/cells_beside.h"
+#include "scarp/march/height/grid_axis.h"
+#include "scarp/march/height/rim_time.h"
+#include "scarp/march/height/rounding.h"
+#include "scarp/march/height/walk_ground.h"
+
+namespace scarp::max_mip {
+namespace {
+
+// Side of the ray at the entry of the current cell, as far as known. Without holes it is unknown in the first cell
+// only.
+enum class Side { unknown, above, below };
+
+// Cells, first and last.
+struct RimBox {
+  int west, east, north, south;
+};
+
+inline double relief(const CellHeights& h) {
+  return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+}
+
+// A ray beside the ground: its side, and whether it came there from outside or over a hole. What has come below the
+// rim so is not in the ground: walls are ahead, and where it rises through the rim nothing is hit.
+struct RimSide {
+  Side side = Side::unknown;
+  bool came = true;
+};
+
+// The part of a ray within the allowance of a cell with ground, and its clearances there.
+struct RimStretch {
+  double begin, end, above_begin, above_end;
+  int col, row;
+  double relief;
+};
+
+template <class T, bool Wraps, bool UpsideDown>
+struct Rim {
+  using Axis = GridAxis<Wraps>;
+
+  const HeightField& field;
+  const WalkGround<T, UpsideDown>& ground;
+  const Axis &x, &y;
+  const GridRay& ray;
+  double seam, seam_step;
+
+  double off(int axis) const { return rounding_of_line(field, ray, axis, seam); }
+  double height(double t) const { return ray.origin.z + ray.direction.z * t; }
+  // How long the ray is within the allowance of a line on either side of it.
+  double late_x() const { return x.moves() ? off(0) * std::abs(x.per_direction) : 0.0; }
+  double late_y() const { return y.moves() ? off(1) * std::abs(y.per_direction) : 0.0; }
+
+  // The time up to which a ray may touch the rim of the field that it leaves at t, and that from which, coming.
+  double last_time() const { return std::min(x.exit_time() + late_x(), y.exit_time() + late_y()); }
+  double first_time() const { return std::max(x.enter_time() - late_x(), y.enter_time() - late_y()); }
+
+  // A ray parallel to an axis is over the field's strip or not; written so that NaN is not.
+  bool over_strips() const {
+    const auto over = [&](const Axis& axis, int number) {
+      return axis.moves() || (axis.origin >= -off(number) && axis.origin <= axis.cells + off(number));
+    };
+    return over(x, 0) && over(y, 1);
+  }
+
+  // Whether the ray is not above all ground in this time, which may be none.
+  bool may_touch(double begin, double end) const {
+    if (!(begin <= end)) return false;
+    const double above = std::min(height(begin), height(end)) - ground.highest();
+    return above <= 0 || above <= 2 * rounding_of_clearance(field, ray, std::max(std::abs(begin), std::abs(end)));
+  }
+  // The cells that it may touch from outside the field.
+  RimBox cells_under(double begin, double end) const {
+    const auto first = [&](const Axis& axis) { return axis.near(std::min(axis.at(begin), axis.at(end)) - 0.5); };
+    const auto last = [&](const Axis& axis) { return axis.near(std::max(axis.at(begin), axis.at(end)) + 0.5); };
+    return {first(x), last(x), first(y), last(y)};
+  }
+
+  // Whether the height of a hit at t is between the lowest and the highest ground, but for rounding; of a wall, not
+  // above.
+  bool is_height_of_ground(double t, bool wall) const {
+    const double relief = ground.highest() - ground.lowest();
+    const double beside = (field.nodata_count() > 0 ? 1 + kQuickRim : 1) * (off(0) + off(1)) * relief;
+    const double subnormal = 4 * std::numeric_limits<double>::denorm_min();
+    const double room = 2 * rounding_of_clearance(field, ray, t) + seam_step + beside + subnormal;
+    // Also where coordinates are so large that their rounding is no number.
+    return !(height(t) > ground.highest() + room) && (wall || !(height(t) < ground.lowest() - room));
+  }
+
+  // Whether the ray, in this time, has to be followed along rims, cell by cell.
+  bool slow(double begin, double end) const {
+    return lingers_at_line(field, ray, ground.lowest(), ground.highest(), begin, end, seam);
+  }
+
+  // The height by which the ray may be below the ground at t and touch it: where it crosses a line of an axis (-1: no
+  // line) into a cell of this relief, from outside or from a hole, within whose allowance it has been followed or not.
+  double rounding_at(double t, double of_cell, int axis, bool from_hole, bool followed) const {
+    if (axis < 0) return rounding_of_clearance(field, ray, t, of_cell);
+    if (from_hole && !followed) return rounding_at_hole(field, ray, t, of_cell, axis, seam);
+    return seam_step + rounding_at_rim(field, ray, t, of_cell, seam);
+  }
+
+  // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's place on a line,
+  // until it returns true, as does the function then: since rims are closed, any of them will do.
+  template <class F>
+  bool any_beside(double t, const F& f) const {
+    const CellsBeside cols(x, t, off(0)), rows(y, t, off(1));
+    for (int i = 0; i < cols.count * rows.count; ++i) {
+      const int west = i % cols.count, north = i / cols.count, col = cols.cell[west], row = rows.cell[north];
+      if (!x.inside(col) || !y.inside(row) || ground.is_hole(col, row)) continue;
+      const CellHeights h = ground.cell(col, row);
+      const dvec2 place(cols.place[west], rows.place[north]);
+      const double above = height(t) - height_in_cell(field.settings().surface, h, place.x, place.y);
+      if (f(col, row, place, above, relief(h))) return true;
+    }
+    return false;
+  }
+
+  // Calls touch(col, row, place) where the ray touches ground at its place on a line. Returns true if touch() does;
+  // otherwise after the first, unless `all`.
+  template <class Touch>
+  bool touched_at(double t, bool all, const Touch& touch) const {
+    bool answered = false;
+    any_beside(t, [&](int col, int row, const dvec2& place, double above, double of_cell) {
+      // Of the cell: less than what a ray from below has to rise.
+      if (!(std::abs(above) <= rounding_of_clearance(field, ray, t, of_cell))) return false;
+      answered = touch(col, row, place);
+      return answered || !all;
+    });
+    return answered;
+  }
+
+  // Whether a ray that leaves the ground over a line of an axis, into a hole, may sink through the rim before it leaves
+  // the allowance.
+  bool may_sink(double t, int axis) const {
+    return any_beside(t, [&](int, int, const dvec2&, double above, double of_cell) {
+      return above <= rounding_at_hole(field, ray, t, of_cell, axis, seam);
+    });
+  }
+
+  // Follows the ray from `begin` to `end` past the cells of `box` with ground. `at`: of the ray at `begin`, and then at
+  // `end`, where its side is unknown if no ground is beside it. `goes_in`: whether it is over the field then.
+  // touch(stretch, t, place) records a hit and returns whether that is the answer, as does the function.
+  template <class Touch>
+  bool follow(double begin, double end, const RimBox& box, bool goes_in, RimSide& at, const Touch& touch) const {
+    const double last = end;
+    double reached = begin;
+    RimSide to = std::exchange(at, {});
+    if (!clip_to_heights(ray, ground.lowest(), ground.highest(), begin, end)) return false;
+    Side& side = to.side;
+    bool first = true;
+    for (RimStretch s : stretches(begin, end, box)) {
+      if (!std::exchange(first, false) && s.end <= reached) continue;
+      if (s.begin > reached) to = {};
+      // Cells that share a rim overlap: the ray has been followed up to here.
+      if (s.begin < reached) {
+        s.above_begin += (reached - s.begin) / (s.end - s.begin) * (s.above_end - s.above_begin);
+        s.begin = reached;
+      }
+      reached = s.end;
+      const double rounding = rounding_of_clearance(field, ray, s.begin, s.relief);
+      if (side == Side::unknown) {
+        const double touched = seam_step + rounding_at_rim(field, ray, s.begin, s.relief, seam);
+        side = s.above_begin >= -touched ? Side::above : Side::below;
+      }
+      bool touches = false;
+      if (side == Side::above) {
+        // What does not sink before the ray is over the field is met there.
+        touches = s.above_end < 0 || (!goes_in && s.above_begin <= 0);
+      } else if (s.above_end > rounding_of_clearance(field, ray, s.end)) {
+        side = Side::above;
+      }
+      if (!touches) continue;
+      const double share = s.above_begin > 0 ? s.above_begin / (s.above_begin - s.above_end) : 0.0;
+      to.came = false;
+      const double t = std::min(s.begin + share * (s.end - s.begin), s.end);
+      side = s.above_end > rounding ? Side::above : Side::below;
+      if (touch(s, t, dvec2{x.place(t, s.col), y.place(t, s.row)})) return true;
+    }
+    if (reached >= last) at = to;
+    return false;
+  }
+
+ private:
+  // When the ray is at most `allowance` beside a cell.
+  static bool clip_to_cell(const Axis& axis, int cell, double allowance, double& begin, double& end) {
+    const auto low = static_cast<double>(axis.global_line(cell)) - allowance;
+    const auto high = static_cast<double>(axis.global_line(cell + 1)) + allowance;
+    if (!axis.moves()) return axis.origin >= low && axis.origin <= high && begin <= end;
+    const double a = (low - axis.origin) * axis.per_direction, b = (high - axis.origin) * axis.per_direction;
+    begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
+    return begin <= end;
+  }
+
+  // In order of their begin. Where the ray passes the end of an edge, its clearance has a corner.
+  std::vector<RimStretch> stretches(double begin, double end, const RimBox& box) const {
+    std::vector<RimStretch> found;
+    for (int row = box.north; row <= box.south; ++row) {
+      for (int col = box.west; col <= box.east; ++col) {
+        const int own_col = x.within(col), own_row = y.within(row);
+        if (!x.inside(own_col) || !y.inside(own_row)) continue;
+        RimStretch s{begin, end, 0, 0, col, row, 0};
+        if (!clip_to_cell(x, col, off(0), s.begin, s.end) || !clip_to_cell(y, row, off(1), s.begin, s.end)) continue;
+        if (ground.is_hole(own_col, own_row)) continue;
+        const CellHeights h = ground.cell(own_col, own_row);
+        const auto above = [&](double t) {
+          return height(t) - height_in_cell(field.settings().surface, h, x.place(t, col), y.place(t, row));
+        };
+        s.above_begin = above(s.begin), s.relief = relief(h);
+        double corners[] = {x.line_time(col), x.line_time(col + 1), y.line_time(row), y.line_time(row + 1)};
+        std::sort(std::begin(corners), std::end(corners));
+        const auto add = [&](double to) {
+          const double last = std::exchange(s.end, to);
+          s.above_end = above(s.end);
+          found.push_back(s);
+          s.begin = std::exchange(s.end, last), s.above_begin = s.above_end;
+        };
+        for (const double t : corners) {
+          if (t > s.begin && t < s.end) add(t);
+        }
+        add(s.end);
+      }
+    }
+    std::sort(found.begin(), found.end(), [](const RimStretch& a, const RimStretch& b) { return a.begin < b.begin; });
+    return found;
+  }
+};
+
+}  // namespace
+}  // namespace scarp::max_mip

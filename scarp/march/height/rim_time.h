@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// How long a ray stays beside the lines of a field, at heights of its ground: whether rims of holes may be crossed at
+// the time of a line, or have to be followed (max_mip_rims.h).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/march/height/rounding.h"
+
+namespace scarp {
+
+/// Limits a time range to that in which the ray is between two heights, in sample units, and a margin that is far
+/// beyond rounding. Returns whether any is left.
+inline bool clip_to_heights(const GridRay& ray, double low, double high, double& begin, double& end) {
+  const double room = (high - low) + 0x1p-40 * (std::abs(ray.origin.z) + std::abs(low) + std::abs(high));
+  const double z = ray.origin.z, dz = ray.direction.z;
+  if (dz == 0) return begin <= end && z >= low - room && z <= high + room;
+  const double a = (low - room - z) / dz, b = (high + room - z) / dz;
+  begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
+  return begin <= end;
+}
+
+/// Returns whether the ray, in this time and between these heights, stays so long within the allowance of a line that
+/// its height there is not known to kQuickRim.
+inline bool lingers_at_line(const HeightField& field, const GridRay& ray, double low, double high, double begin,
+                            double end, double seam) {
+  if (!clip_to_heights(ray, low, high, begin, end)) return false;
+  const double relief = field.max_sample() - field.min_sample();
+  const auto lingers = [&](int axis) {
+    const double d = ray.direction[axis], along = std::abs(ray.direction[1 - axis]);
+    if (d != 0 && std::abs(ray.direction.z) + along * relief <= kQuickRim * relief * std::abs(d)) return false;
+    const auto at = [&](double t) { return d == 0 ? ray.origin[axis] : ray.origin[axis] + d * t; };
+    const double a = at(begin), b = at(end), off = rounding_of_line(field, ray, axis, seam);
+    return std::floor(std::max(a, b) + off) >= std::ceil(std::min(a, b) - off);
+  };
+  return lingers(0) || lingers(1);
+}
+
+}  // namespace scarp

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+// Nearly vertical rays at borders and rims of holes: they hit where they are as high as the rim, by every query.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "march/height/spiteful.h"
+#include "scarp/field/ground_points.h"
+#include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/queries.h"
+
+namespace scarp::test {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr double kSeamOfScenes = 0x1p-26;
+
+// The cosine of 90 degrees, the noise of rotations, and what is too short to move a ray at all.
+std::vector<double> leans() {
+  std::vector<double> all{0, 6.123233995736766e-17, 1e-16, 1e-18, 1e-20, 1e-300};
+  for (int power = 30; power <= 1000; power += 97) all.push_back(std::ldexp(1.0, -power));
+  const std::size_t count = all.size();
+  for (std::size_t i = 1; i < count; ++i) all.push_back(-all[i]);
+  return all;
+}
+
+// Rays over one field and what they hit.
+class SteepRays {
+ public:
+  explicit SteepRays(const HeightField& field, double seam = 0)
+      : field_(field), pyramid_(field), target_{&field_, &pyramid_, std::numeric_limits<double>::quiet_NaN(), seam} {}
+
+  const HeightTarget& target() const { return target_; }
+  void expect_hit(const Ray& ray, double t) { rays_.push_back(ray), expected_.push_back(t); }
+  // No hit, whatever the status.
+  void expect_none(const Ray& ray) { expect_hit(ray, -1); }
+
+  // Asks all queries; at most `off` away in t.
+  void check(double off = 1e-6) const {
+    std::vector<Hit> batch(rays_.size()), all;
+    std::vector<std::uint8_t> blocked(rays_.size());
+    closest_hits(target_, rays_, batch);
+    occluded(target_, rays_, blocked);
+    int shown = 0;
+    for (std::size_t i = 0; i < rays_.size() && shown < 5; ++i) {
+      const Ray& ray = rays_[i];
+      const double t = expected_[i];
+      all_hits_max_mip(target_, ray, all);
+      const Hit hits[] = {march_max_mip(target_, ray), march_exhaustive(target_, ray), batch[i],
+                          all.empty() ? Hit{} : all[0]};
+      bool good = (blocked[i] != 0) == (t >= 0) && occluded_max_mip(target_, ray) == (t >= 0);
+      good = good && std::is_sorted(all.begin(), all.end(), [](const Hit& a, const Hit& b) { return a.t < b.t; });
+      for (const Hit& hit : hits) {
+        if (t < 0) {
+          good = good && !hit;
+          continue;
+        }
+        good = good && hit && std::abs(hit.t - t) <= off && hit.height >= field_.min_height() - off &&
+               hit.height <= field_.max_height() + off;
+      }
+      if (good) continue;
+      ++shown;
+      ADD_FAILURE() << "ray from " << ray.origin.x << ", " << ray.origin.y << ", " << ray.origin.z << " along "
+                    << ray.direction.x << ", " << ray.direction.y << ", " << ray.direction.z << " over cells of "
+                    << field_.settings().cell_x << ": expected " << t << ", max-mip "
+                    << static_cast<int>(hits[0].status) << " " << hits[0].t << ", exhaustive "
+                    << static_cast<int>(hits[1].status) << " " << hits[1].t << ", batch "
+                    << static_cast<int>(hits[2].status) << " " << hits[2].t << ", blocked "
+                    << static_cast<int>(blocked[i]) << " " << occluded_max_mip(target_, ray);
+    }
+  }
+
+ private:
+  const HeightField& field_;
+  MaxPyramid pyramid_;
+  HeightTarget target_;
+  std::vector<Ray> rays_;
+  std::vector<double> expected_;
+};
+
+TEST(SteepRims, HitTheBorderWithNearlyVerticalRays) {
+  const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
+  const Ray ray{{-1e-10, 4.5, 10}, {1e-12, 0, -1}};
+  SteepRays in_a_scene(flat, kSeamOfScenes), alone(flat);
+  in_a_scene.expect_hit(ray, 10);
+  in_a_scene.check();
+  // Beside the field by far more than rounding: it comes in 90 m below the ground.
+  alone.expect_none(ray);
+  alone.check();
+}
+
+TEST(SteepRims, StartsOnTheBorderFarBelowGroundHitNothing) {
+  const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
+  for (const double seam : {0.0, kSeamOfScenes}) {
+    SteepRays rays(flat, seam);
+    for (const double lean : leans()) {
+      rays.expect_none({{0, 4.5, -500}, {lean, 0, -1}});
+      rays.expect_none({{8, 4.5, -500}, {lean, 0, -1}});
+      rays.expect_none({{4.5, 0, -500}, {0, lean, -1}});
+      rays.expect_none({{4.5, 8, -500}, {0, lean, -1}});
+    }
+    rays.check();
+  }
+}
+
+TEST(SteepRims, LeansTooSmallToMoveTheRayChangeNothing) {
+  const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
+  SteepRays rays(flat);
+  for (const double lean : leans()) {
+    if (std::abs(lean) > 1e-16) continue;
+    for (const double at : {0.0, 8.0}) {
+      rays.expect_hit({{at, 4.5, 10}, {lean, 0, -1}}, 10);
+      rays.expect_hit({{4.5, at, 10}, {0, lean, -1}}, 10);
+      rays.expect_hit({{at, 8 - at, 10}, {lean, lean, -1}}, 10);
+    }
+  }
+  rays.check();
+}
+
+// The height of an edge: samples of both ends at a share of its length.
+double on_edge(float a, float b, double share) { return a + share * (static_cast<double>(b) - a); }
+
+TEST(SteepRims, HitAllBordersAtTheHeightOfTheirEdges) {
+  constexpr int kCols = 11, kRows = 14;
+  Random random(7);
+  std::vector<float> samples(kCols * kRows);
+  for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 5));
+  const auto sample = [&](int col, int row) { return samples[static_cast<std::size_t>(row * kCols + col)]; };
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const bool solid : {false, true}) {
+      for (const double cell : {1.0, 0.1, 0.3, 0.7, 7.7, 30.7, 92.6, 1.0 / 3}) {
+        const HeightField field = HeightField::own(
+            samples, kCols, kRows, {.cell_x = cell, .cell_y = cell, .surface = surface, .solid = solid});
+        SteepRays rays(field);
+        for (const double lean : leans()) {
+          const int row = whole(random, 0, kRows - 2), col = whole(random, 0, kCols - 2);
+          const double share = uniform(random, 0.01, 0.99), high = uniform(random, 10, 20);
+          // On the border, and so far before it that it is there when it comes to the ground.
+          for (const bool before : {false, true}) {
+            for (const bool far : {false, true}) {
+              const auto add = [&](dvec3 p, dvec3 d, double ground) {
+                const double t = high - ground;
+                const double moves = std::abs(far == (d.x + d.y > 0) ? lean : 0) * t / cell;
+                // Out of the field by more than rounding.
+                if (!before && moves > 0x1p-53) return;
+                p.z = high;
+                rays.expect_hit({before ? dvec3(p.x - d.x * t, p.y - d.y * t, p.z) : p, d}, t);
+              };
+              const int at_col = far ? kCols - 1 : 0, at_row = far ? 0 : kRows - 1;
+              add({at_col * cell, (kRows - 1 - row - share) * cell, 0}, {lean, 0, -1},
+                  on_edge(sample(at_col, row), sample(at_col, row + 1), share));
+              add({(col + share) * cell, (kRows - 1 - at_row) * cell, 0}, {0, lean, -1},
+                  on_edge(sample(col, at_row), sample(col + 1, at_row), share));
+            }
+          }
+        }
+        rays.check();
+      }
+    }
+  }
+}
+
+// A field with a hole in its middle, or a wrapped one with a hole over its seam.
+HeightField with_hole(const std::vector<float>& samples, int side, double cell, Surface surface, bool solid,
+                      bool wrapped) {
+  std::vector<float> own = samples;
+  const int from = wrapped ? -2 : side / 3, to = wrapped ? 2 : 2 * side / 3;
+  for (int row = from; row <= to; ++row) {
+    for (int col = from; col <= to; ++col)
+      own[static_cast<std::size_t>((row + side) % side * side + (col + side) % side)] = kNone;
+  }
+  return HeightField::own(own, side, side,
+                          {.cell_x = cell,
+                           .cell_y = cell,
+                           .surface = surface,
+                           .wrap = wrapped ? Wrap::periodic : Wrap::none,
+                           .solid = solid});
+}
+
+TEST(SteepRims, HitTheRimsOfHolesAtTheHeightOfTheirEdges) {
+  constexpr int kSide = 24;
+  Random random(8);
+  std::vector<float> samples(kSide * kSide);
+  for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 5));
+  const auto sample = [&](int col, int row) { return samples[static_cast<std::size_t>(row * kSide + col)]; };
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const bool wrapped : {false, true}) {
+      for (const double cell : {1.0, 0.1, 0.7, 7.7, 92.6}) {
+        const bool solid = cell == 0.7;
+        const HeightField field = with_hole(samples, kSide, cell, surface, solid, wrapped);
+        SteepRays rays(field);
+        // The last column and row of ground before the hole, and the first behind it.
+        const int first = wrapped ? kSide - 3 : kSide / 3 - 1, last = wrapped ? 3 : 2 * kSide / 3 + 1;
+        for (const double lean : leans()) {
+          for (const int line : {first, last}) {
+            const int along = wrapped ? whole(random, 0, 1) : whole(random, kSide / 3, 2 * kSide / 3 - 1);
+            // A quarter of them at nodes.
+            const double share = std::max(0.0, uniform(random, -0.33, 0.99)), high = uniform(random, 10, 20);
+            const auto add = [&](dvec3 p, dvec3 d, double ground) {
+              const double t = high - ground;
+              p.x -= d.x * t, p.y -= d.y * t, p.z = high;
+              rays.expect_hit({.origin = p, .direction = d, .t_max = 1000}, t);
+            };
+            add({line * cell, (kSide - 1 - along - share) * cell, 0}, {lean, 0, -1},
+                on_edge(sample(line, along), sample(line, along + 1), share));
+            add({(along + share) * cell, (kSide - 1 - line) * cell, 0}, {0, lean, -1},
+                on_edge(sample(along, line), sample(along + 1, line), share));
+          }
+        }
+        rays.check();
+      }
+    }
+  }
+}
+
+// A ray along a rim, slower across it than rounding moves the line, sinks through the rim between two nodes.
+TEST(SteepRims, AreHitByRaysAlongThem) {
+  constexpr int kSide = 24;
+  const std::vector<float> flat(kSide * kSide);
+  for (const double cell : {1.0, 0.1, 7.7}) {
+    for (const bool hole : {false, true}) {
+      const HeightField field = hole ? with_hole(flat, kSide, cell, Surface::bilinear, false, false)
+                                     : HeightField::own(flat, kSide, kSide, {.cell_x = cell, .cell_y = cell});
+      SteepRays rays(field);
+      for (const double lean : leans()) {
+        if (std::abs(lean) > 1e-16) continue;
+        for (const int line : {hole ? kSide / 3 - 1 : 0, hole ? 2 * kSide / 3 + 1 : kSide - 1}) {
+          const double middle = (kSide / 2 + 0.3) * cell;
+          const dvec3 d(lean * cell, cell, -0.4);
+          rays.expect_hit({dvec3(line * cell, middle, 0) - 5.0 * d, d}, 5);
+        }
+      }
+      rays.check();
+    }
+  }
+}
+
+// From the ground into the hole, not so steep that they are followed all the way: rounding may let them pass the line
+// above the ground through which they sink behind it.
+TEST(SteepRims, AreHitByRaysThatLeaveTheGroundThere) {
+  constexpr int kSide = 24;
+  Random random(9);
+  std::vector<float> samples(kSide * kSide);
+  for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 5));
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const double cell : {1.0, 0.7, 7.7, 92.6}) {
+      const HeightField field = with_hole(samples, kSide, cell, surface, false, false);
+      SteepRays rays(field);
+      for (int i = 0; i < 2000; ++i) {
+        const int col = kSide / 3 - 1, row = whole(random, kSide / 3, 2 * kSide / 3 - 1);
+        const double share = uniform(random, 0.01, 0.99), high = uniform(random, 10, 20);
+        const double ground = on_edge(samples[static_cast<std::size_t>(row * kSide + col)],
+                                      samples[static_cast<std::size_t>((row + 1) * kSide + col)], share);
+        const dvec3 p(col * cell, (kSide - 1 - row - share) * cell, ground);
+        const dvec3 d(std::ldexp(uniform(random, 0.5, 1) * cell, -whole(random, 4, 12)), 0, -(high - ground));
+        rays.expect_hit({.origin = p - d, .direction = d, .t_max = 2}, 1);
+      }
+      rays.check(1e-9);
+    }
+  }
+}
+
+// Level rays that start below the ground, along the rim of the hole and beside it by rounding. They touch the lowest
+// nodes from below, which is no hit.
+TEST(SteepRims, AreNotHitFromBelow) {
+  constexpr int kSide = 24;
+  std::vector<float> samples(kSide * kSide, 4);
+  const int line = kSide / 3 - 1;
+  for (int i = 1; i < kSide; i += 2) {
+    samples[static_cast<std::size_t>(i * kSide + line)] = samples[static_cast<std::size_t>(line * kSide + i)] = 0;
+  }
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const double cell : {1.0, 0.1, 7.7, 30.7, 1.0 / 3}) {
+      const HeightField field = with_hole(samples, kSide, cell, surface, false, false);
+      SteepRays rays(field);
+      for (int ulps = -3; ulps <= 3; ++ulps) {
+        for (const double lean : {0.0, 6.123233995736766e-17, -6.123233995736766e-17}) {
+          // One row or column of ground on both sides before the hole.
+          const double x = line * cell * (1 + 0x1p-53 * ulps), y = (kSide - 1 - line) * cell * (1 + 0x1p-53 * ulps);
+          rays.expect_none({{x, (kSide - 1 - 2.5) * cell, 0}, {lean * cell, -cell, 0}});
+          rays.expect_none({{2.5 * cell, y, 0}, {cell, lean * cell, 0}});
+        }
+      }
+      rays.check();
+    }
+  }
+}
+
+// Nodes at col * cell are on the rim although their coordinates are rounded.
+TEST(SteepRims, NodesOnThemHaveHeights) {
+  constexpr int kCols = 300, kRows = 8;
+  for (const double cell : {7.7, 0.7, 0.1, 92.6, 30.7, 0.01, 1.23, 1.0 / 3, 1.0, 10.0}) {
+    for (int hole = 2; hole + 3 < kCols; hole += 7) {
+      // Ground to the west of column `hole`, and from hole + 2 on.
+      std::vector<float> samples(kCols * kRows);
+      for (int row = 0; row < kRows; ++row) samples[static_cast<std::size_t>(row * kCols + hole + 1)] = kNone;
+      const HeightField field = HeightField::own(samples, kCols, kRows, {.cell_x = cell, .cell_y = cell});
+      SteepRays rays(field);
+      for (const int col : {hole, hole + 2}) {
+        for (int row = 0; row < kRows; ++row) {
+          const double x = col * cell, y = row * cell;
+          EXPECT_TRUE(field.height(x, y)) << cell << " " << col << " " << row;
+          rays.expect_hit({{x, y, 10}}, 10);
+          const double xs[] = {x}, ys[] = {y};
+          double heights[] = {kNone};
+          heights_at(field, xs, ys, heights, {});
+          EXPECT_EQ(heights[0], 0);
+        }
+      }
+      rays.check();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scarp::test
