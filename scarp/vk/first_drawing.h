@@ -6,9 +6,8 @@
 
 namespace scarp {
 
-/// Draws a triangle on a device that has not drawn yet, before anything is asked of it that would take long. Throws
-/// Error if that does not finish within seconds: some drivers offer graphics that never answer, and what waits for them
-/// would wait for the limit of the settings.
+/// Draws a triangle on a device that has not drawn yet. Throws Error if that does not finish within ten seconds: some
+/// drivers offer graphics that never answer, and programs would wait for the limit of the settings.
 void try_first_drawing(const Device& device);
 
 }  // namespace scarp

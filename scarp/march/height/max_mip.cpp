@@ -33,10 +33,6 @@ Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSetting
   return march<Ask::closest>(target, ray, {}, stats);
 }
 
-Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  return march<Ask::bisected>(target, ray, {.halvings = settings.bisect.halvings}, stats);
-}
-
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray) {
   require(target, HeightPart::pyramid);
   double t_clear = max_mip::kNotClear;
@@ -76,11 +72,6 @@ SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray) {
   });
   start.hit = hit;
   return start;
-}
-
-HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
-  hits.clear();
-  return march<Ask::all>(target, ray, {.all = &hits}, nullptr).status;
 }
 
 }  // namespace scarp

@@ -26,11 +26,11 @@ bool runs_along_line(const GridRay& ray) {
 
 template <Ask ask, bool upside_down>
 Hit march_along_line(const HeightTarget& target, const Ray& ray, const Wanted& wanted, MarchStats* stats) {
-  if constexpr (ask != Ask::all && ask != Ask::accepted) return march_exhaustive(target, ray, {}, stats);
+  if (ask != Ask::as_wanted || wanted.bisects) return march_exhaustive(target, ray, {}, stats);
   Hit hit;
-  std::vector<Hit> own, &hits = ask == Ask::all ? *wanted.all : own;
+  std::vector<Hit> own, &hits = wanted.all ? *wanted.all : own;
   hit.status = (upside_down ? all_hits_from_below_exhaustive : all_hits_exhaustive)(target, ray, hits);
-  if constexpr (ask == Ask::all) return hit;
+  if (wanted.all) return hit;
   for (const Hit& one : hits) {
     if (!wanted.accept || (*wanted.accept)(one)) return one;
   }
@@ -67,7 +67,7 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
       for (Hit& one : *wanted.all) one.t = std::ldexp(one.t, -exponent);
     }
     // From 10^308 cells away, positions overflow.
-    if (hit && !std::isfinite(ask == Ask::all ? wanted.all->front().height : hit.height)) {
+    if (hit && !std::isfinite(wanted.all ? wanted.all->front().height : hit.height)) {
       if (wanted.all) wanted.all->clear();
       return {};
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` with rules on which hits count. The hits from above and those from below are found on their own, each as
-// if there were no others, and the earlier one is the answer.
+// `max-mip` with rules on which hits count, and the other questions that share that walk: all hits, and the closest one
+// by bisection. The hits from above and those from below are found on their own, each as if there were no others, and
+// the earlier one is the answer.
 #include <cmath>
 
 #include "scarp/march/height/max_mip.h"
@@ -21,9 +22,18 @@ double rounding_of_start(const HeightTarget& target, const Ray& ray) {
 
 }  // namespace
 
+Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
+  return march<Ask::as_wanted>(target, ray, {.bisects = true, .halvings = settings.bisect.halvings}, stats);
+}
+
+HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
+  hits.clear();
+  return march<Ask::as_wanted>(target, ray, {.all = &hits}, nullptr).status;
+}
+
 Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const HitRules& rules, MarchStats* stats) {
   require(target, HeightPart::pyramid);
-  if (rules.sides == Sides::above) return march<Ask::accepted>(target, ray, {.accept = rules.accept}, stats);
+  if (rules.sides == Sides::above) return march<Ask::as_wanted>(target, ray, {.accept = rules.accept}, stats);
   HitFilter leaves_start;
   const HitFilter* accept = rules.accept;
   if (rules.sides == Sides::both && ray.start == RayStart::on_surface) {
@@ -33,12 +43,12 @@ Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const Hit
     };
     accept = &leaves_start;
   }
-  Hit below = march<Ask::accepted, true>(target, ray, {.accept = accept}, stats);
+  Hit below = march<Ask::as_wanted, true>(target, ray, {.accept = accept}, stats);
   // The ray was above the ground, which is no news.
   if (below.status == HitStatus::below) below.status = HitStatus::miss;
   if (rules.sides == Sides::below) return below;
   MarchStats of_above;
-  const Hit above = march<Ask::accepted>(target, ray, {.accept = accept}, stats ? &of_above : nullptr);
+  const Hit above = march<Ask::as_wanted>(target, ray, {.accept = accept}, stats ? &of_above : nullptr);
   if (stats) {
     stats->steps += of_above.steps, stats->level_changes += of_above.level_changes;
     stats->cell_tests += of_above.cell_tests;

@@ -471,7 +471,7 @@ class Walk {
   [[gnu::noinline]] bool touches(double t) {
     if (strict_) return false;
     const auto record = [&](int col, int row, const dvec2& place) { return touch(col, row, t, place); };
-    return rim(grid_ray()).touched_at(t, ask == Ask::accepted, record);
+    return rim(grid_ray()).touched_at(t, accepts(), record);
   }
 
   // Whether a ray that comes from over the ground may sink through its rim behind the line that it crosses at t.
@@ -483,7 +483,7 @@ class Walk {
   // neighbours that share the place are one. Returns true if the query is answered.
   bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;
-    if constexpr (ask == Ask::all) {
+    if (lists()) {
       if (!wanted_.all->empty() && t - wanted_.all->back().t <= rounding_of_node_time(field_, grid_ray(), seam_))
         return false;
     }
@@ -520,7 +520,7 @@ class Walk {
     return follow_border(rim(grid_ray()).first_time(), goes_in ? t_in_ : rim(grid_ray()).last_time(), goes_in);
   }
   void follow_border_on_exit() {
-    if (strict_ || (ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
+    if (strict_ || (!lists() && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
     follow_border(std::min(x_.exit_time(), y_.exit_time()), rim(grid_ray()).last_time(), false);
   }
   Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
@@ -554,7 +554,7 @@ class Walk {
         side_ = Side::below;
         return lost(t_out);
       }
-      if constexpr (ask == Ask::bisected) return false;
+      if (bisects()) return false;
       // Only if the clearance along the ray is convex can the ray come down and go up again.
       if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
       const CellQuadratic f = quadratic(h, t_in_);
@@ -568,7 +568,7 @@ class Walk {
       side_ = Side::above;
       return false;
     }
-    if constexpr (ask == Ask::bisected) return false;
+    if (bisects()) return false;
     const CellQuadratic f = quadratic(h, t_in_);
     if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) {
       // The ray has emerged in between and continues like any ray from above.
@@ -608,6 +608,11 @@ class Walk {
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
   }
 
+  // What is asked, known to the compiler but for Ask::as_wanted.
+  bool lists() const { return ask == Ask::as_wanted && wanted_.all; }
+  bool bisects() const { return ask == Ask::as_wanted && wanted_.bisects; }
+  bool accepts() const { return ask == Ask::as_wanted && !lists() && !bisects(); }
+
   // Whether a ray that is not above can never hit again: falling, below the lowest ground, with no walls of holes
   // ahead.
   bool lost(double t) const { return dz_ < 0 && ray_height(t) < ground_.lowest() && !(Holes && solid_); }
@@ -626,7 +631,7 @@ class Walk {
   // The signs imply a hit in the cell; the quadratic only locates it.
   bool hit_in_cell(const CellQuadratic& f, double length) {
     if (ask == Ask::any && cell_end_ <= ray_.t_max) return answer(0.0);
-    if constexpr (ask == Ask::bisected) {
+    if (bisects()) {
       double low = 0, high = length;
       for (int i = 0; i < wanted_.halvings; ++i) {
         const double middle = 0.5 * (low + high);
@@ -643,25 +648,23 @@ class Walk {
   bool answer(double s, bool wall = false, const dvec2* place = nullptr) {
     const double t = std::max(s > 0 ? std::min(t_in_ + s, cell_end_) : t_in_ + s, ray_.t_min);
     // From the surface, the ray is below it only after t.
-    if (strict_ ? t >= ray_.t_max : t > ray_.t_max) return ask != Ask::all;
+    if (strict_ ? t >= ray_.t_max : t > ray_.t_max) return !lists();
     const HitStatus before = std::exchange(answer_.status, HitStatus::hit);
     if constexpr (ask == Ask::any) return true;
     answer_.t = t;
     answer_.cell = {col_, row_};
-    assert(ask == Ask::bisected || rim(grid_ray()).is_height_of_ground(t, wall));
+    assert(bisects() || rim(grid_ray()).is_height_of_ground(t, wall));
     answer_.u = place ? place->x : x_.place(t, col_);
     answer_.v = place ? place->y : y_.place(t, row_);
     answer_.height = ground_.metres(ray_height(t));
     answer_.wall = wall;
-    if constexpr (ask == Ask::all) wanted_.all->push_back(answer_);
-    if constexpr (ask == Ask::accepted) {
-      if (wanted_.accept && !(*wanted_.accept)(answer_)) {
-        answer_ = {};
-        answer_.status = before;
-        return false;
-      }
+    if (lists()) wanted_.all->push_back(answer_);
+    if (accepts() && wanted_.accept && !(*wanted_.accept)(answer_)) {
+      answer_ = {};
+      answer_.status = before;
+      return false;
     }
-    return ask != Ask::all;
+    return !lists();
   }
 
   using Level = MaxPyramid::Level;

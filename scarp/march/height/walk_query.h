@@ -10,15 +10,18 @@
 
 namespace scarp::max_mip {
 
-/// The query: closest hit in closed form or by bisection, any hit, all hits, or the closest one that a filter accepts.
-enum class Ask { closest, bisected, any, all, accepted };
+/// The query: the closest hit, any hit, or what Wanted says: all hits, the closest one that a filter accepts, or the
+/// closest one by bisection. Those share their walks, since compiling more of them takes longer than a test at each
+/// hit.
+enum class Ask { closest, any, as_wanted };
 
 /// What a query needs besides the ray.
 struct Wanted {
-  int halvings = 0;                   ///< of bisected
+  bool bisects = false;               ///< as_wanted: the closest hit, by so many
+  int halvings = 0;                   ///< halvings
   double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
-  std::vector<Hit>* all = nullptr;    ///< receives all hits
-  const HitFilter* accept = nullptr;  ///< null: the first hit is accepted
+  std::vector<Hit>* all = nullptr;    ///< as_wanted: receives all hits, unless null
+  const HitFilter* accept = nullptr;  ///< as_wanted: null: the first hit is accepted
 };
 
 // Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
