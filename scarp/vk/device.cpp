@@ -69,6 +69,8 @@ Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
       device(open(physical, queue_family, (description = describe(physical)).abilities)),
       queue(device, queue_family, 0),
       pool(device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family}) {
+  constexpr double kUsualTimeout = 60, kCpuTimeout = 600;
+  timeout_s = settings.timeout_s.value_or(description.kind == DeviceKind::cpu ? kCpuTimeout : kUsualTimeout);
   timestamp_bits = physical.getQueueFamilyProperties()[queue_family].timestampValidBits;
   const vk::PhysicalDeviceProperties properties = physical.getProperties();
   timestamp_period_ns = static_cast<double>(properties.limits.timestampPeriod);
@@ -118,12 +120,12 @@ void Device::Impl::submit(const vk::raii::CommandBuffer& commands, const vk::rai
 
 void Device::Impl::wait(const vk::raii::Fence& fence, const std::string& what) {
   if (!given_up.empty()) throw Error(given_up);
-  const auto limit = static_cast<std::uint64_t>(settings.timeout_s * 1e9);
+  const auto limit = static_cast<std::uint64_t>(timeout_s * 1e9);
   if (device.waitForFences(*fence, true, limit) == vk::Result::eTimeout) {
     given_up = fmt::format(
         "device '{}': {} did not finish within {:g} s, and the device was given up (run again, or choose another "
         "device, see 'scarp devices')",
-        name(), what, settings.timeout_s);
+        name(), what, timeout_s);
     throw Error(given_up);
   }
   device.resetFences(*fence);
@@ -132,7 +134,7 @@ void Device::Impl::wait(const vk::raii::Fence& fence, const std::string& what) {
 void Device::Impl::wait_at_end(const vk::raii::Fence& fence) noexcept {
   constexpr double kLastSeconds = 5;
   if (hangs) return;
-  const double seconds = given_up.empty() ? settings.timeout_s : kLastSeconds;
+  const double seconds = given_up.empty() ? timeout_s : kLastSeconds;
   try {
     hangs = device.waitForFences(*fence, true, static_cast<std::uint64_t>(seconds * 1e9)) == vk::Result::eTimeout;
   } catch (const vk::SystemError&) {  // device lost: nothing is running
@@ -148,8 +150,8 @@ std::optional<std::uint32_t> Device::Impl::memory_type(std::uint32_t allowed, vk
 
 Device::Device(const DeviceSettings& settings) {
   // 10^9 s in nanoseconds fits in the 64 bits of Vulkan's time limits.
-  if (!(settings.timeout_s > 0 && settings.timeout_s <= 1e9)) {
-    throw Error(fmt::format("device: timeout of {} s (must be above 0, at most 1e9)", settings.timeout_s));
+  if (settings.timeout_s && !(*settings.timeout_s > 0 && *settings.timeout_s <= 1e9)) {
+    throw Error(fmt::format("device: timeout of {} s (must be above 0, at most 1e9)", *settings.timeout_s));
   }
   VulkanInstance instance(settings.validation);
   guarded("", "opening device '" + settings.choice + "'",

@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,7 +80,9 @@ struct DeviceSettings {
   std::string choice = "auto";
   bool validation =
       false;  ///< enables the Khronos validation layer with synchronisation validation and collects its messages
-  double timeout_s = 600;  ///< time limit of one run of commands, > 0; after it the device is given up: nothing runs
+  /// Time limit of one run of commands, > 0; after it the device is given up: nothing runs on it. Nothing: 60 s, on CPU
+  /// devices 600 s.
+  std::optional<double> timeout_s = {};
   /// Whether compiled pipelines are kept in the user's cache folder, from process to process (doc/user/devices.md).
   bool keep_pipelines = true;
 };

@@ -20,12 +20,12 @@ constexpr std::uint32_t kSide = 8;
 // For a time, of one device.
 class ShorterLimit {
  public:
-  explicit ShorterLimit(Device::Impl& device) : device_(device), usual_(device.settings.timeout_s) {
-    device.settings.timeout_s = std::min(usual_, kSeconds);
+  explicit ShorterLimit(Device::Impl& device) : device_(device), usual_(device.timeout_s) {
+    device.timeout_s = std::min(usual_, kSeconds);
   }
   ShorterLimit(const ShorterLimit&) = delete;
   ShorterLimit& operator=(const ShorterLimit&) = delete;
-  ~ShorterLimit() { device_.settings.timeout_s = usual_; }
+  ~ShorterLimit() { device_.timeout_s = usual_; }
 
  private:
   Device::Impl& device_;

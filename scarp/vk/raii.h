@@ -75,7 +75,7 @@ struct Device::Impl {
 
   /// Throws Error if the device has been given up.
   void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence);
-  /// Waits for the fence and resets it. Gives the device up after the time limit of the settings, and throws Error then
+  /// Waits for the fence and resets it. Gives the device up after the time limit, and throws Error then
   /// and from then on.
   void wait(const vk::raii::Fence& fence, const std::string& what);
   /// Waits for the fence before what it guards is destroyed: for a device that was given up, only a few seconds.
@@ -87,6 +87,7 @@ struct Device::Impl {
   void save_pipelines() noexcept;
 
   DeviceSettings settings;
+  double timeout_s = 0;  // of the settings, or the usual one
   DeviceDescription description;
   VulkanInstance instance;
   vk::raii::PhysicalDevice physical;
