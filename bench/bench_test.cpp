@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using scarp::bench::expect_fields, scarp::bench::expect_head, scarp::bench::output_of;
 
-// What a command writes, and whether it did what it was told to.
+// The output of a command that must succeed, or fail.
 std::string text_of(const std::string& arguments, bool succeeds) {
   const std::string command = fmt::format("'{}' {}", SCARP_BENCH_PROGRAM, arguments);
   FILE* const pipe = ::popen(command.c_str(), "r");

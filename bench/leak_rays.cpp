@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bench/off_vertical.h"
+
 namespace scarp::bench {
 namespace {
 
@@ -167,21 +169,8 @@ class Maker {
     dvec3 on = at(node);
     if (r_.below(2)) on[r_.below(2)] += r_.uniform(0, 1) * cell_;
     if (r_.below(4) == 0) on[r_.below(2)] *= 1 + 0x1p-53 * r_.uniform(-2, 2);
-    const auto lean = [&] {
-      const double sign = r_.below(2) ? 1 : -1;
-      switch (r_.below(4)) {
-        case 0:
-          return sign * 6.123233995736766e-17;
-        case 1:
-          return r_.uniform(-4, 4) * 0x1p-53;
-        case 2:
-          return sign * std::ldexp(1.0, -30 - r_.below(60));
-        default:
-          return sign * std::ldexp(1.0, -30 - r_.below(971));
-      }
-    };
     const double high = height_above();
-    dvec3 direction(lean(), r_.below(2) ? lean() : 0, -1);
+    dvec3 direction(off_vertical(r_), r_.below(2) ? off_vertical(r_) : 0, -1);
     if (r_.below(2)) std::swap(direction.x, direction.y);
     on.z = f_.min_height();
     const double down = relief_ + high;

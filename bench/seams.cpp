@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/commands.h"
+#include "bench/off_vertical.h"
 #include "bench/random.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -146,21 +147,6 @@ constexpr std::array kAims{Aim::steep,   Aim::flat,    Aim::corner,        Aim::
 constexpr std::array kAimNames{
     "steep", "flat", "corner", "along a seam", "upright", "nearly upright", "corner, nearly upright"};
 
-// By how much a direction is off the vertical: the cosine of 90 degrees, the noise of quaternions, 2^-30 to 2^-1000.
-double lean(Random& random) {
-  const double sign = random.below(2) ? 1 : -1;
-  switch (random.below(4)) {
-    case 0:
-      return sign * 6.123233995736766e-17;
-    case 1:
-      return random.uniform(-4, 4) * 0x1p-53;
-    case 2:
-      return sign * std::ldexp(random.uniform(0.5, 1), -30 - random.below(60));
-    default:
-      return sign * std::ldexp(random.uniform(0.5, 1), -30 - random.below(971));
-  }
-}
-
 // A ray from above all ground to below it within the terrain, in the terrain's own space.
 Ray ray_to_seam(const SeamTerrain& to, Aim aim, Random& random) {
   const double length = kTiles * to.cells * to.cell, tile = to.cells * to.cell;
@@ -174,7 +160,7 @@ Ray ray_to_seam(const SeamTerrain& to, Aim aim, Random& random) {
     if (aim == Aim::along) d.x = 0;
     if (aim == Aim::upright) d.x = d.y = 0;
     if (aim == Aim::leaning || aim == Aim::leaning_corner) {
-      d.x = lean(random), d.y = random.below(2) ? lean(random) : 0;
+      d.x = off_vertical(random), d.y = random.below(2) ? off_vertical(random) : 0;
       // Beside the seam by rounding, of this place or of the world's.
       if (random.below(2)) p.x += random.uniform(-2, 2) * 0x1p-53 * (p.x + glm::length(to.place.origin));
     }

@@ -2,10 +2,10 @@
 // Nearly vertical rays where fields meet: tiles, combined fields, turned and earth-centred placements.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -19,6 +19,9 @@ namespace scarp::test {
 namespace {
 
 constexpr int kTileCells = 16, kAcross = 8;
+const double kCosineOf90 = std::cos(std::numbers::pi / 2);
+// Of a hit on level ground: 16 roundings (numerics.md, "Rounding error of a clearance") of heights of up to 1,000 m.
+constexpr double kOff = 16 * 0x1p-53 * 1000;
 
 TerrainTiles flat_tiles(double cell, int cols, int rows, int cells) {
   TiledTerrain terrain({cols, rows, cells, cells, {.cell_x = cell, .cell_y = cell}});
@@ -32,10 +35,10 @@ TerrainTiles flat_tiles(double cell, int cols, int rows, int cells) {
 }
 
 // All queries find the ground at t, and a hit that ends there.
-void expect_ground(const Scene& scene, const Ray& ray, double t, double off = 1e-6) {
+void expect_ground(const Scene& scene, const Ray& ray, double t) {
   const Hit hit = cast(scene, ray);
   ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit.t, t, off);
+  EXPECT_NEAR(hit.t, t, kOff);
   EXPECT_TRUE(occluded(scene, ray));
   Ray shorter = ray;
   shorter.t_max = t + 1;
@@ -47,7 +50,7 @@ TEST(SteepSeams, OfTilesAreHitByNearlyVerticalRays) {
   const TerrainTiles tiles = flat_tiles(30.7, kAcross, 1, kTileCells);
   const Ray ray{{3438.4, 100, 1000}, {-6.12e-17, 0, -1}};
   expect_ground(tiles, ray, 1000);
-  EXPECT_NEAR(cast(tiles, ray).height, 0, 1e-6);
+  EXPECT_NEAR(cast(tiles, ray).height, 0, kOff);
 }
 
 TEST(SteepSeams, OfTilesOfAnySizeAreHit) {
@@ -57,7 +60,7 @@ TEST(SteepSeams, OfTilesOfAnySizeAreHit) {
     const int cells = i % 3 == 0 ? 12 : kTileCells;
     const TerrainTiles tiles = flat_tiles(cell, 4, 2, cells);
     std::vector<Ray> rays;
-    for (const double lean : {0.0, -6.12e-17, 6.12e-17, -1e-20, 0x1p-200, -0x1p-60}) {
+    for (const double lean : {0.0, -kCosineOf90, kCosineOf90, -1e-20, 0x1p-200, -0x1p-60}) {
       for (int seam = 1; seam < 4; ++seam) {
         const double x = seam * (cells * cell);
         rays.push_back({{x, uniform(random, 0, 2 * cells * cell), 1000}, {lean, 0, -1}});
@@ -70,7 +73,7 @@ TEST(SteepSeams, OfTilesOfAnySizeAreHit) {
     for (std::size_t k = 0; k < rays.size(); ++k) {
       Ray shorter = rays[k];
       shorter.t_max = 1001;
-      lost += !hits[k] || std::abs(hits[k].t - 1000) > 1e-6 || !cast(tiles, shorter) || !occluded(tiles, shorter);
+      lost += !hits[k] || std::abs(hits[k].t - 1000) > kOff || !cast(tiles, shorter) || !occluded(tiles, shorter);
     }
     EXPECT_EQ(lost, 0) << "cells of " << cell;
   }
@@ -87,7 +90,7 @@ Scene pair_of(double cell, int cells, const Placement& outer) {
 TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
   Random random(12);
   const auto turned = [](double degrees, dvec3 axis) {
-    return glm::dmat3(glm::rotate(glm::dmat4(1), degrees * 3.14159265358979323846 / 180, axis));
+    return glm::dmat3(glm::rotate(glm::dmat4(1), degrees * std::numbers::pi / 180, axis));
   };
   const std::vector<Placement> placements{
       {},
@@ -102,6 +105,8 @@ TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
       const int cells = 24;
       const Scene scene = pair_of(cell, cells, outer);
       const double width = cells * cell;
+      // Where the seam of a scene puts two fields apart, and 16 roundings of world coordinates below 2^23 m.
+      const double off = 0x1p-26 * cell + 16 * 0x1p-53 * 0x1p23;
       std::vector<Ray> rays;
       for (int i = 0; i < 400; ++i) {
         // On the seam, or beside it by the rounding of world coordinates.
@@ -118,7 +123,7 @@ TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
       occluded(scene, rays, blocked);
       int lost = 0;
       for (std::size_t i = 0; i < rays.size(); ++i)
-        lost += !hits[i] || !blocked[i] || std::abs(hits[i].t - 100) > 1e-4 || !cast(scene, rays[i]);
+        lost += !hits[i] || !blocked[i] || std::abs(hits[i].t - 100) > off || !cast(scene, rays[i]);
       EXPECT_EQ(lost, 0) << "cells of " << cell << " at " << outer.origin.x;
     }
   }

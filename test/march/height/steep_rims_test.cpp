@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "march/height/spiteful.h"
@@ -12,6 +13,7 @@
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/queries.h"
+#include "scarp/march/height/rounding.h"
 
 namespace scarp::test {
 namespace {
@@ -19,10 +21,18 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSeamOfScenes = 0x1p-26;
 
+const double kCosineOf90 = std::cos(std::numbers::pi / 2);
+// Fields have a relief of 5 at most, and rays start at 20 at most.
+constexpr double kMostRelief = 5, kMostHeight = 20;
+// A ray at a border moves over the ground beside it by its lean, 2^-30 at most, in a time of kMostHeight; in cells of
+// 0.1 at least. By so much of the relief the ground may differ from the edge, and rays fall by 1 in a unit of t.
+constexpr double kMostLean = 0x1p-30, kLeastCell = 0.1;
+constexpr double kOff = kMostLean * kMostHeight / kLeastCell * kMostRelief;
+
 // The cosine of 90 degrees, the noise of rotations, and what is too short to move a ray at all.
 std::vector<double> leans() {
-  std::vector<double> all{0, 6.123233995736766e-17, 1e-16, 1e-18, 1e-20, 1e-300};
-  for (int power = 30; power <= 1000; power += 97) all.push_back(std::ldexp(1.0, -power));
+  std::vector<double> all{0, kCosineOf90, 1e-16, 1e-18, 1e-20, 1e-300};
+  for (int power = 0; power <= 970; power += 97) all.push_back(std::ldexp(kMostLean, -power));
   const std::size_t count = all.size();
   for (std::size_t i = 1; i < count; ++i) all.push_back(-all[i]);
   return all;
@@ -40,7 +50,7 @@ class SteepRays {
   void expect_none(const Ray& ray) { expect_hit(ray, -1); }
 
   // Asks all queries; at most `off` away in t.
-  void check(double off = 1e-6) const {
+  void check(double off = kOff) const {
     std::vector<Hit> batch(rays_.size()), all;
     std::vector<std::uint8_t> blocked(rays_.size());
     closest_hits(target_, rays_, batch);
@@ -111,7 +121,7 @@ TEST(SteepRims, LeansTooSmallToMoveTheRayChangeNothing) {
   const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
   SteepRays rays(flat);
   for (const double lean : leans()) {
-    if (std::abs(lean) > 1e-16) continue;
+    if (std::abs(lean) * kMostHeight > HeightField::rounding_of_line(0, 8)) continue;
     for (const double at : {0.0, 8.0}) {
       rays.expect_hit({{at, 4.5, 10}, {lean, 0, -1}}, 10);
       rays.expect_hit({{4.5, at, 10}, {0, lean, -1}}, 10);
@@ -227,7 +237,7 @@ TEST(SteepRims, AreHitByRaysAlongThem) {
                                      : HeightField::own(flat, kSide, kSide, {.cell_x = cell, .cell_y = cell});
       SteepRays rays(field);
       for (const double lean : leans()) {
-        if (std::abs(lean) > 1e-16) continue;
+        if (std::abs(lean) * kSide > HeightField::rounding_of_line(0, kSide)) continue;
         for (const int line : {hole ? kSide / 3 - 1 : 0, hole ? 2 * kSide / 3 + 1 : kSide - 1}) {
           const double middle = (kSide / 2 + 0.3) * cell;
           const dvec3 d(lean * cell, cell, -0.4);
@@ -259,7 +269,8 @@ TEST(SteepRims, AreHitByRaysThatLeaveTheGroundThere) {
         const dvec3 d(std::ldexp(uniform(random, 0.5, 1) * cell, -whole(random, 4, 12)), 0, -(high - ground));
         rays.expect_hit({.origin = p - d, .direction = d, .t_max = 2}, 1);
       }
-      rays.check(1e-9);
+      // They may be quick (rounding.h), and fall by 5 at least.
+      rays.check(kQuickRim * HeightField::rounding_of_line(kSide, kSide) * kMostRelief / 5);
     }
   }
 }
@@ -278,7 +289,7 @@ TEST(SteepRims, AreNotHitFromBelow) {
       const HeightField field = with_hole(samples, kSide, cell, surface, false, false);
       SteepRays rays(field);
       for (int ulps = -3; ulps <= 3; ++ulps) {
-        for (const double lean : {0.0, 6.123233995736766e-17, -6.123233995736766e-17}) {
+        for (const double lean : {0.0, kCosineOf90, -kCosineOf90}) {
           // One row or column of ground on both sides before the hole.
           const double x = line * cell * (1 + 0x1p-53 * ulps), y = (kSide - 1 - line) * cell * (1 + 0x1p-53 * ulps);
           rays.expect_none({{x, (kSide - 1 - 2.5) * cell, 0}, {lean * cell, -cell, 0}});
