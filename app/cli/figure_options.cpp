@@ -239,7 +239,7 @@ FigureScale scale_of(double pixels_wide, double metres_per_pixel, bool map) {
 
 }  // namespace
 
-void settle_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format) {
+void check_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format) {
   if (options.any().empty()) return;
   if (format.layers) {
     throw Error(fmt::format("{} is not drawn into {}, which holds numbers for further work (name the output *.png)",
@@ -299,7 +299,7 @@ void add_legend(const FigureOptions& options, const PictureSettings& settings, c
 
 #else
 
-void settle_figure(const FigureOptions& options, const PictureSettings&, const PictureFormat&) {
+void check_figure(const FigureOptions& options, const PictureSettings&, const PictureFormat&) {
   if (!options.graticule.empty()) graticule_spacing(options.graticule);
   if (!options.any().empty())
     throw Error(fmt::format("{}: this scarp was built without Cairo (SCARP_CAIRO=OFF)", options.any()));

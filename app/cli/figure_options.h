@@ -29,7 +29,7 @@ struct FigureOptions {
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output);
 
 /// What can be judged without the field. Throws Error.
-void settle_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
+void check_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
 
 /// What a figure shows.
 struct FigureSubject {

@@ -24,7 +24,7 @@ struct FrameOptions {
 void add_frame_options(Command& command, FrameOptions& options);
 
 /// Throws Error where several frames have an output without a place for their number.
-void settle_frames(const FrameOptions& options, const std::string& output);
+void check_frames(const FrameOptions& options, const std::string& output);
 
 /// How positions of a table become positions in world metres.
 struct PathPlaces {

@@ -6,7 +6,7 @@
 
 namespace scarp::cli {
 
-/// `view` is what was typed. The options are consistent with each other. Throws Error.
-void render_input(InputKind kind, RenderOptions options, const ViewSettings& view);
+/// The options are consistent with each other. Throws Error.
+void render_input(InputKind kind, RenderOptions options);
 
 }  // namespace scarp::cli

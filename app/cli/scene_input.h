@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/look_options.h"
+#include "app/cli/render_options.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/picture.h"
+#include "scarp/render/frame/picture_request.h"
 #include "scarp/scene/file/scene_file.h"
 
 namespace scarp::cli {
@@ -16,13 +16,12 @@ namespace scarp::cli {
 /// Whether the input is a scene. Throws Error when other inputs stand beside one.
 bool is_scene_input(const std::vector<std::string>& inputs);
 
-/// The settings with those of the file, its materials and its haze. Options in `given` ("--size") count more.
-PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given);
-/// Adds the water and the fog of the file to the options, where they were not given. Throws Error naming the first
-/// given option that has no effect without water or fog.
-void take_environment(const SceneFile& file, const std::vector<std::string>& given, LookOptions& options);
-/// The same for a view, when the file has no eye.
-ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given);
+/// Returns the picture that the file itself asks for.
+PictureRequest request_of(const SceneFile& file);
+/// Throws Error naming the first option of the request that has no effect together with the file.
+void check_effect(const PictureRequest& asked, const SceneFile& file);
+/// Returns the view of the options, completed by that of the file, which has no eye.
+ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look look);
 
 /// What is in a scene: for --json, and the same as lines of text.
 nlohmann::ordered_json describe_scene(const std::string& path);

@@ -24,7 +24,6 @@ struct Opening {
   std::shared_ptr<cli::Program> program;  ///< its declarations are bound to `options`
   std::shared_ptr<cli::ViewOptions> options;
   cli::InputKind kind;
-  ViewSettings view;
   /// Everything that was typed or set in the window, the newest last; those that have no effect now are not in
   /// `options`.
   std::vector<GivenOption> given{};
@@ -32,7 +31,7 @@ struct Opening {
   const cli::Command& command() const { return *program->find("view"); }
 };
 
-/// Checks the options that were typed for `command` of `program`, and settles them. Throws Error and WrongUsage.
+/// Checks the options that were typed for `command` of `program`, and takes them over. Throws Error and WrongUsage.
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
                        const cli::Command& command);
 

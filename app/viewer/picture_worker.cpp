@@ -28,7 +28,7 @@ class Watch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-WorkedPicture begun(const PictureRequest& request, std::uint64_t generation) {
+WorkedPicture begun(const ViewRequest& request, std::uint64_t generation) {
   WorkedPicture worked;
   worked.generation = generation;
   worked.large_pixels = std::any_of(request.sides.begin(), request.sides.end(),
@@ -63,7 +63,7 @@ PictureWorker::~PictureWorker() {
   thread_.join();
 }
 
-std::uint64_t PictureWorker::request(PictureRequest request) {
+std::uint64_t PictureWorker::request(ViewRequest request) {
   std::uint64_t generation;
   {
     const std::scoped_lock lock(mutex_);
@@ -125,7 +125,7 @@ bool PictureWorker::stopped() const {
 
 void PictureWorker::work() {
   for (;;) {
-    PictureRequest request;
+    ViewRequest request;
     std::uint64_t generation;
     {
       std::unique_lock lock(mutex_);
@@ -154,7 +154,7 @@ bool PictureWorker::deliver(WorkedPicture worked) {
 }
 
 // Returns whether the next stage is wanted, as the two below.
-bool PictureWorker::render_moving(const PictureRequest& request, std::uint64_t generation) {
+bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t generation) {
   std::int64_t most_pixels = 0;  // of one side
   WorkedPicture worked = begun(request, generation);
   const Watch watch;
@@ -179,7 +179,7 @@ bool PictureWorker::render_moving(const PictureRequest& request, std::uint64_t g
   return deliver(std::move(worked)) && !outdated(generation);
 }
 
-bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t generation) {
+bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t generation) {
   std::vector<std::vector<PictureSettings>> stages;
   std::size_t count = 1;
   for (const PictureSide& side : request.sides) {
@@ -212,7 +212,7 @@ bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t 
   return true;
 }
 
-void PictureWorker::judge(const PictureRequest& request, std::uint64_t generation) {
+void PictureWorker::judge(const ViewRequest& request, std::uint64_t generation) {
   WorkedVerdict verdict;
   verdict.generation = generation;
   try {

@@ -51,7 +51,7 @@ Picture render(const Scene& given, const Camera& camera, const PictureSettings& 
   return render_picture(seen, camera, settings, progress);
 }
 
-PictureRequest request_from(const Scene& scene, double turn, bool moving) {
+ViewRequest request_from(const Scene& scene, double turn, bool moving) {
   PictureSettings settings;
   settings.width = 96, settings.height = 64;
   settings.aa = 2, settings.samples = 2;
@@ -70,7 +70,7 @@ TEST(SharedScene, IsAskedWhileItIsRendered) {
   constexpr int kRequests = 60;
   int pictures = 0, read = 0;
   for (int i = 0; i < kRequests; ++i) {
-    const PictureRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
+    const ViewRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
     const Camera camera = request.camera(96, 64);
     worker.request(request);
     // As many readings as it takes until there is a picture, so that the threads meet.
@@ -94,7 +94,7 @@ TEST(SharedScene, IsAskedWhileItIsRendered) {
   EXPECT_GT(pictures, 0);
   EXPECT_GT(read, 0);
   // The last picture is the one that is rendered alone.
-  const PictureRequest last = request_from(scene, 1, false);
+  const ViewRequest last = request_from(scene, 1, false);
   const std::uint64_t generation = worker.request(last);
   std::optional<WorkedPicture> worked;
   for (int i = 0; i < 60'000; ++i) {
