@@ -78,7 +78,7 @@ TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
   }
 }
 
-TEST(ScarpBench, BatchesOfAllSizes) {
+TEST(ScarpBench, BatchesRunsAllSizes) {
   const json all = output_of("batches --size 129 --rays small --repeats 1 --batches 10,5000");
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 2u * 2u * 2u);  // classes, orders, sizes
@@ -88,7 +88,7 @@ TEST(ScarpBench, BatchesOfAllSizes) {
   }
 }
 
-TEST(ScarpBench, ExtentsAnswerAsWindowsDo) {
+TEST(ScarpBench, ExtentsMatchWindows) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
   expect_head(all);
   for (const json& row : all["rows"]) {
@@ -153,7 +153,7 @@ TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
     expect_fields(row, {"side", "type", "colours", "build_s", "plain_read_s", "ratio"});
 }
 
-TEST(ScarpBench, LeaksFindsNoneAndIsTheSameEachTime) {
+TEST(ScarpBench, LeaksFindsNoneAndIsReproducible) {
   const json all = output_of("leaks --rays 200000 --large 129 --seed 5 --judge-every 64 --dump /nowhere/none");
   expect_head(all);
   for (const json& row : all["rows"]) {
@@ -297,7 +297,7 @@ TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
 }
 
 #ifdef SCARP_BENCH_VULKAN
-TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
+TEST(ScarpBench, RenderReportsDeviceAndCpuRows) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -314,7 +314,7 @@ TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
   }
 }
 
-TEST(ScarpBench, VoxelsOnADeviceAreThoseOfTheCpu) {
+TEST(ScarpBench, VoxelsOnDeviceMatchCpu) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -394,7 +394,7 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
     EXPECT_TRUE(modes.contains(mode)) << mode;
 }
 
-TEST(ScarpBench, GpuComparesAtEqualErrorOfPosition) {
+TEST(ScarpBench, GpuComparesAtEqualPositionError) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -438,7 +438,7 @@ TEST(ScarpBench, DevicesMarksTheChosenOne) {
 #ifdef SCARP_BENCH_VULKAN
 // Corners are rounded to a part of a pixel, so pixels beside edges may show what is on the other side, and nothing
 // else.
-TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
+TEST(ScarpBench, DrawnGridDepthsMatchRays) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -534,7 +534,7 @@ TEST(ScarpBench, SeamsLoseNoRay) {
   }
 }
 
-TEST(ScarpBench, SweepsAgreeWithBulletAndNoneTunnels) {
+TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
   const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
   expect_head(all);
   int judged = 0;
@@ -553,7 +553,7 @@ TEST(ScarpBench, SweepsAgreeWithBulletAndNoneTunnels) {
   EXPECT_EQ(judged, 2);
 }
 
-TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
+TEST(ScarpBench, ReportsErrorsInOneLine) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;
   };
@@ -571,7 +571,7 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
 }
 
-TEST(ScarpBench, WrongUsageIsOneLineOfTheProgram) {
+TEST(ScarpBench, ReportsUsageErrorsInOneLine) {
   for (const char* arguments : {"", "heights --sizes 5", "heights --sizes much", "heights --size 129", "hights"}) {
     const std::string file =
         (std::filesystem::temp_directory_path() / fmt::format("scarp-bench-{}.err", getpid())).string();

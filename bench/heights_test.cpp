@@ -83,7 +83,7 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
             (std::set<std::string>{"primary", "shadow", "grazing", "ao", "nodes", "lidar", "lidar-ground", "near"}));
 }
 
-TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
+TEST(ScarpBench, EnginesAgreeOnHits) {
   // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine has got
   // other rays.
   std::map<std::string, double> max_mip;
@@ -100,7 +100,7 @@ TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
   }
 }
 
-TEST(ScarpBench, SurveyTellsTheFastestOfEach) {
+TEST(ScarpBench, SurveyReportsTheFastestModeOfEachEngine) {
   const json all = output_of("survey --size 129 --kinds fbm --rays small --repeats 1");
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 3u * 7u);  // views and classes
@@ -113,7 +113,7 @@ TEST(ScarpBench, SurveyTellsTheFastestOfEach) {
   }
 }
 
-TEST(ScarpBench, BulletWithoutItsAcceleratorAnswersAsEmbreeDoes) {
+TEST(ScarpBench, BulletWithoutAcceleratorMatchesEmbree) {
   std::map<std::string, double> embree;
   const json all = output_of("heights --sizes 129 --rays small --repeats 1 --engines embree-tri,bullet");
   for (const json& row : all["rows"]) {
@@ -147,7 +147,7 @@ std::map<std::string, int> differences(const RaySet& set, const EmbreePeer& peer
   return differ;
 }
 
-TEST(EmbreePeer, EveryModeAnswersAsSingleRays) {
+TEST(EmbreePeer, EveryModeMatchesSingleRays) {
   FieldOptions options;
   options.size = 129;
   const BenchField ground = load_field(options);

@@ -12,7 +12,7 @@ constexpr std::uint32_t kShader[] = {
 #include "bench/grid_mesh.vert.inc"
 };
 
-TEST(GridMeshLayout, IsThatOfTheShader) { EXPECT_TRUE(test::is_laid_out_like<glsl::GridMeshPush>(kShader)); }
+TEST(GridMeshLayout, MatchesTheShader) { EXPECT_TRUE(test::is_laid_out_like<glsl::GridMeshPush>(kShader)); }
 
 }  // namespace
 }  // namespace scarp::bench

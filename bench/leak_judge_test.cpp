@@ -42,7 +42,7 @@ Hit hit_at(double t, double u, double v) {
   return hit;
 }
 
-TEST(LeakJudge, ARayThatBeginsOutsideByRoundingIsOnTheSurfaceWhereItBegins) {
+TEST(LeakJudge, RayStartingOutsideByRoundingIsOnTheSurface) {
   const LeakField ground = plane();
   const LeakJudge judge(ground, along_the_border());
   EXPECT_TRUE(judge.must_hit());
@@ -50,7 +50,7 @@ TEST(LeakJudge, ARayThatBeginsOutsideByRoundingIsOnTheSurfaceWhereItBegins) {
   EXPECT_TRUE(judge.same(hit_at(0, 0, 0), hit_at(0, 0, 0)));
 }
 
-TEST(LeakJudge, TellsAHitUnderTheSurfaceAndOneThatWasLost) {
+TEST(LeakJudge, DistinguishesFalseHitsFromLostHits) {
   const LeakField ground = plane();
   const LeakJudge judge(ground, along_the_border());
   const Ray ray = along_the_border();
@@ -62,7 +62,7 @@ TEST(LeakJudge, TellsAHitUnderTheSurfaceAndOneThatWasLost) {
 
 // Along the diagonal of saddles, rising by 8e-13 per cell: at each node it comes out of the ground and goes in again
 // right behind.
-TEST(LeakJudge, AWayInRightBehindAWayOutIsNoFalseHit) {
+TEST(LeakJudge, AcceptsReentryRightAfterExit) {
   constexpr int kSide = 40;
   std::vector<float> samples;
   for (int row = 0; row < kSide; ++row) {

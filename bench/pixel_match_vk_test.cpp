@@ -49,12 +49,12 @@ class PixelMatchOnDevice : public test::OnDevice {
   }
 };
 
-TEST_F(PixelMatchOnDevice, ThePostsPicture) {
+TEST_F(PixelMatchOnDevice, MatchesTheReferencePicture) {
   expect_match("standard", 1, pixel_match_frames(320, 180)[0], "voxel-octants");
 }
 
 // Every object has a quad or three.
-TEST_F(PixelMatchOnDevice, FromInside) {
+TEST_F(PixelMatchOnDevice, MatchesFromInside) {
   expect_match("degenerate", 4, pixel_match_frames(320, 180).back(), "voxel-bricks");
 }
 

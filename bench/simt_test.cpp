@@ -36,7 +36,7 @@ void add_frame(SimtTrace& trace, int turns, std::uint64_t address) {
   }
 }
 
-TEST(SimtBundle, LoopsGoOnUntilTheSlowestRayIsDone) {
+TEST(SimtBundle, LoopsRunUntilTheSlowestRayIsDone) {
   std::vector<SimtTrace> lanes(2);
   add_frame(lanes[0], 1, 0);
   add_frame(lanes[0], 3, 0);
@@ -50,7 +50,7 @@ TEST(SimtBundle, LoopsGoOnUntilTheSlowestRayIsDone) {
   EXPECT_EQ(bundle.of(Block::end), 1u);
 }
 
-TEST(SimtBundle, PaysForABranchThatAnyRayTakes) {
+TEST(SimtBundle, CountsBranchesTakenByAnyRay) {
   std::vector<SimtTrace> lanes(2);
   for (SimtTrace& lane : lanes) add_frame(lane, 1, 0);
   lanes[0].enter(Block::cell);
@@ -64,7 +64,7 @@ TEST(SimtBundle, PaysForABranchThatAnyRayTakes) {
   EXPECT_EQ(bundle.of(Block::hit), 1u);
 }
 
-TEST(SimtBundle, CountsCacheLinesOfEachFetch) {
+TEST(SimtBundle, CountsCacheLinesPerFetch) {
   std::vector<SimtTrace> lanes(3);
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     lanes[lane].enter(Block::frame);
@@ -92,7 +92,7 @@ TEST(SimtBundle, AddsUpCosts) {
   EXPECT_EQ(sum.memory, 8u);
 }
 
-TEST(SimtBundle, RejectsWhatIsNoTrace) {
+TEST(SimtBundle, RejectsInvalidTraces) {
   std::vector<SimtTrace> lanes(1);
   lanes[0].enter(Block::cell);
   EXPECT_THROW(replay(lanes), Error);
@@ -126,7 +126,7 @@ TEST(SimtBlocks, CountsBasicBlocks) {
   EXPECT_EQ(counted[Block::end].instructions, 1);
 }
 
-TEST(SimtBlocks, NamesBasicBlocksThatItDoesNotKnow) {
+TEST(SimtBlocks, NamesUnknownBasicBlocks) {
   const auto why = [](const char* walk) {
     try {
       count_blocks(toy_shader(walk), kDisassembly);
@@ -140,7 +140,7 @@ TEST(SimtBlocks, NamesBasicBlocksThatItDoesNotKnow) {
   EXPECT_EQ(why("2 9"), "shader 'toy': the disassembly is shorter than the table's");
 }
 
-TEST(SimtBlocks, AreReadAsWritten) {
+TEST(SimtBlocks, RoundTrip) {
   SimtShaders all{"compilers", {count_blocks(toy_shader("1-3"), kDisassembly)}};
   const std::string file =
       std::filesystem::temp_directory_path() / ("scarp-simt-" + std::to_string(::getpid()) + ".csv");
@@ -158,7 +158,7 @@ TEST(SimtBlocks, AreReadAsWritten) {
 }
 
 #ifdef SCARP_BENCH_VULKAN
-TEST(SimtBlocks, AreThoseOfTheShaders) {
+TEST(SimtBlocks, MatchTheShaders) {
   const SimtShaders kept = read_simt_shaders(kTable);
   std::string compilers;
   try {
@@ -203,7 +203,7 @@ struct SimtTraces : testing::Test {
   }
 };
 
-TEST_F(SimtTraces, AnswerAsMaxMipDoesAndTellWhatTheyRead) {
+TEST_F(SimtTraces, MatchMaxMipAndRecordReads) {
   std::size_t hits = 0;
   for (const RaySet& set : make_rays(field, {RayClass::primary, RayClass::shadow}, counts, 1)) {
     for (std::size_t i = 0; i < set.library_rays.size(); i += 7) {
@@ -251,7 +251,7 @@ TEST_F(SimtTraces, NaiveTakesFewerStepsWhenClipped) {
   EXPECT_LT(others, set.library_rays.size() / 7 / 50);
 }
 
-TEST(SimtVoxelTraces, AnswerAsTheCpuDoes) {
+TEST(SimtVoxelTraces, MatchTheCpu) {
   SimtShaders shaders = read_simt_shaders(kTable);
   for (const VoxelMarchEntry& march : voxel_marches()) {
     if (!march.gpu) continue;
@@ -286,7 +286,7 @@ TEST(SimtVoxelTraces, AnswerAsTheCpuDoes) {
   }
 }
 
-TEST_F(SimtTraces, LeaveTheTraceOutWhenItIsNull) {
+TEST_F(SimtTraces, SkipTheTraceWhenNull) {
   const Ray ray = make_rays(field, {RayClass::chunk}, counts, 1).front().library_rays.front();
   SimtTrace trace;
   const bool traced = trace_max_mip(ground, ray, true, &trace).answer.hit;

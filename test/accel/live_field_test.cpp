@@ -116,7 +116,7 @@ TEST(LiveField, EveryBatchSeesOneEpoch) {
   expect_whole_epochs<std::int16_t>();
 }
 
-TEST(LiveField, AnEditGetsItsTurnAmongReadersWithoutAPause) {
+TEST(LiveField, EditIsNotStarvedByReaders) {
   LiveField live(HeightField::own(ground<float>(0, kSide), kSide, kSide));
   std::atomic<bool> done{false};
   std::vector<std::thread> readers;
@@ -136,7 +136,7 @@ TEST(LiveField, AnEditGetsItsTurnAmongReadersWithoutAPause) {
   EXPECT_EQ(live.read().epoch(), 20u);
 }
 
-TEST(LiveField, ARefusedEditChangesNothing) {
+TEST(LiveField, RejectedEditChangesNothing) {
   LiveField live(HeightField::own(ground<float>(0, kSide), kSide, kSide));
   const double before = live.read().field().cell_heights({3, 4})->h00;
   const float bad = HUGE_VALF;

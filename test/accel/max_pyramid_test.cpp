@@ -97,7 +97,7 @@ TEST(MaxPyramid, BoundsEachBlockTightlyAtAnySize) {
   }
 }
 
-TEST(MaxPyramid, BoundsHeightsThatCodesDoNotMeet) {
+TEST(MaxPyramid, BoundsHeightsOfAnyOffsetAndScale) {
   // Far above the datum, tiny, huge, and all the same.
   for (const double offset : {0.0, 1e6, -3e30}) {
     for (const double scale : {0.0, 1e-7, 1.0 / 3, 1e30}) {
@@ -109,7 +109,7 @@ TEST(MaxPyramid, BoundsHeightsThatCodesDoNotMeet) {
   }
 }
 
-TEST(MaxPyramid, BoundsHeightsOfARangeThatIsNarrowerThanRounding) {
+TEST(MaxPyramid, BoundsRangesNarrowerThanRounding) {
   // Neighbouring floats far above the datum, and a reserve that doubles hardly tell from nothing.
   for (const double datum : {1.0, 8388608.0, -3e30}) {
     auto samples = noise<float>(33, 18);
@@ -123,7 +123,7 @@ TEST(MaxPyramid, BoundsHeightsOfARangeThatIsNarrowerThanRounding) {
   }
 }
 
-TEST(MaxPyramid, BoundsHeightsThatAreThoseOfCodesButForRounding) {
+TEST(MaxPyramid, BoundsHeightsThatMatchCodesUpToRounding) {
   std::mt19937 random(10);
   std::uniform_real_distribution<double> some(0.001, 0.01);
   const HeightField flat = HeightField::own(std::vector<float>(9, 1.0f), 3, 3);
@@ -135,7 +135,7 @@ TEST(MaxPyramid, BoundsHeightsThatAreThoseOfCodesButForRounding) {
   }
 }
 
-TEST(MaxPyramid, LeavesHolesOut) {
+TEST(MaxPyramid, IgnoresHoles) {
   auto ints = noise<std::int16_t>(21, 19);
   auto floats = noise<float>(21, 19);
   std::mt19937 random(8);
@@ -215,7 +215,7 @@ void expect_update_equals_build(const HeightFieldSettings& settings) {
   }
 }
 
-TEST(MaxPyramid, AnUpdateIsABuildOfWhatChanged) {
+TEST(MaxPyramid, UpdateMatchesARebuild) {
   for (const Wrap wrap : {Wrap::none, Wrap::periodic, Wrap::shared_border}) {
     for (const std::optional<double> nodata : {std::optional<double>(), std::optional<double>(500)}) {
       expect_update_equals_build<float>({.nodata = nodata, .wrap = wrap});
@@ -225,7 +225,7 @@ TEST(MaxPyramid, AnUpdateIsABuildOfWhatChanged) {
   }
 }
 
-TEST(MaxPyramid, AnUpdateTouchesNothingElse) {
+TEST(MaxPyramid, UpdateTouchesOnlyChangedBlocks) {
   HeightField field = HeightField::own(noise<std::int16_t>(65, 65), 65, 65);
   MaxPyramid pyramid(field);
   // An entry spoilt far from the edit stays spoilt.
@@ -235,7 +235,7 @@ TEST(MaxPyramid, AnUpdateTouchesNothingElse) {
   EXPECT_EQ(pyramid.maximum_code(0), 12345);
 }
 
-TEST(MaxPyramid, IsBuiltAnewWhenSamplesLeaveTheRangeOfItsCodes) {
+TEST(MaxPyramid, RebuildsWhenSamplesLeaveTheCodeRange) {
   HeightField field = HeightField::own(noise<float>(40, 30), 40, 30);
   MaxPyramid pyramid(field), reserved(field, SampleRange{-6000, 6000});
   const double step = reserved.code().step;

@@ -90,7 +90,7 @@ void expect_as_defined(const VoxelGrid& grid, const Built& built) {
 
 class VoxelAccelerators : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
+TEST_P(VoxelAccelerators, MatchTheirDefinitions) {
   Random random(11);
   for (int i = 0; i < 3; ++i) {
     VoxelGrid grid = GetParam().make(random);
@@ -110,7 +110,7 @@ TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
   }
 }
 
-TEST_P(VoxelAccelerators, AllBuildersOfCubesAgree) {
+TEST_P(VoxelAccelerators, AllCubeBuildersAgree) {
   Random random(12);
   for (int i = 0; i < cases(4, 4, 1); ++i) {
     const VoxelGrid grid = GetParam().make(random);
@@ -120,7 +120,7 @@ TEST_P(VoxelAccelerators, AllBuildersOfCubesAgree) {
   }
 }
 
-TEST_P(VoxelAccelerators, FollowEditsAsIfBuiltAnew) {
+TEST_P(VoxelAccelerators, MatchARebuildAfterEdits) {
   Random random(13);
   for (int i = 0; i < cases(3, 3, 1); ++i) {
     VoxelGrid grid = GetParam().make(random);
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
 });
 
 // Rows of less than a vector, of one, of some; longer than what counts; along each axis; before and after edits.
-TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
+TEST(VoxelAccelerators, MatchTheirDefinitionsForRowsOfAnyLength) {
   Random random(14);
   for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
                             ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
@@ -168,7 +168,7 @@ TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
 
 // What edits alter may be far away, beyond another solid voxel, on all sides or on one; they add and remove at once,
 // and report more than they change.
-TEST(VoxelAccelerators, FollowSpitefulEdits) {
+TEST(VoxelAccelerators, MatchARebuildAfterHostileEdits) {
   Random random(15);
   const std::array sizes{ivec3(70, 31, 43), ivec3(129, 23, 20), ivec3(31, 90, 24)};
   for (const ivec3& size : std::span(sizes).first(static_cast<std::size_t>(cases(3, 3, 1)))) {
@@ -213,7 +213,7 @@ TEST(VoxelAccelerators, FollowSpitefulEdits) {
   }
 }
 
-TEST(VoxelAccelerators, CountNoFartherThanAByte) {
+TEST(VoxelAccelerators, SaturateAtOneByte) {
   VoxelGrid grid({400, 3, 3}, 1);
   EXPECT_EQ(EmptyCubes(grid).distance({200, 1, 1}), 255);
   EXPECT_EQ(EmptySpheres(grid).distance({200, 1, 1}), 254);
@@ -231,7 +231,7 @@ TEST(VoxelAccelerators, CountNoFartherThanAByte) {
 }
 
 // Levels above sectors tell what the cells below contain, before and after edits.
-TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
+TEST(VoxelAccelerators, HaveLevelsForLargeGrids) {
   Random random(16);
   for (const ivec3& size : {ivec3(520, 7, 30), ivec3(3, 1100, 18), ivec3(600, 70, 4200)}) {
     VoxelGrid grid(size, 1);
@@ -261,7 +261,7 @@ TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
   }
 }
 
-TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
+TEST(VoxelAccelerators, RejectOversizedGrids) {
   const VoxelGrid grid({513, 1, 1}, 1);
   EXPECT_THROW((EmptyCubes(grid)), Error);
   EXPECT_THROW((EmptySpheres(grid)), Error);
@@ -278,7 +278,7 @@ TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
 }
 
 // Above the size at which the builder changes.
-TEST(VoxelAccelerators, OfALargeGridAgreeToo) {
+TEST(VoxelAccelerators, AllCubeBuildersAgreeOnALargeGrid) {
   VoxelGrid grid({100, 90, 70}, 1);
   grid.fill_sphere({20, 70, 30}, 9, 1);
   grid.fill({{90, 3, 60}, {95, 30, 61}}, 1);

@@ -34,7 +34,7 @@ double dense_clearance(const HeightField& field, double col, double row, double 
 constexpr double kRounding = 1e-6;
 double between_samples(const HeightField& field) { return kRounding + (field.max_height() - field.min_height()) / 100; }
 
-TEST(BilinearGround, ShadesEqualDenseSamples) {
+TEST(BilinearGround, ShadowsMatchDenseSamples) {
   int counts[4] = {};
   std::size_t turn = 0;
   const auto suns = map_suns();
@@ -86,7 +86,7 @@ TEST(BilinearGround, ShadesEqualDenseSamples) {
   for (const int count : counts) EXPECT_GT(count, cases(100, 100, 10));
 }
 
-TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
+TEST(BilinearGround, LinesOfSightMatchDenseSamples) {
   std::mt19937 random(5);
   int visible = 0, hidden = 0;
   for (const MapField& kind : map_fields()) {
@@ -146,7 +146,7 @@ TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
 }
 
 // Within a cell whose opposite corners are high, the ground between two low corners rises to the mean of all four.
-TEST(BilinearGround, CountsWhatLiesBetweenCrossings) {
+TEST(BilinearGround, AccountsForGroundBetweenCrossings) {
   const auto field = HeightField::own(std::vector<float>{0, 10, 10, 0}, 2, 2, {.cell_x = 3, .cell_y = 4});
   const BilinearGround ground(field);
   EXPECT_TRUE(line_of_sight(field, {0, 0, 4}, {1, 1, 4}, {.coefficient = 0}).visible);
@@ -181,7 +181,7 @@ TEST(BilinearGround, GrazingIsVisible) {
   EXPECT_EQ(ground.shade({SunRay::kUnit, 0, SunRay::kUnit * 9.}, {3, 4}), Shade::self_shaded);
 }
 
-TEST(BilinearGround, RefusesWhatHasNoCells) {
+TEST(BilinearGround, RejectsFieldsWithoutCells) {
   EXPECT_THROW(BilinearGround(HeightField::own(std::vector<float>{1, 2, 3}, 3, 1)), Error);
   EXPECT_THROW(BilinearGround(HeightField::own(std::vector<float>(9, 1), 3, 3, {.wrap = Wrap::periodic})), Error);
 }

@@ -39,9 +39,9 @@ std::vector<Node> some_observers(const HeightField& field) {
   return some;
 }
 
-TEST(Maps, ThereAreAtLeastSixtyFields) { EXPECT_GE(map_fields().size(), 60u); }
+TEST(Maps, HaveAtLeastSixtyFields) { EXPECT_GE(map_fields().size(), 60u); }
 
-TEST(Maps, ViewshedsEqualTheJudge) {
+TEST(Maps, ViewshedsMatchTheJudge) {
   std::size_t visible = 0, hidden = 0;
   unsigned turn = 0;
   for (const MapField& kind : some_fields())
@@ -63,7 +63,7 @@ TEST(Maps, ViewshedsEqualTheJudge) {
   EXPECT_GT(hidden, least);
 }
 
-TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
+TEST(Maps, LeastVisibleHeightsMatchTheJudge) {
   unsigned turn = 0;
   for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
@@ -80,7 +80,7 @@ TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
 }
 
 // A plane 10 m below the eye; a wall with a hole on it hides what is behind.
-TEST(Maps, AnglesAreThoseOfTheLinesOfSight) {
+TEST(Maps, AnglesMatchTheLinesOfSight) {
   constexpr int kSide = 21;
   std::vector<float> heights(kSide * kSide, 0);
   for (int row = 0; row < kSide; ++row) heights[static_cast<std::size_t>(row * kSide + 15)] = 40;
@@ -105,7 +105,7 @@ TEST(Maps, AnglesAreThoseOfTheLinesOfSight) {
   EXPECT_EQ(last[3], at(3, kSide - 2));
 }
 
-TEST(Maps, ShadowsEqualTheJudge) {
+TEST(Maps, ShadowsMatchTheJudge) {
   std::size_t counts[4] = {};
   const auto suns = map_suns();
   const auto turns = static_cast<std::size_t>(cases(static_cast<int>(suns.size()), 5, 2));

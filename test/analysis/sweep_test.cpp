@@ -125,7 +125,7 @@ std::string sweep_place(int number, const HeightField& field, Node node) {
 
 constexpr int kSweptFields = 400;
 
-TEST(Sweeps, ViewshedsEqualRays) {
+TEST(Sweeps, ViewshedsMatchRays) {
   SweepDraw draw(1);
   SweepStatistics statistics;
   for (int number = 0; number < kSweptFields; ++number) {
@@ -150,7 +150,7 @@ TEST(Sweeps, ViewshedsEqualRays) {
   EXPECT_GT(statistics.walked, 10);
 }
 
-TEST(Sweeps, LeastVisibleHeightsEqualRays) {
+TEST(Sweeps, LeastVisibleHeightsMatchRays) {
   SweepDraw draw(2);
   for (int number = 0; number < kSweptFields; ++number) {
     const HeightField field = sweep_field(number, draw);
@@ -169,7 +169,7 @@ TEST(Sweeps, LeastVisibleHeightsEqualRays) {
   }
 }
 
-TEST(Sweeps, ShadowsEqualRays) {
+TEST(Sweeps, ShadowsMatchRays) {
   SweepDraw draw(3);
   SweepStatistics statistics;
   for (int number = 0; number < kSweptFields; ++number) {

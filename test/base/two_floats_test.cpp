@@ -22,7 +22,7 @@ struct Split {
   return all;
 }
 
-TEST(TwoFloats, AreRoundedAlsoSideBySide) {
+TEST(TwoFloats, RoundEveryComponentOfAVector) {
   const dvec3 v(0.1, 0.2, 1 + 0x1p-30);
   const dvec3 r = rounded(v);
   const Split all = split_all(v);

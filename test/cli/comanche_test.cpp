@@ -38,7 +38,7 @@ std::string hill(const test::Scratch& scratch) {
 
 bool is_one_line(const std::string& err) { return std::count(err.begin(), err.end(), '\n') == 1 && err.back() == '\n'; }
 
-TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
+TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), out = scratch.path("out.png");
   scratch.write("gap.cpt", "0 0 0 0 10 255 255 255\n20 0 0 0 30 255 255 255\n");
@@ -113,7 +113,7 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
   EXPECT_EQ(scratch.files(), before) << "nothing is left behind";
 }
 
-TEST(Comanche, IsScaledUpByWholeFactors) {
+TEST(Comanche, ScalesByWholeFactors) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), out = scratch.path("out.png");
   const auto result = test::run({"render", dem, "-o", out, "--look", "comanche", "--wrap", "mirror", "--lowres",
@@ -128,7 +128,7 @@ TEST(Comanche, IsScaledUpByWholeFactors) {
   }
 }
 
-TEST(Flight, GoesOnWhereItStopped) {
+TEST(Flight, ResumesWhereItStopped) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), frames = scratch.path("f-###.png");
   const std::vector<std::string> arguments{"render", dem,     "-o",   frames, "--turntable", "--frames", "4",
@@ -152,7 +152,7 @@ TEST(Flight, GoesOnWhereItStopped) {
 }
 
 // The frame of noise is larger than those of haze.
-TEST(Flight, AFullDiskLeavesTheFramesBefore) {
+TEST(Flight, FullDiskKeepsEarlierFrames) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);
   scratch.write(
@@ -171,7 +171,7 @@ TEST(Flight, AFullDiskLeavesTheFramesBefore) {
   EXPECT_EQ(test::read_png(scratch.path("f1.png")).width, 160);
 }
 
-TEST(Reach, FromAboveEndlessGroundIsSeen) {
+TEST(Reach, EndlessGroundIsVisibleFromAbove) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), out = scratch.path("out.png");
   for (const std::string wrap : {"mirror", "periodic"}) {
@@ -184,7 +184,7 @@ TEST(Reach, FromAboveEndlessGroundIsSeen) {
   }
 }
 
-TEST(Overlay, LiesWhereItsPlaceIs) {
+TEST(Overlay, IsPlacedByItsGeoreference) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);
   // Over the western half of the ground, red; the eastern half has the ramp's grey.
@@ -234,7 +234,7 @@ TEST(Overlay, IsMirroredWithTheGround) {
 }
 
 #ifdef SCARP_OPENEXR
-TEST(Composite, TheNearerPixelIsSeen) {
+TEST(Composite, ShowsTheNearerPixel) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), ours = scratch.path("ours.exr");
   ASSERT_EQ(
@@ -287,7 +287,7 @@ TEST(Composite, TheNearerPixelIsSeen) {
 }
 
 // Nothing is as far away as the sky: a plate is seen before it, and another renderer's sky hides nothing.
-TEST(Composite, ThingsAreSeenBeforeTheSky) {
+TEST(Composite, ShowsObjectsInFrontOfTheSky) {
   constexpr int kSide = 16;
   const test::Scratch scratch;
   const std::string ours = scratch.path("ours.exr"), out = scratch.path("out.exr");

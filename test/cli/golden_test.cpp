@@ -76,7 +76,7 @@ std::vector<std::string> arguments_of(const Golden& wanted, const std::string& p
   return arguments;
 }
 
-TEST_P(GoldenPicture, IsAsItWas) {
+TEST_P(GoldenPicture, IsUnchanged) {
   const Golden& wanted = GetParam();
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
@@ -89,7 +89,7 @@ TEST_P(GoldenPicture, IsAsItWas) {
 
 // The picture that ./dev demo has just made in a clean clone (./dev test names it), against the one that the README
 // shows.
-TEST(GoldenDemo, MatchesThePictureOfTheReadme) {
+TEST(GoldenDemo, MatchesTheReadme) {
   const char* picture = std::getenv("SCARP_DEMO_PICTURE");
   if (!picture || !*picture) GTEST_SKIP() << "SCARP_DEMO_PICTURE names no picture; ./dev test sets it";
   test::expect_golden(picture, fs::path(SCARP_SOURCE_DIR) / "doc" / "images" / "jacksboro.png", kMaxDifference,
@@ -98,7 +98,7 @@ TEST(GoldenDemo, MatchesThePictureOfTheReadme) {
 
 #ifdef SCARP_VULKAN
 // The very pictures of the CPU.
-TEST_P(GoldenPicture, IsTheSameOnADevice) {
+TEST_P(GoldenPicture, MatchesOnADevice) {
   const Golden& wanted = GetParam();
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
@@ -116,7 +116,7 @@ TEST_P(GoldenPicture, IsTheSameOnADevice) {
 
 #ifdef SCARP_MESH_ON_DEVICE
 // Drawn and asked on a CPU device, which is the same everywhere.
-TEST(GoldenMesh, AsItWasLookedAt) {
+TEST(GoldenMesh, MatchesTheReviewedPicture) {
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
   const test::Scratch scratch;
@@ -158,7 +158,7 @@ TEST(GoldenMesh, AsItWasLookedAt) {
 class GoldenScene : public testing::TestWithParam<const char*> {};
 
 // One sample in the middle of each of few pixels. With sanitizers functions are slow: two scenes must do there.
-TEST_P(GoldenScene, AsItWasLookedAt) {
+TEST_P(GoldenScene, MatchesTheReviewedPicture) {
   const std::string name = GetParam();
 #ifndef SCARP_MESHES_IN_SCENES
   if (name == "balloons" || name == "lake") GTEST_SKIP() << "built without SCARP_EMBREE or SCARP_MESH";

@@ -33,7 +33,7 @@ std::vector<std::uint8_t> gdaldem(const std::string& path, int* side) {
   return error == CE_None ? grey : std::vector<std::uint8_t>();
 }
 
-TEST(Hillshade, IsThatOfGdaldem) {
+TEST(Hillshade, MatchesGdaldem) {
   const test::Scratch scratch;
   const std::string dem = scratch.path("dem.tif"), picture = scratch.path("hillshade.png");
   ASSERT_EQ(test::run({"generate", "--size", "257", "--seed", "3", "--wavelength", "40", "-o", dem}).status, 0);

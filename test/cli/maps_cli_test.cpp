@@ -103,7 +103,7 @@ TEST_F(MapsCli, ViewshedIsAGeoreferencedRaster) {
   EXPECT_EQ(scratch_.files(), (Names{"dem.asc", "seen.tif"}));
 }
 
-TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
+TEST_F(MapsCli, AcceptsGdalViewshedFlags) {
   const auto ours =
       run(on_dem("viewshed") + Names{"--observer", "500105,5000105", "--observer-height", "3", "--max-distance", "150",
                                      "--visible-value", "255", "-o", path("a.tif")});
@@ -120,7 +120,7 @@ TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
   expect_refused({"viewshed", "-ox", "500105", dem_, path("c.tif")}, "give both");
 }
 
-TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
+TEST_F(MapsCli, AppliesViewshedPixelValues) {
   const Names view = on_dem("viewshed") +
                      Names{"--observer", "500105,5000105", "--max-distance", "150", "--cc", "0", "-o", path("a.tif")};
   struct Seen {
@@ -168,7 +168,7 @@ TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
                  "--nodata-value 0: is also a value of the map");
 }
 
-TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
+TEST_F(MapsCli, CountsObserversAndFindsLeastVisibleHeights) {
   const std::string table = scratch_.write("towers.csv", "name,x,y,z\na,500105,5000105,2\nb,500285,5000105,2\n");
   ASSERT_EQ(run(on_dem("viewshed") + Names{"--observers", table, "--mode", "count", "-o", path("count.tif")}).status,
             0);
@@ -205,7 +205,7 @@ TEST_F(MapsCli, AnglesCountFromTheHorizontal) {
   EXPECT_EQ(pixels_of(*open(path("angle.tif"))).at(15, 9), one.at(15, 9));
 }
 
-TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
+TEST_F(MapsCli, ShadowWritesOneBandPerSun) {
   ASSERT_EQ(run(on_dem("shadow") + Names{"--sun", "90,45", "--sun", "270,45", "-o", path("sun.tif")}).status, 0);
   const auto dataset = open(path("sun.tif"));
   ASSERT_EQ(dataset->GetRasterCount(), 2);
@@ -223,7 +223,7 @@ TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
   EXPECT_NEAR(part.at(17, 9), 0, 1e-6);
 }
 
-TEST_F(MapsCli, ShadowTakesTimes) {
+TEST_F(MapsCli, ShadowAcceptsTimes) {
   const auto result = run(on_dem("shadow") + Names{"--time", "2026-06-21T12:00+02:00", "-o", path("noon.tif")});
   if (result.err.find("SCARP_ERFA") != std::string::npos) GTEST_SKIP() << "built without ERFA";
   ASSERT_EQ(result.status, 0) << result.err;
@@ -249,7 +249,7 @@ TEST_F(MapsCli, ShadowTakesTimes) {
 }
 
 // The parts put together are the whole, pixel by pixel, and lie where their rows do.
-TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
+TEST_F(MapsCli, PartsMatchTheWhole) {
   const Names maps[] = {
       Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9"},
       Names{"viewshed", "--observer", "500105,5000105,2", "--mode", "ground", "--max-distance", "60"},
@@ -287,7 +287,7 @@ TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
 }
 
 // Between the samples of a saddle the ground is higher than on any grid line that a diagonal crosses.
-TEST_F(MapsCli, SurfaceMayBeBilinear) {
+TEST_F(MapsCli, SupportsBilinearSurface) {
   const std::string saddle =
       scratch_.write("saddle.asc", "ncols 2\nnrows 2\nxllcorner -5\nyllcorner -5\ncellsize 10\n0 30\n30 0\n");
   const Names line{"los", saddle, "--crs", "map", "--cc", "0", "--from", "0,10,8", "--to", "10,0,8"};
@@ -313,7 +313,7 @@ TEST_F(MapsCli, SurfaceMayBeBilinear) {
   expect_refused({"shadow", row, "--sun", "90,45", "--surface", "bilinear", "-o", path("x.tif")}, "row.asc: ");
 }
 
-TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
+TEST_F(MapsCli, LosWritesCsvAndGeoJson) {
   const Names places{"--from", "500105,5000105,2", "--to", "500185,5000105", "--to", "500285,5000105,5", "--cc", "0"};
   const auto csv = run(on_dem("los") + places);
   ASSERT_EQ(csv.status, 0) << csv.err;
@@ -334,7 +334,7 @@ TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
   EXPECT_EQ(lines(again.out), 3);
 }
 
-TEST_F(MapsCli, ProfileIsATableOrAFigure) {
+TEST_F(MapsCli, ProfileWritesATableOrAFigure) {
   const Names line = on_dem("profile") + Names{"--from", "500105,5000105,2", "--to", "500285,5000105,5"};
   const auto csv = run(line);
   ASSERT_EQ(csv.status, 0) << csv.err;
@@ -365,7 +365,7 @@ TEST_F(MapsCli, ProfileIsATableOrAFigure) {
 }
 
 // Green where the observer sees the ground, grey where not, the colours of heights where nothing was asked.
-TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
+TEST_F(MapsCli, PreviewOverlaysTheMap) {
   const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("v.tif")};
 #ifndef SCARP_CAIRO
   expect_refused(view + Names{"--preview", path("v.png")}, "SCARP_CAIRO");
@@ -404,7 +404,7 @@ TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
 #endif
 }
 
-TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
+TEST_F(MapsCli, ReportsBadInputInOneLineWithoutOutput) {
   const std::string out = path("x.tif");
   const Names view = on_dem("viewshed") + Names{"-o", out};
   expect_refused(view, "no observer");
@@ -439,7 +439,7 @@ TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
 }
 
 // What else people type, one line each.
-TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
+TEST_F(MapsCli, ValidatesPlacesTimesAndFiles) {
   const std::string out = path("x.tif");
   const Names view = on_dem("viewshed") + Names{"-o", out, "--observer"};
   for (const char* place : {"500105", "nan,5000105", "500105,5000105,1e300", "500105,5000105,2,3", ""})
@@ -482,7 +482,7 @@ TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
   expect_refused(there + Names{path("")}, path(""));
 }
 
-TEST_F(MapsCli, InputsAreKept) {
+TEST_F(MapsCli, NeverOverwritesInputs) {
   const std::string lines_file = scratch_.write("lines.csv", "x,y,tx,ty\n500105,5000105,500185,5000105\n");
   const std::string tower = scratch_.write("tower.csv", "x,y\n500105,5000105\n");
   fs::create_hard_link(dem_, path("link.tif"));
@@ -500,7 +500,7 @@ TEST_F(MapsCli, InputsAreKept) {
 #endif
 }
 
-TEST_F(MapsCli, AFullDiskLeavesNothing) {
+TEST_F(MapsCli, FullDiskLeavesNoOutput) {
   const auto expect_full = [&](const Names& arguments, std::uint64_t bytes, const std::string& name) {
     const auto before = scratch_.files();
     const auto result = [&] {
@@ -538,7 +538,7 @@ TEST_F(MapsCli, AFullDiskLeavesNothing) {
 }
 
 // Ctrl-C in the middle of long work.
-TEST_F(MapsCli, AnInterruptLeavesNothing) {
+TEST_F(MapsCli, InterruptLeavesNoOutput) {
   std::string text = "ncols 400\nnrows 400\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n", table = "x,y\n";
   for (int i = 0; i < 400 * 400; ++i) text += fmt::format("{} ", i * 7919 % 31);
   for (int i = 0; i < 40000; ++i) table += fmt::format("{},{}\n", 500005 + i % 200 * 10, 5000005 + i / 200 * 10);
@@ -572,7 +572,7 @@ TEST_F(MapsCli, DryRunWritesNothing) {
 }
 
 // A degree has another length in the north of a large raster than in its south.
-TEST_F(MapsCli, DegreesAreRefusedWherePlaneIsWrong) {
+TEST_F(MapsCli, RejectsDegreesWhereThePlaneErrorIsLarge) {
   std::string text = "ncols 200\nnrows 200\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n";
   for (int i = 0; i < 200 * 200; ++i) text += "1 ";
   const std::string dem = scratch_.write("degrees.asc", text);

@@ -51,7 +51,7 @@ class MeshOption : public testing::Test {
                     roof_ = scratch_.write("roof.obj", kRoof);
 };
 
-TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
+TEST_F(MeshOption, StandsAtMeshAt) {
   if (!has_device()) GTEST_SKIP() << "no Vulkan device";
   // 64 pixels for 64 cells of 30 m: a roof of 300 m in the middle, 100 m above the highest ground, or to the west.
   const auto reds = [&](const std::vector<std::string>& more) {
@@ -88,7 +88,7 @@ TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
   EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
 }
 
-TEST_F(MeshOption, OpenMeshesHaveNoVoxels) {
+TEST_F(MeshOption, OpenMeshesCannotBeVoxelised) {
   const auto refusal = [&](const std::string& mesh, const std::string& voxel) {
     const auto result = run({"voxelise", mesh, "--voxel", voxel, "-o", scratch_.path("v.binvox")});
     EXPECT_NE(result.status, 0);
@@ -102,7 +102,7 @@ TEST_F(MeshOption, OpenMeshesHaveNoVoxels) {
   EXPECT_EQ(run({"voxelise", closed, "--voxel", "1", "-o", scratch_.path("v.binvox")}).status, 0);
 }
 
-TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
+TEST_F(MeshOption, ReportsErrorsInOneLine) {
   expect_refusal({"--mesh-at", "1,2"}, "--mesh-at has no effect without --mesh FILE");
   expect_refusal({"--mesh", roof_, "--mesh-up", "x"}, "--mesh-up 'x': expected y or z");
   expect_refusal({"--mesh", roof_, "--mesh-scale", "0"}, "--mesh-scale '0': expected a finite number above 0");

@@ -39,7 +39,7 @@ class RenderOnDevice : public testing::Test {
   const std::string dem_ = scratch_.path("dem.tif"), picture_ = scratch_.path("picture.png");
 };
 
-TEST_F(RenderOnDevice, MakesThePictureAndNamesTheDevice) {
+TEST_F(RenderOnDevice, RendersAndNamesTheDevice) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const auto cpu = render({"--look", "error"});
@@ -59,7 +59,7 @@ TEST_F(RenderOnDevice, MakesThePictureAndNamesTheDevice) {
   EXPECT_EQ(read_png(picture_).width, 60);
 }
 
-TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
+TEST_F(RenderOnDevice, RendersFunctionsAndScenes) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const std::string plain = scratch_.write("plain.json", R"({"type": "fbm", "octaves": 2})");
@@ -103,7 +103,7 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
 }
 
 // Hits on voxels are those of the CPU to the bit, so pictures and tables are.
-TEST_F(RenderOnDevice, MakesTheSamePicturesOfVoxels) {
+TEST_F(RenderOnDevice, RendersVoxelsAsTheCpu) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const std::string model = scratch_.path("hills.vox"), there = scratch_.path("there.png");
@@ -167,12 +167,12 @@ TEST_F(RenderOnDevice, MakesTheSamePicturesOfVoxels) {
   }
 }
 
-TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
+TEST_F(RenderOnDevice, RejectsMarchesWithoutDeviceSupport) {
   expect_refusal(render({"--device", "auto", "--march", "exhaustive"}),
                  "--device auto: march 'exhaustive' does not run on Vulkan devices (available: max-mip, ");
 }
 
-TEST_F(RenderOnDevice, StepsOfComancheHaveSoftLightThere) {
+TEST_F(RenderOnDevice, ComancheStepsSupportSoftLight) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const std::vector<std::string> arguments{"render",   dem_,    "-o",      picture_,     "--look",   "comanche",
@@ -189,7 +189,7 @@ TEST_F(RenderOnDevice, StepsOfComancheHaveSoftLightThere) {
   EXPECT_NE(read_png(picture_).bytes, hard);
 }
 
-TEST_F(RenderOnDevice, RefusesDevicesThatAreNotThere) {
+TEST_F(RenderOnDevice, RejectsUnknownDevices) {
   expect_refusal(render({"--device", "no such card"}), "'no such card'");
   expect_refusal(render({"--device", ""}), "--device");
   ::setenv("VK_DRIVER_FILES", "/nonexistent", 1);

@@ -336,7 +336,7 @@ TEST(SpitefulRasters, BrokenFiles) {
 }
 
 // Beside inputs: what options name.
-TEST(SpitefulRasters, PipesAreRefusedAsOptions) {
+TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
   const test::SpitefulFiles files;
   const std::string terrain = files.tiff("hills.tif", GDT_Int16, test::hills());
   const struct {
@@ -359,7 +359,7 @@ TEST(SpitefulRasters, PipesAreRefusedAsOptions) {
 }
 
 // Beyond what the program takes for four samples.
-TEST(SpitefulRasters, MemoryIsAtMostFourTimesTheSamples) {
+TEST(SpitefulRasters, MemoryStaysBelowFourTimesTheSamples) {
   const test::SpitefulFiles files;
   const auto peak = [&](const std::string& file) {
     const MeasuredResult measured = run_measured({"render", file, "-o", files.path("p.png"), "--size", "96x54"});

@@ -79,7 +79,7 @@ TEST(SpitefulBinvox, Runs) {
       "m.binvox");
 }
 
-TEST(SpitefulVolume, BareNumbers) {
+TEST(SpitefulVolume, RawNumbers) {
   const std::string nan = test::spite::number(0x7fc00000), one = test::spite::number(std::bit_cast<std::int32_t>(1.0F)),
                     inf = test::spite::number(0x7f800000);
   const auto times = [](const std::string& what, int count) {

@@ -184,7 +184,7 @@ TEST(SpitefulScene, Layers) {
 }
 
 // Between them is nothing, which takes no memory, and no picture of this size shows both.
-TEST(SpitefulScene, FarApart) {
+TEST(SpitefulScene, DistantModels) {
   const auto apart = [](std::int64_t by) { return scene(placed({{{"_t", at(0, 0, 2)}}, {{"_t", at(by, 0, 2)}}})); };
   check_all({
       {"two models 100 apart", apart(100), shown(64, Size{104, 4, 4}).trying({"voxelise"}).worth(128)},
@@ -203,7 +203,7 @@ TEST(SpitefulScene, FarApart) {
   look.expect_memory(200, least_memory("render", "p.png"));
 }
 
-TEST(SpitefulScene, Crowds) {
+TEST(SpitefulScene, ManyInstances) {
   // The walls of a box of 126^3, at 10,000 places.
   constexpr int kSide = 126;
   std::vector<Dot> walls;

@@ -75,7 +75,7 @@ void expect_box(const DistanceField& field, const dvec3& p, const std::string& n
   }
 }
 
-TEST(DistanceField, SignIsThatOfSets) {
+TEST(DistanceField, SignMatchesSetMembership) {
   for (const NamedShape& named : shape_zoo()) {
     if (is_smooth(named.name)) continue;
     const DistanceField field(named.shape);
@@ -92,7 +92,7 @@ TEST(DistanceField, SignIsThatOfSets) {
   }
 }
 
-TEST(DistanceField, ValuesChangeByAMetrePerMetre) {
+TEST(DistanceField, IsOneLipschitz) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(2);
@@ -107,7 +107,7 @@ TEST(DistanceField, ValuesChangeByAMetrePerMetre) {
 }
 
 // Trees that nobody thought of: the same.
-RC_GTEST_PROP(DistanceField, RandomTreesHaveTheSignOfSets, (unsigned seed)) {
+RC_GTEST_PROP(DistanceField, SignMatchesSetMembershipOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const Shape shape = random_shape(random, 1 + static_cast<int>(seed % 4), false);
   const DistanceField field(shape);
@@ -118,7 +118,7 @@ RC_GTEST_PROP(DistanceField, RandomTreesHaveTheSignOfSets, (unsigned seed)) {
   }
 }
 
-RC_GTEST_PROP(DistanceField, RandomTreesChangeByAMetrePerMetre, (unsigned seed)) {
+RC_GTEST_PROP(DistanceField, IsOneLipschitzOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const DistanceField field(random_shape(random, 1 + static_cast<int>(seed % 4), true));
   for (int i = 0; i < 40; ++i) {
@@ -131,7 +131,7 @@ RC_GTEST_PROP(DistanceField, RandomTreesChangeByAMetrePerMetre, (unsigned seed))
 }
 
 // Solids tell the distance itself: so far along the gradient, and no nearer, is the surface.
-TEST(DistanceField, SingleSolidsAreExactOutside) {
+TEST(DistanceField, IsExactOutsideSingleSolids) {
   for (const NamedShape& named : shape_zoo()) {
     const bool exact = named.name.find("sphere") != std::string::npos || named.name == "box" ||
                        named.name == "rounded box" || named.name == "half space" || named.name == "capsule" ||
@@ -151,7 +151,7 @@ TEST(DistanceField, SingleSolidsAreExactOutside) {
   }
 }
 
-TEST(DistanceField, RoundingIsWithinItsBound) {
+TEST(DistanceField, RoundingStaysWithinItsBound) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     if (!field.program().functions.empty() || !field.program().fields.empty()) continue;  // heights are doubles
@@ -167,7 +167,7 @@ TEST(DistanceField, RoundingIsWithinItsBound) {
   }
 }
 
-TEST(DistanceField, GradientsAreThoseOfDifferences) {
+TEST(DistanceField, GradientsMatchFiniteDifferences) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(5);
@@ -196,7 +196,7 @@ TEST(DistanceField, GradientsAreThoseOfDifferences) {
   }
 }
 
-TEST(DistanceField, SegmentBoundsAreNeverExceeded) {
+TEST(DistanceField, SegmentBoundsHold) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     std::string tightness = named.name + ": rest over length";
@@ -234,7 +234,7 @@ TEST(DistanceField, SegmentBoundsAreNeverExceeded) {
 }
 
 // Guards may leave out what cannot change the value, and nothing else.
-TEST(DistanceField, AUnionOfManyIsTheLeastOfAll) {
+TEST(DistanceField, UnionIsTheMinimumOfItsParts) {
   std::vector<Shape> parts;
   std::vector<DistanceField> fields;
   FunctionRandom random(8);
@@ -297,7 +297,7 @@ TEST(DistanceField, SmoothOperationsStayWithinAQuarterOfTheRadius) {
   EXPECT_GT(most, 0.15);
 }
 
-TEST(DistanceField, TellsTheNormalWhereTheGradientFails) {
+TEST(DistanceField, HasANormalWhereTheGradientVanishes) {
   const DistanceField ball(make_shape(Sphere{1}));
   EXPECT_NEAR(length(ball.normal({0, 0, 0})), 1, 1e-12);
   EXPECT_EQ(ball.normal({0, -3, 0}), dvec3(0, -1, 0));
@@ -307,7 +307,7 @@ std::string refusal(Form form) {
   return test::refusal([&] { make_shape(std::move(form)); });
 }
 
-TEST(DistanceField, RefusesWhatIsOutOfRange) {
+TEST(DistanceField, RejectsValuesOutOfRange) {
   const double nan = std::nan("");
   const Shape ball = make_shape(Sphere{});
   EXPECT_EQ(refusal(Sphere{-1}), "shape: sphere radius is -1 (must be between 2^-20 and 2^30)");
@@ -339,7 +339,7 @@ TEST(DistanceField, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(DistanceField(nullptr), Error);
 }
 
-TEST(DistanceField, RefusesWhatIsTooDeepOrTooLarge) {
+TEST(DistanceField, RejectsTreesThatAreTooDeepOrLarge) {
   Shape deep = make_shape(Sphere{});
   for (int i = 1; i < kDeepestShape; ++i) deep = make_shape(Moved{deep, {1, 0, 0}});
   EXPECT_NEAR(DistanceField(deep).value({0, 0, 0}), kDeepestShape - 2, 1e-9);

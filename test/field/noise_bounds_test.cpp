@@ -192,9 +192,9 @@ void expect_proven(NoiseKind kind) {
   }
 }
 
-TEST(NoiseBounds, OfValueNoise) { expect_proven(NoiseKind::value); }
-TEST(NoiseBounds, OfPerlinNoise) { expect_proven(NoiseKind::perlin); }
-TEST(NoiseBounds, OfSimplexNoise) { expect_proven(NoiseKind::simplex); }
+TEST(NoiseBounds, HoldForValueNoise) { expect_proven(NoiseKind::value); }
+TEST(NoiseBounds, HoldForPerlinNoise) { expect_proven(NoiseKind::perlin); }
+TEST(NoiseBounds, HoldForSimplexNoise) { expect_proven(NoiseKind::simplex); }
 
 }  // namespace
 }  // namespace scarp::test

@@ -44,7 +44,7 @@ struct Model {
 
 using Grids = testing::TestWithParam<VoxelGridKind>;
 
-TEST_P(Grids, EditsChangeWhatTheySayAndNothingElse) {
+TEST_P(Grids, EditsChangeOnlyTheirVoxels) {
   Random random(3);
   for (int round = 0; round < 4; ++round) {
     VoxelGrid grid = GetParam().make(random);
@@ -63,7 +63,7 @@ TEST_P(Grids, EditsChangeWhatTheySayAndNothingElse) {
 }
 
 // Many at once, beyond the grid and twice in one place as well: as one after the other.
-TEST_P(Grids, ManyVoxelsAreSetAsEachIs) {
+TEST_P(Grids, SettingManyVoxelsMatchesSettingEach) {
   Random random(5);
   for (int round = 0; round < 4; ++round) {
     VoxelGrid grid = GetParam().make(random);
@@ -83,7 +83,7 @@ TEST_P(Grids, ManyVoxelsAreSetAsEachIs) {
   }
 }
 
-TEST_P(Grids, TurnAndTurnBack) {
+TEST_P(Grids, RotationsAreInvertible) {
   Random random(4);
   const VoxelGrid grid = GetParam().make(random);
   for (const LatticeRotation& turn : lattice_rotations()) {
@@ -118,7 +118,7 @@ TEST_P(Grids, CombineVoxelByVoxel) {
   }
 }
 
-TEST_P(Grids, KeepTheEntriesThatCanBeSeen) {
+TEST_P(Grids, KeepVisibleEntries) {
   Random random(6);
   VoxelGrid grid = GetParam().make(random);
   Model expected(grid);
@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(All, Grids, testing::ValuesIn(spiteful_voxel_grids()), 
   return name;
 });
 
-TEST(VoxelGrid, PacksEntriesOfEachWidth) {
+TEST(VoxelGrid, PacksEntriesOfEveryWidth) {
   for (int bits = 1; bits <= VoxelGrid::kMaxEntryBits; ++bits) {
     VoxelGrid grid({17, 33, 5}, bits);
     const std::uint32_t all = (1u << bits) - 1;
@@ -164,7 +164,7 @@ TEST(VoxelGrid, PacksEntriesOfEachWidth) {
 }
 
 // More pages than one, so that some are stored before.
-TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
+TEST(VoxelGrid, StaysConsistentAfterAThrowingEdit) {
   VoxelGrid grid({48, 32, 16}, 4);
   grid.set({20, 20, 8}, 5);
   std::vector<VoxelGrid::Placed> placed;
@@ -188,7 +188,7 @@ TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
   Model(grid).expect(grid);
 }
 
-TEST(VoxelGrid, RefusesSizesOutOfRange) {
+TEST(VoxelGrid, RejectsSizesOutOfRange) {
   EXPECT_THROW(VoxelGrid({0, 1, 1}), Error);
   EXPECT_THROW(VoxelGrid({1, 16385, 1}), Error);
   EXPECT_THROW(VoxelGrid({1, 1, 1}, 0), Error);
@@ -256,7 +256,7 @@ TEST(VoxelGrid, BuildsWorldsPageByPage) {
   }
 }
 
-TEST(VoxelGrid, GroundIsSolidBelowItsTops) {
+TEST(VoxelGrid, FillsGroundBelowItsTops) {
   for (const ivec3& size : {ivec3(300, 21, 60), ivec3(256, 32, 64), ivec3(5, 7, 40)}) {
     std::vector<std::int32_t> tops;
     for (int y = 0; y < size.y; ++y) {
@@ -294,7 +294,7 @@ TEST(VoxelGrid, StoresNoEmptyPages) {
   EXPECT_LE(static_cast<std::int64_t>(grid.bytes()), VoxelGrid::bytes_of(grid.size(), 2, 2, 8) + 64);
 }
 
-TEST(VoxelGrid, IsBuiltFromBricksAsByEdits) {
+TEST(VoxelGrid, BuildFromBricksMatchesEdits) {
   const ivec3 size(70, 9, 33);
   const auto entry_at = [](const ivec3& v) { return (v.x * 7 + v.y * 31 + v.z * 3) % 5 == 0 ? v.x % 9 + 1 : 0; };
   VoxelGrid edited(size, 5);
@@ -325,7 +325,7 @@ TEST(VoxelGrid, IsBuiltFromBricksAsByEdits) {
 }
 
 // The post's object: 32^3, each solid voxel with a colour of its own.
-TEST(VoxelGrid, HoldsTheStandardObjectInFewBytes) {
+TEST(VoxelGrid, StoresTheStandardObjectCompactly) {
   VoxelGrid grid({32, 32, 32}, 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     const dvec3 from_middle = dvec3(v) + 0.5 - 16.0;

@@ -19,7 +19,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Lipschitz, ClosesInOnASlopeFromAbove) {
+TEST(Lipschitz, ApproachesASlopeFromAbove) {
   std::vector<float> samples;
   for (int row = 0; row < 64; ++row) {
     for (int col = 0; col < 64; ++col) samples.push_back(static_cast<float>(2 * col));
@@ -38,7 +38,7 @@ TEST(Lipschitz, ClosesInOnASlopeFromAbove) {
   EXPECT_GT(stats.steps, 3u);
 }
 
-TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
+TEST(Lipschitz, AcceptsAShrinkFactorInsteadOfTheSlope) {
   const HeightField field = HeightField::own(std::vector<float>(81, 0.f), 9, 9);
   const MaxPyramid pyramid(field);
   MarchSettings settings;
@@ -52,7 +52,7 @@ TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
 }
 
 // As shaders whose factor was found by trial: rays pass through slopes, and hit where they are found under the ground.
-TEST(Lipschitz, HitsUnderTheGroundWithAFactorThatTheSlopeDoesNotProve) {
+TEST(Lipschitz, HitsBelowGroundWithAnUnprovenFactor) {
   const HeightField field = waves();
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid, slope_bound(field)};

@@ -40,7 +40,7 @@ std::vector<float> noise(std::size_t count) {
   return numbers;
 }
 
-TEST_F(ExrFile, WhatIsWrittenIsReadBack) {
+TEST_F(ExrFile, RoundTrips) {
   // More rows than are handed over at once, and rows that do not fill the last block.
   for (const auto& [width, height] : {std::pair(1, 1), {17, 3}, {3, 17}, {5, 600}}) {
     const std::size_t pixels = static_cast<std::size_t>(width * height);
@@ -76,7 +76,7 @@ TEST_F(ExrFile, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(files(), 1) << "temporary files were left behind";
 }
 
-TEST_F(ExrFile, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
+TEST_F(ExrFile, FullDiskKeepsTheOldPicture) {
   const std::vector<float> depth = noise(200 * 200);
   write_exr(path("whole.exr"), {200, 200, {{"Z", depth.data()}}});
   const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole.exr")));
@@ -98,7 +98,7 @@ TEST_F(ExrFile, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
   }
 }
 
-TEST_F(ExrFile, WhatCannotBeAPictureIsRefused) {
+TEST_F(ExrFile, RejectsInvalidPictures) {
   const float number = 1;
   const ExrChannel good{"Z", &number};
   for (const ExrView& bad : {ExrView{0, 1, {good}},

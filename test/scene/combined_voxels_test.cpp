@@ -60,7 +60,7 @@ std::optional<VoxelColour> colour_at(const PlacedVoxels& voxels, const dvec3& po
 }
 
 // Two models with two places of one of them each, at random on one lattice, which is turned, scaled and moved.
-TEST(CombinedVoxels, AgreeWithEveryVoxel) {
+TEST(CombinedVoxels, MatchPerVoxelCombination) {
   std::mt19937 random(7);
   const auto rotations = lattice_rotations();
   const glm::dmat3 lattice = 0.5 * turned(30);
@@ -104,7 +104,7 @@ TEST(CombinedVoxels, AgreeWithEveryVoxel) {
   }
 }
 
-TEST(CombinedVoxels, NothingLeftHasNoPlaces) {
+TEST(CombinedVoxels, EmptyResultsHaveNoPlaces) {
   const std::vector<PlacedVoxels> same{cube(3), cube(3)}, apart{cube(3), cube(3, glm::dmat3(1.0), {9, 0, 0})};
   EXPECT_TRUE(combined_voxels(VoxelCombination::subtract, same).places.empty());
   EXPECT_TRUE(combined_voxels(VoxelCombination::intersect, apart).places.empty());
@@ -112,7 +112,7 @@ TEST(CombinedVoxels, NothingLeftHasNoPlaces) {
   EXPECT_TRUE(scene_voxels(combined_voxels(VoxelCombination::subtract, same))->box()->empty());
 }
 
-TEST(CombinedVoxels, NeedOneLattice) {
+TEST(CombinedVoxels, RequireACommonLattice) {
   const auto message = [](const PlacedVoxels& other) {
     return refusal([&] { combined_voxels(VoxelCombination::unite, std::vector<PlacedVoxels>{cube(2), other}); });
   };

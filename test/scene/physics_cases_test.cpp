@@ -67,9 +67,9 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
   std::mt19937_64 engine_{4};
 };
 
-TEST_P(HeightFieldShape, IsAPlane) { check(Terrain::own(std::vector<float>(32 * 32, 7), 32, 32, settings(0.1))); }
+TEST_P(HeightFieldShape, MatchesAPlane) { check(Terrain::own(std::vector<float>(32 * 32, 7), 32, 32, settings(0.1))); }
 
-TEST_P(HeightFieldShape, IsAPlaneNearZero) {
+TEST_P(HeightFieldShape, MatchesAPlaneNearZero) {
   HeightFieldSettings near_zero = settings(2);
   near_zero.offset = 0;
   std::vector<float> samples;
@@ -77,18 +77,18 @@ TEST_P(HeightFieldShape, IsAPlaneNearZero) {
   check(Terrain::own(std::move(samples), 32, 32, near_zero));
 }
 
-TEST_P(HeightFieldShape, IsRandomGroundWithHoles) {
+TEST_P(HeightFieldShape, MatchesRandomGroundWithHoles) {
   for (const int side : {2, 5, 16, 33}) check(Terrain::own(random_heights(side, 0.1), side, side, settings(0.75)));
 }
 
-TEST_P(HeightFieldShape, IsOneHole) {
+TEST_P(HeightFieldShape, MatchesASingleHole) {
   const Terrain terrain = Terrain::own(std::vector<float>(16 * 16, kHole), 16, 16, settings(1));
   check(terrain);
   EXPECT_FALSE(terrain.scene().query({}).closest_point({0, 0, 0}));
   EXPECT_FALSE(terrain.scene().query({}).overlaps({{8, 8, 0}, {100, 100, 100}}));
 }
 
-TEST_P(HeightFieldShape, ChangesInParts) {
+TEST_P(HeightFieldShape, MatchesAfterPartialEdits) {
   constexpr int kSide = 33;
   std::vector<float> samples = random_heights(kSide, 0.1);
   Terrain terrain = Terrain::own(samples, kSide, kSide, settings(0.5));

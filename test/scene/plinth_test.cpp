@@ -23,7 +23,7 @@ HeightField block() {
   return HeightField::own<float>({5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 9}, 4, 3, {.cell_x = 10, .cell_y = 10});
 }
 
-TEST(Plinth, ItsWallsStandAtTheBorder) {
+TEST(Plinth, WallsStandAtTheBorder) {
   const Plinth plinth(block(), 0);
   const struct {
     dvec3 origin, direction;
@@ -41,7 +41,7 @@ TEST(Plinth, ItsWallsStandAtTheBorder) {
   }
 }
 
-TEST(Plinth, TheyReachFromTheBaseToTheSurface) {
+TEST(Plinth, WallsReachFromBaseToSurface) {
   const Plinth plinth(block(), 1);
   const auto meets = [&](double x, double z) { return plinth.intersect(ray_of({x, -1, z}, {0, 1, 0})).has_value(); };
   EXPECT_TRUE(meets(5, 1.001));
@@ -79,7 +79,7 @@ TEST(Plinth, HeightsAreExaggeratedMetres) {
   EXPECT_FALSE(plinth.intersect(ray_of({0.5, -1, 149}, {0, 1, 0})));
 }
 
-TEST(Plinth, RaysFromAboveOrInsideMeetNoWall) {
+TEST(Plinth, RaysFromAboveOrInsideHitNoWall) {
   const Plinth plinth(block(), 0);
   EXPECT_FALSE(plinth.intersect(ray_of({12, 7, 50}, {0.1, 0.1, -1})));
   EXPECT_FALSE(plinth.intersect(ray_of({12, 7, 2}, {1, 0.2, 0})));
@@ -107,7 +107,7 @@ TEST(Plinth, HolesHaveWallsToo) {
   EXPECT_FALSE(plinth.intersect(ray_of({0.2, 1.3, 5.5}, {1, 0, -1})));
 }
 
-TEST(Plinth, RaysFromTheRockMeetNoWalls) {
+TEST(Plinth, RaysFromSolidGroundHitNoWall) {
   // A valley of 1 m between plateaus of 5 m: 9 x 2 nodes, of which that of column 4 has no number, so x 3..5 is a hole.
   std::vector<float> samples;
   for (int row = 0; row < 2; ++row) {
@@ -122,7 +122,7 @@ TEST(Plinth, RaysFromTheRockMeetNoWalls) {
   EXPECT_TRUE(plinth.intersect(ray_of({3.2, 0.3, -0.1}, {1, 0, 0.2})));
 }
 
-TEST(Plinth, ItsBaseLiesBelowTheField) {
+TEST(Plinth, BaseLiesBelowTheField) {
   EXPECT_LT(plinth_base(block()), 5);
   const HeightField flat = HeightField::own<float>({5, 5, 5, 5}, 2, 2);
   EXPECT_LT(plinth_base(flat), 5);

@@ -169,7 +169,7 @@ std::vector<SceneFieldPtr> all_kinds(Random& random) {
           scene_plinth(bilinear)};
 }
 
-TEST(SceneContacts, AreThoseOfEachObjectAlone) {
+TEST(SceneContacts, MatchPerObjectContacts) {
   Found count;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Random random(seed);
@@ -198,7 +198,7 @@ TEST(SceneContacts, AreThoseOfEachObjectAlone) {
 }
 
 // Upright in whole metres and in pairs, asked in halves of metres: many points of an object are equally close.
-TEST(SceneContacts, AreThoseOfEachObjectAloneOnALattice) {
+TEST(SceneContacts, MatchPerObjectContactsOnALattice) {
   Random random(9);
   const auto whole = [&](int side) { return dvec3(random.below(side), random.below(side), random.below(side)); };
   Found count;
@@ -224,7 +224,7 @@ TEST(SceneContacts, AreThoseOfEachObjectAloneOnALattice) {
   EXPECT_GT(count.touched, cases(2000, 100, 20));
 }
 
-TEST(SceneContacts, AreThoseOfEachObjectAloneAfterEdits) {
+TEST(SceneContacts, MatchPerObjectContactsAfterEdits) {
   Random random(7);
   constexpr double kSide = 15;
   std::vector<float> samples(25, 1.0f);
@@ -272,7 +272,7 @@ TEST(SceneContacts, AreThoseOfEachObjectAloneAfterEdits) {
   EXPECT_GT(count.met, cases(100, 10, 1));
 }
 
-TEST(SceneContacts, OfPlacedVoxelsAreThoseOfEachPlaceAlone) {
+TEST(SceneContacts, MatchPerPlaceContactsOfVoxels) {
   Random random(8);
   PlacedVoxels voxels{.models = {model(random), model(random)}};
   for (std::uint32_t i = 0; i < 100; ++i) {
@@ -347,7 +347,7 @@ class CountedCube final : public SceneField {
   mutable int asked = 0;
 };
 
-TEST(SceneContacts, AskFewObjects) {
+TEST(SceneContacts, TestFewObjects) {
   const auto cube = std::make_shared<CountedCube>();
   std::vector<SceneObject> objects;
   for (int i = 0; i < 8000; ++i) objects.push_back({0, 0, {.origin = 3.0 * dvec3(i % 20, i / 20 % 20, i / 400)}});
@@ -366,7 +366,7 @@ TEST(SceneContacts, AskFewObjects) {
   EXPECT_LE(cube->asked, 10);
 }
 
-TEST(SceneContacts, AreRefusedByTheMaskNotByThePlace) {
+TEST(SceneContacts, RejectUnsupportedObjectsByMask) {
   const Scene scene =
       combine({{scene_heights(HeightField::own(std::vector<float>(4, 1), 2, 2))},
                {scene_shape(DistanceField(make_shape(shape::Sphere{1}))), {.origin = {1e6, 0, 0}}, {}, 2}});

@@ -57,7 +57,7 @@ void expect_hits(const Scene& scene, const Ray& ray, const std::vector<double>& 
   }
 }
 
-TEST(Filters, MeetEveryHillOfAFunction) {
+TEST(Filters, SeeEveryHillOfAFunction) {
   constexpr int kSamples = 4000;
   const HeightFunction waves(
       make_function(Sines{{{.amplitude = 3, .wavelength = 31}, {.amplitude = 1, .wavelength = 7.3, .towards = 1.1}}}));
@@ -104,7 +104,7 @@ TEST(Filters, MeetEveryHillOfAFunction) {
   EXPECT_GE(most, 4);
 }
 
-TEST(Filters, MeetEveryBallFromOutside) {
+TEST(Filters, SeeEveryBallFromOutside) {
   Random random(2);
   int rays = 0, most = 0;
   for (int round = cases(2000, 300, 50); round > 0; --round) {
@@ -148,7 +148,7 @@ TEST(Filters, MeetEveryBallFromOutside) {
   EXPECT_GE(most, 4);
 }
 
-TEST(Filters, PassSeamsOfSolidsAndGrazes) {
+TEST(Filters, PassSeamsAndGrazes) {
   const Shape left = make_shape(shape::Moved{make_shape(shape::Box{{1, 1, 1}}), {-1, 0, 0}}),
               right = make_shape(shape::Moved{make_shape(shape::Box{{1, 1, 1}}), {1, 0, 0}}),
               far = make_shape(shape::Moved{make_shape(shape::Sphere{1}), {6, 0, 0}});
@@ -164,7 +164,7 @@ TEST(Filters, PassSeamsOfSolidsAndGrazes) {
 }
 
 // Starts in the solid and on it.
-TEST(Filters, KnowWhereARayStarts) {
+TEST(Filters, RespectTheStartOfTheRay) {
   const Scene scene(scene_shape(DistanceField(make_shape(shape::Sphere{1}))));
   const SceneQuery none = scene.query({.accept = [](const Ray&, const Hit&) { return false; }});
   EXPECT_EQ(none.closest_hit({{0, 0, 0}, {0, 0, -1}}).status, HitStatus::below);
@@ -183,7 +183,7 @@ TEST(Filters, KnowWhereARayStarts) {
             HitStatus::hit);
 }
 
-TEST(Filters, AreForMarchesThatGoOn) {
+TEST(Filters, RequireMarchesThatContinue) {
   const Scene naive(scene_function(HeightFunction(make_function(Plane{})), find_function_march("naive")));
   const Ray down{{0, 0, 3}, {0, 0, -1}};
   EXPECT_TRUE(naive.query({.accept = [](const Ray&, const Hit&) { return true; }}).closest_hit(down));

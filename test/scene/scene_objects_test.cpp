@@ -121,7 +121,7 @@ class Themselves final : public SceneBackEnd {
   std::vector<SceneFieldPtr> fields_;
 };
 
-TEST(SceneOfManyFields, MayBeAnsweredFieldByField) {
+TEST(SceneOfManyFields, CanBeAnsweredFieldByField) {
   const Scene scene = crowd(5);
   const Scene elsewhere = scene.answered_by(std::make_shared<Themselves>(scene.fields()));
   EXPECT_TRUE(elsewhere.on_device());
@@ -157,7 +157,7 @@ TEST(SceneOfManyFields, MayBeAnsweredFieldByField) {
   EXPECT_EQ(elsewhere.closest_hit(onwards[0], from[0]).t, scene.closest_hit(onwards[0], from[0]).t);
 }
 
-TEST(SceneOfManyFields, TellsTheNearestOfAllObjects) {
+TEST(SceneOfManyFields, FindsTheNearestObject) {
   const Scene scene = crowd(5);
   int hits = 0;
   for (const Ray& ray : rays_through(6, 3000)) {
@@ -195,7 +195,7 @@ Scene layers() {
                 {3, 3, {turned({1, 0, 0}, -0.3), 1.0, {0, 0, 5}}}});
 }
 
-TEST(SceneOfManyFields, BatchesAndOcclusionAgreeWithSingleRays) {
+TEST(SceneOfManyFields, BatchesAndOcclusionMatchSingleRays) {
   for (const unsigned seed : {7u, 8u}) {
     const Scene scene = seed == 7 ? crowd(seed) : layers();
     const std::vector<Ray> rays = rays_through(seed, 2000);
@@ -257,7 +257,7 @@ TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
   EXPECT_GT(blocked_when_free, 100);
 }
 
-TEST(SceneOfManyFields, PlacesAndScalesWithoutTouchingT) {
+TEST(SceneOfManyFields, PlacementsPreserveT) {
   // A ball of 2 m, 3 m when scaled, 10 m ahead of a ray that counts in steps of 2 m.
   const Scene scene({ball(2)}, {{0, 42, {turned({1, 2, 3}, 1), 1.5, {10, 0, 0}}}});
   Ray ray;
@@ -290,7 +290,7 @@ TEST(SceneOfManyFields, FindsOneOfThousands) {
   }
 }
 
-TEST(SceneOfManyFields, RefusesWhatCannotStand) {
+TEST(SceneOfManyFields, RejectsInvalidPlacements) {
   const auto refused = [](const Placement& placement, std::uint32_t field) {
     try {
       Scene({ball(1)}, {{field, 0, placement}});

@@ -59,7 +59,7 @@ struct Alone {
 
 class SceneOfOne : public testing::TestWithParam<HeightFieldSettings> {};
 
-TEST_P(SceneOfOne, AnswersAsTheBatchOfItsField) {
+TEST_P(SceneOfOne, MatchesItsFieldsBatch) {
   // Few enough for the exhaustive march, enough for several pieces on several threads.
   constexpr std::size_t kRays = 1200;
   const std::vector<Ray> rays = rays_at_random(7, kRays, GetParam().wrap == Wrap::none ? INFINITY : 100);
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Fields, SceneOfOne,
                          testing::Values(HeightFieldSettings{}, HeightFieldSettings{.solid = true},
                                          HeightFieldSettings{.wrap = Wrap::periodic}));
 
-TEST(SceneOfOneField, AnswersAsItDoesBesideNothing) {
+TEST(SceneOfOneField, MatchesItselfBesideAnEmptyField) {
   // An empty field beside it takes the other way through the scene.
   const SceneFieldPtr field = scene_heights(waves());
   const Scene one(field),
@@ -146,7 +146,7 @@ TEST(SceneOfOneField, AnswersAsItDoesBesideNothing) {
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(of_one[i], of_two[i]) << i;
 }
 
-TEST(SceneOfOneField, StatisticsAreThoseOfTheMarch) {
+TEST(SceneOfOneField, ReportsStatisticsOfTheMarch) {
   const Scene scene(scene_heights(waves()));
   Ray down;
   down.origin = {10.3, 10.6, 50};
@@ -157,7 +157,7 @@ TEST(SceneOfOneField, StatisticsAreThoseOfTheMarch) {
   EXPECT_GE(stats.steps, stats.cell_tests);
 }
 
-TEST(SceneOfOneField, RefusesWhatItCannotAnswer) {
+TEST(SceneOfOneField, RejectsUnsupportedQueries) {
   MarchSettings settings;
   settings.naive.min_step = 0;
   EXPECT_THROW(scene_heights(waves(), find_height_march("naive"), settings), Error);
@@ -173,7 +173,7 @@ TEST(SceneOfOneField, RefusesWhatItCannotAnswer) {
   EXPECT_THROW(for_device.closest_hit(rays[0]), Error);
 }
 
-TEST(SceneOfOneField, RaysFromOutsideAreValidated) {
+TEST(SceneOfOneField, ValidatesCallerRays) {
   const auto refused = [](const Scene& scene, const Ray& ray) { return test::refusal([&] { validate(ray, scene); }); };
   const Scene scene(scene_heights(waves())), endless(scene_heights(waves({.wrap = Wrap::periodic})));
   Ray ray;
@@ -192,7 +192,7 @@ TEST(SceneOfOneField, RaysFromOutsideAreValidated) {
 }
 
 // Flat ground 3 m high, in several places; tilted ground does not count.
-TEST(SceneOfMoreFields, KnowTheHighestGround) {
+TEST(SceneOfMoreFields, ReportTheHighestGround) {
   const SceneFieldPtr flat = scene_heights(HeightField::own(std::vector<float>(25, 3.0f), 5, 5));
   glm::dmat3 quarter(0.0), tilt(1.0);
   quarter[0][1] = 1, quarter[1][0] = -1, quarter[2][2] = 1;

@@ -10,7 +10,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Seams, LetNoRayThrough) {
+TEST(Seams, PassNoRay) {
   constexpr int kSide = 65, kRays = 40'000;
   const std::vector<float> flat(kSide * kSide, 0.0f);
   for (const auto& [cell, corner] : {std::pair(1.0, 0.0), {0.3, 0.0}, {0.1, 123456.7}, {1.0 / 3, -7e5}}) {

@@ -31,7 +31,7 @@ std::vector<ScenePart> with_grounds_around(const Scene& part) {
   return parts;
 }
 
-TEST(StaleScene, IsNamedWhenSamplesWereEdited) {
+TEST(StaleScene, IsReportedAfterSampleEdits) {
   Terrain terrain = flat();
   const Scene scene = combine(with_grounds_around(terrain));
   EXPECT_FALSE(cast(scene, kOverHill));
@@ -52,7 +52,7 @@ TEST(StaleScene, IsNamedWhenSamplesWereEdited) {
   EXPECT_TRUE(cast(combine(with_grounds_around(terrain)), kOverHill));
 }
 
-TEST(StaleScene, IsNamedWhenVoxelsWereEdited) {
+TEST(StaleScene, IsReportedAfterVoxelEdits) {
   VoxelGrid grid({32, 32, 32});
   grid.fill({{0, 0, 0}, {32, 32, 2}}, 1);
   Voxels voxels(std::move(grid));
@@ -68,7 +68,7 @@ TEST(StaleScene, IsNamedWhenVoxelsWereEdited) {
   EXPECT_TRUE(cast(combine({{voxels}}), ray));
 }
 
-TEST(StaleScene, IsNamedWhenItsPyramidIsOld) {
+TEST(StaleScene, IsReportedWhenItsPyramidIsOld) {
   HeightField field = HeightField::own(std::vector<float>(kSide * kSide, 1.0f), kSide, kSide);
   const SceneFieldPtr heights = scene_heights(field);
   const Scene scene(heights);
@@ -80,7 +80,7 @@ TEST(StaleScene, IsNamedWhenItsPyramidIsOld) {
   EXPECT_TRUE(cast(Scene(scene_heights(field)), kOverHill));
 }
 
-TEST(StaleScene, IsNamedWhenItsPlinthIsOld) {
+TEST(StaleScene, IsReportedWhenItsPlinthIsOld) {
   Terrain terrain = flat();
   const Scene scene = with_plinth(terrain);
   raise_hill(terrain);
@@ -88,7 +88,7 @@ TEST(StaleScene, IsNamedWhenItsPlinthIsOld) {
   EXPECT_NE(refusal([&] { Scene{scene.fields()[1]}; }).find("(plinth)"), std::string::npos);
 }
 
-TEST(StaleScene, IsNamedWhenItsMemoryWasFreed) {
+TEST(StaleScene, IsReportedWhenItsMemoryWasFreed) {
   auto samples = std::make_shared<std::vector<float>>(kSide * kSide, 1.0f);
   const Terrain terrain = Terrain::view(samples->data(), kSide, kSide, {}, 0, samples);
   const Scene scene = combine(with_grounds_around(terrain));
@@ -101,7 +101,7 @@ TEST(StaleScene, IsNamedWhenItsMemoryWasFreed) {
   EXPECT_EQ(refusal([&] { occluded(terrain, down); }), message);
 }
 
-TEST(StaleScene, IsNotWhatOtherFieldsAreEditedBeside) {
+TEST(StaleScene, IsNotCausedByEditsOfOtherFields) {
   Terrain terrain = flat(), other = flat();
   const Scene scene = combine(with_grounds_around(terrain));
   raise_hill(other);

@@ -46,14 +46,14 @@ void expect_ground(const Scene& scene, const Ray& ray, double t) {
   EXPECT_TRUE(occluded(scene, shorter));
 }
 
-TEST(SteepSeams, OfTilesAreHitByNearlyVerticalRays) {
+TEST(SteepSeams, BetweenTilesAreHitByNearlyVerticalRays) {
   const TerrainTiles tiles = flat_tiles(30.7, kAcross, 1, kTileCells);
   const Ray ray{{3438.4, 100, 1000}, {-6.12e-17, 0, -1}};
   expect_ground(tiles, ray, 1000);
   EXPECT_NEAR(cast(tiles, ray).height, 0, kOff);
 }
 
-TEST(SteepSeams, OfTilesOfAnySizeAreHit) {
+TEST(SteepSeams, BetweenTilesOfAnySizeAreHit) {
   Random random(11);
   for (int i = 1; i <= 400; ++i) {
     const double cell = i / (i % 2 == 0 ? 10.0 : 100.0);
@@ -87,7 +87,7 @@ Scene pair_of(double cell, int cells, const Placement& outer) {
   return combine({{tile, placed(outer, {})}, {tile, placed(outer, {.origin = {width, 0, 0}})}});
 }
 
-TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
+TEST(SteepSeams, BetweenCombinedFieldsAreHitUnderAnyPlacement) {
   Random random(12);
   const auto turned = [](double degrees, dvec3 axis) {
     return glm::dmat3(glm::rotate(glm::dmat4(1), degrees * std::numbers::pi / 180, axis));
@@ -129,7 +129,7 @@ TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
   }
 }
 
-TEST(SteepSeams, QueriesEndWhateverTheirNumbers) {
+TEST(SteepSeams, QueriesTerminateForAnyNumbers) {
   const TerrainTiles tiles = flat_tiles(1, 4, 4, kTileCells);
   const Terrain flat(HeightField::own(std::vector<float>(81), 9, 9));
   constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
@@ -169,7 +169,7 @@ TEST(SteepSeams, QueriesEndWhateverTheirNumbers) {
   }
 }
 
-TEST(SteepSeams, LongDirectionsNeverAnswerWithNan) {
+TEST(SteepSeams, LongDirectionsNeverReturnNan) {
   const std::vector<float> samples(17 * 17);
   Random random(14);
   for (const double cell : {0.1, 1.0, 30.7}) {
@@ -190,7 +190,7 @@ TEST(SteepSeams, LongDirectionsNeverAnswerWithNan) {
   }
 }
 
-TEST(SteepSeams, ClosestPointsOfNoPointAreRefused) {
+TEST(SteepSeams, ClosestPointRejectsNonFinitePoints) {
   const Terrain terrain = Terrain::own(std::vector<float>(9), 3, 3);
   const Scene scene = terrain;
   const SceneQuery query = scene.query({});

@@ -85,7 +85,7 @@ bool is_certain(const HeightField& field, const Ray& ray, const Hit& answer) {
   return true;
 }
 
-TEST(TiledTerrain, AnswersAsOneField) {
+TEST(TiledTerrain, MatchesOneField) {
   int hits = 0;
   for (int round = 0; round < 12; ++round) {
     Random random(static_cast<unsigned>(round));
@@ -175,7 +175,7 @@ TEST(TiledTerrain, LosesNoRayAtSeamsOfLevels) {
 }
 
 // Rays that start on the ground at a seam start on all tiles there.
-TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheTileBeside) {
+TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheNeighbour) {
   const HeightFieldSettings settings{.cell_x = 0.3, .cell_y = 0.3};
   const std::vector<float> all(kSide * kSide, 5);
   TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
@@ -200,7 +200,7 @@ TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheTileBeside) {
   }
 }
 
-TEST(TiledTerrain, NormalsForShadingAreThoseOfOneField) {
+TEST(TiledTerrain, ShadingNormalsMatchOneField) {
   Random random(9);
   const HeightFieldSettings settings{.cell_x = 0.5, .cell_y = 0.25};
   const std::vector<float> all = samples(random, 0);
@@ -222,7 +222,7 @@ TEST(TiledTerrain, NormalsForShadingAreThoseOfOneField) {
   }
 }
 
-TEST(TiledTerrain, TilesComeAndGoDuringQueries) {
+TEST(TiledTerrain, TilesCanChangeDuringQueries) {
   const HeightFieldSettings settings{};
   constexpr int kSteps = 40;
   TiledTerrain terrain({kTiles, 1, kCells, kCells, settings});
@@ -265,7 +265,7 @@ TEST(TiledTerrain, TilesComeAndGoDuringQueries) {
   EXPECT_GT(asked, 0);
 }
 
-TEST(TiledTerrain, KeepsTheMemoryOfViews) {
+TEST(TiledTerrain, KeepsMemoryOfViewsAlive) {
   auto owner = std::make_shared<std::vector<float>>((kCells + 1) * (kCells + 1), 3.0f);
   TiledTerrain terrain({1, 1, kCells, kCells, {}});
   terrain.edit([&](auto& editor) {
@@ -283,7 +283,7 @@ TEST(TiledTerrain, KeepsTheMemoryOfViews) {
   EXPECT_TRUE(memory.expired());
 }
 
-TEST(TiledTerrain, RefusesTilesThatDoNotFitAndChangesNothing) {
+TEST(TiledTerrain, RejectsMismatchedTilesWithoutChanges) {
   Random random(1);
   const HeightFieldSettings settings{.cell_x = 2, .cell_y = 2};
   std::vector<float> all = samples(random, 0);

@@ -158,7 +158,7 @@ class VoxelCameraOnDevice : public OnDevice {
   }
 };
 
-TEST_F(VoxelCameraOnDevice, SeesTouchingCubesAsTheCpuDoes) {
+TEST_F(VoxelCameraOnDevice, DrawsTouchingCubesAsTheCpu) {
   for (const VoxelMarchEntry& march : voxel_marches()) {
     if (!march.gpu) continue;
     const Scene scene = touching(march.name);
@@ -171,20 +171,20 @@ TEST_F(VoxelCameraOnDevice, SeesTouchingCubesAsTheCpuDoes) {
   }
 }
 
-TEST_F(VoxelCameraOnDevice, SeesACrowdAsTheCpuDoes) {
+TEST_F(VoxelCameraOnDevice, DrawsACrowdAsTheCpu) {
   const Scene scene = crowd();
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same_from_everywhere(scene, camera, "crowd");
 }
 
-TEST_F(VoxelCameraOnDevice, SeesTheSameInWords) {
+TEST_F(VoxelCameraOnDevice, DrawsTheSameFromWords) {
   const Scene scene = touching("voxel-octants");
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192, .words = true});
   expect_same(scene, camera, looking({5.1, -4.3, 6.7}, {-5, 4, -6}), "words");
 }
 
 // Rays of a filter are beside the middles of pixels; directions may be longer than those of the form.
-TEST_F(VoxelCameraOnDevice, TakesRaysBesideTheMiddles) {
+TEST_F(VoxelCameraOnDevice, AcceptsRaysOffThePixelCentres) {
   const Scene scene = touching("voxel-bricks", 0.01);
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same(scene, camera, looking({5.1, -4.3, 6.7}, {-5, 4, -6}, 0.005), "beside", 0.5);
@@ -194,7 +194,7 @@ TEST_F(VoxelCameraOnDevice, TakesRaysBesideTheMiddles) {
 
 // Objects in one place are at one depth: the first counts. And where depths differ by less than a float holds, the
 // nearer one does, whichever is drawn first.
-TEST_F(VoxelCameraOnDevice, TellsObjectsAtOneDepthApart) {
+TEST_F(VoxelCameraOnDevice, ResolvesObjectsAtEqualDepth) {
   PlacedVoxels placed;
   placed.models = {model_of(ivec3(4), 1, "voxel-bricks")};
   for (int i = 0; i < 8; ++i) {
@@ -214,7 +214,7 @@ TEST_F(VoxelCameraOnDevice, TellsObjectsAtOneDepthApart) {
 
 // A batch of the camera's rays in any order, with others among them, is answered as the CPU does; those of the camera
 // by drawing.
-TEST_F(VoxelCameraOnDevice, FindsTheRaysOfACameraInBatches) {
+TEST_F(VoxelCameraOnDevice, FindsCameraRaysInBatches) {
   const Scene scene = crowd();
   const auto sight = std::make_shared<VoxelSight>(VoxelSight{VoxelDrawing::proxies});
   const Scene there = scene_on(device(), scene, sight);
@@ -255,7 +255,7 @@ TEST_F(VoxelCameraOnDevice, FindsTheRaysOfACameraInBatches) {
   EXPECT_EQ(sight->drawn, 0U);
 }
 
-TEST_F(VoxelCameraOnDevice, RefusesWhatItCannotDraw) {
+TEST_F(VoxelCameraOnDevice, RejectsUnsupportedScenes) {
   const Scene scene = touching("voxel-planes");
   VoxelCamera camera(device(), scene, {.rays_at_once = 1024});
   VoxelPicture flat = looking({0, 0, 9}, {0, 0, -1});
@@ -268,7 +268,7 @@ TEST_F(VoxelCameraOnDevice, RefusesWhatItCannotDraw) {
             std::string::npos);
 }
 
-TEST(VoxelDepth, FallsWithTheDistance) {
+TEST(VoxelDepth, DecreasesWithDistance) {
   using glsl::scarp_depth_bits;
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> exponent(-70, 70), step(-60, -1);

@@ -63,7 +63,7 @@ bool same(const Hit& a, const Hit& b) {
   return a == b && std::bit_cast<std::uint64_t>(a.t) == std::bit_cast<std::uint64_t>(b.t);
 }
 
-TEST(VoxelObjectsPackets, AnswerAsSingleRaysDo) {
+TEST(VoxelObjectsPackets, MatchSingleRays) {
   Random random(1);
   int hits = 0, again = 0;
   for (int round = 0; round < 60; ++round) {
@@ -106,7 +106,7 @@ TEST(VoxelObjectsPackets, AnswerAsSingleRaysDo) {
   EXPECT_GT(again, 300);
 }
 
-TEST(VoxelObjectsPackets, RefuseSpansThatDiffer) {
+TEST(VoxelObjectsPackets, RejectSpansOfDifferentLengths) {
   Random random(2);
   const VoxelObjects scene = crowd(random, 3);
   const std::vector<Ray> rays(5);

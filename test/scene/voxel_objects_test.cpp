@@ -108,7 +108,7 @@ TEST(VoxelObjects, FindsTheNearestOfAHundredThousand) {
 }
 
 // Lengths are powers of two and components eighths of them, so that nothing is rounded however short the direction is.
-TEST(VoxelObjects, TakesDirectionsOfAnyLength) {
+TEST(VoxelObjects, AcceptsDirectionsOfAnyLength) {
   Random random(3);
   const auto models = std::vector{model(8, 0.2, "voxel-bricks", random), model(5, 0.5, "voxel-cubes", random)};
   const VoxelObjects scene({models, {VoxelPlace{0, turned(random, 0.5), {2, 1, 0}}, VoxelPlace{1}}});
@@ -147,7 +147,7 @@ TEST(VoxelObjects, TakesDirectionsOfAnyLength) {
   EXPECT_FALSE(scene.occluded(none));
 }
 
-TEST(VoxelObjects, FindsTheNearestOfTurnedAndOverlappingObjects) {
+TEST(VoxelObjects, FindsTheNearestOfRotatedOverlappingObjects) {
   Random random(1);
   int hits = 0;
   for (int round = 0; round < 20; ++round) {
@@ -178,7 +178,7 @@ TEST(VoxelObjects, FindsTheNearestOfTurnedAndOverlappingObjects) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(VoxelObjects, HitsWhatStandsAMillionMetresAway) {
+TEST(VoxelObjects, HitsObjectsAMillionMetresAway) {
   Random random(2);
   VoxelPlace place{0, turned(random, 0.25), dvec3(1e6, -2e6, 3e6)};
   VoxelGrid grid(ivec3(9), 1);
@@ -192,7 +192,7 @@ TEST(VoxelObjects, HitsWhatStandsAMillionMetresAway) {
 }
 
 // A shadow ray starts in the empty voxel before the face, by number, and is not stopped by the voxel that it leaves.
-TEST(VoxelObjects, ShadowRaysDoNotHitWhatTheyLeave) {
+TEST(VoxelObjects, ShadowRaysDoNotHitTheirStart) {
   Random random(3);
   VoxelGrid grid(ivec3(40), 1);
   grid.fill_sphere(dvec3(20), 19.5, 1);
@@ -216,7 +216,7 @@ TEST(VoxelObjects, ShadowRaysDoNotHitWhatTheyLeave) {
 }
 
 // Cubes and rounded ones alike: into the solid is a hit at once, and any-hit says so, too; one by one and in batches.
-TEST(VoxelObjects, RaysFromASurfaceIntoItHitItAtOnce) {
+TEST(VoxelObjects, RaysIntoTheirSurfaceHitAtOnce) {
   // Rays that go in less steeply may leave a cube's face by an edge, as quantised; those that do not come to its plane
   // within what that moves them by, 2^-17 voxel (voxel_ray.h).
   constexpr double kSteep = 0.01, kOffRay = 0x1p-17 / kSteep;
@@ -274,7 +274,7 @@ TEST(VoxelObjects, RaysFromASurfaceIntoItHitItAtOnce) {
   }
 }
 
-TEST(VoxelObjects, RefusesWhatIsNoPlace) {
+TEST(VoxelObjects, RejectsInvalidPlaces) {
   Random random(4);
   const std::vector models = {model(3, 0.5, "voxel-planes", random)};
   const auto refused = [&](const VoxelPlace& place) { EXPECT_THROW(VoxelObjects({models, {place}}), Error); };
@@ -305,7 +305,7 @@ TEST(VoxelModel, FollowsEdits) {
   }
 }
 
-TEST(VoxelModel, IsTrueToItsGridAfterAnEditThatThrows) {
+TEST(VoxelModel, MatchesItsGridAfterAThrowingEdit) {
   for (const VoxelMarchEntry& march : voxel_marches()) {
     VoxelModel model(VoxelGrid(ivec3(20), 8), march);
     EXPECT_THROW(model.edit([](VoxelGrid& grid) {
@@ -384,7 +384,7 @@ TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
 }
 
 // All turns of an odd and an even side: a model stays within half a voxel of its pivot, voxel by voxel.
-TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
+TEST(FromVox, PlacesRotatedVoxels) {
   for (int bits = 0; bits < 128; ++bits) {
     VoxFile file;
     file.version = 200;
@@ -425,7 +425,7 @@ VoxFile canvases(int models, const std::vector<VoxVoxel>& voxels) {
 }
 
 // 256^3 voxels take 2 MiB of masks alone: all of them less than one would as a canvas.
-TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
+TEST(FromVox, MemoryDependsOnVoxelsNotOnModelSize) {
   const VoxelObjects scene(placed_voxels_from(canvases(500, {{200, 100, 255, 7}})));
   EXPECT_EQ(scene.objects(), 500u);
   EXPECT_LT(scene.bytes(), std::size_t{1} << 21);
@@ -438,7 +438,7 @@ TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
 }
 
 // Small files that ask for much are refused before it is spent.
-TEST(FromVox, RefusesWhatWouldTakeForEver) {
+TEST(FromVox, RejectsExcessiveFilesEarly) {
   const VoxFile wide = canvases(1025, {{0, 0, 0, 1}, {255, 255, 255, 1}});
   std::size_t bytes = 0;
   for (const auto& model : placed_voxels_from(wide).models) bytes += model->bytes();

@@ -99,7 +99,7 @@ TEST(VoxelSeams, BlockRaysInTheSharedPlane) {
   }
 }
 
-TEST(VoxelSeams, BlockRaysAlmostInTheSharedPlane) {
+TEST(VoxelSeams, BlockRaysNearlyInTheSharedPlane) {
   const auto cube = solid_model(ivec3(4), "voxel-bricks");
   for (const glm::dmat3& turn : orientations()) {
     const VoxelObjects objects(
@@ -222,7 +222,7 @@ TEST(VoxelSeams, BlockRaysThroughSharedEdges) {
   }
 }
 
-TEST(VoxelSeams, AgreeWithOneGrid) {
+TEST(VoxelSeams, MatchOneGrid) {
   std::int64_t hits = 0, ties = 0;
   for (std::int64_t s = 0; s < kScenes; ++s) {
     bench::Random random(48, static_cast<std::uint64_t>(s));
@@ -258,7 +258,7 @@ TEST(VoxelSeams, AgreeWithOneGrid) {
 }
 
 // Fields of a scene, each with a placement.
-TEST(VoxelSeams, PlacedFieldsAgreeWithOneGrid) {
+TEST(VoxelSeams, PlacedFieldsMatchOneGrid) {
   for (std::int64_t s = 0; s < kScenes / 4; ++s) {
     bench::Random random(49, static_cast<std::uint64_t>(s));
     const bench::VoxelSceneJudge judge(random, {});

@@ -63,7 +63,7 @@ TEST(Qubicle, ReadsPlainAndCompressedMatrices) {
   }
 }
 
-TEST(Qubicle, SaysWhatIsWrong) {
+TEST(Qubicle, ReportsErrors) {
   const auto refused = [](const std::string& bytes, std::string_view fragment) {
     refused_with([](const std::string& b) { parse_qubicle(b); }, bytes, fragment);
   };

@@ -78,7 +78,7 @@ class Worker : public testing::Test {
   std::chrono::milliseconds render_time_ = 5ms;
 };
 
-TEST_F(Worker, GoesThroughAllStages) {
+TEST_F(Worker, RunsAllStages) {
   const auto worker = make();
   const auto generation = worker->request(request(false));
   const auto last = converged(*worker);
@@ -120,7 +120,7 @@ TEST_F(Worker, SidesHaveTheirOwnSizes) {
   for (const dvec2& size : cameras) EXPECT_TRUE(size.x == 40 && size.y == 30) << size.x << ' ' << size.y;
 }
 
-TEST_F(Worker, SkipsAStageThatIsTheSame) {
+TEST_F(Worker, SkipsIdenticalStages) {
   const auto worker = make();
   worker->request(request(false, 1, 0));
   ASSERT_TRUE(converged(*worker));
@@ -131,7 +131,7 @@ TEST_F(Worker, SkipsAStageThatIsTheSame) {
 // Rays of a picture: each sample has one, and as many to the sun and to the sky as are asked for.
 double cost_of(const PictureSettings& settings) { return settings.aa * settings.aa * (1 + 2.0 * settings.samples); }
 
-TEST_F(Worker, RefinementEndsAtWhatIsAskedForAndCostsAThirdMore) {
+TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
   for (const auto& [aa, samples] : {std::pair{1, 0}, {2, 0}, {4, 64}, {3, 5}, {16, 0}, {1, 4096}}) {
     PictureSettings settings;
     settings.aa = aa, settings.samples = samples;
@@ -152,7 +152,7 @@ TEST_F(Worker, RefinementEndsAtWhatIsAskedForAndCostsAThirdMore) {
   EXPECT_EQ(PictureWorker::refinement_of(counted).size(), 1u);
 }
 
-TEST_F(Worker, BothSidesAreCompleteAtTheEnd) {
+TEST_F(Worker, CompletesBothSides) {
   PictureRequest both = request(false, 4, 16);
   PictureSettings counted = both.sides.front().settings;
   counted.look = Look::steps;
@@ -197,7 +197,7 @@ TEST_F(Worker, JudgesTheCompletePicture) {
   EXPECT_FALSE(worker->take_verdict());
 }
 
-TEST_F(Worker, RendersTheFirstStageAloneWhileMoving) {
+TEST_F(Worker, RendersOnlyTheFirstStageWhileMoving) {
   const auto worker = make();
   worker->request(request(true));
   const auto worked = next(*worker);
@@ -208,7 +208,7 @@ TEST_F(Worker, RendersTheFirstStageAloneWhileMoving) {
   EXPECT_FALSE(worker->take());
 }
 
-TEST_F(Worker, ANewerRequestEndsTheOlderOne) {
+TEST_F(Worker, NewerRequestCancelsTheOlderOne) {
   render_time_ = 20s;  // the second stage would take that long
   const auto worker = make();
   render_time_ = 5ms;
@@ -222,7 +222,7 @@ TEST_F(Worker, ANewerRequestEndsTheOlderOne) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
 }
 
-TEST_F(Worker, TellsWhyThereIsNoPictureAndGoesOn) {
+TEST_F(Worker, ReportsErrorsAndContinues) {
   const auto worker = make();
   fails_ = true;
   worker->request(request(false));
@@ -234,7 +234,7 @@ TEST_F(Worker, TellsWhyThereIsNoPictureAndGoesOn) {
   EXPECT_TRUE(converged(*worker));
 }
 
-TEST_F(Worker, EndsWhileItRenders) {
+TEST_F(Worker, StopsWhileRendering) {
   render_time_ = 20s;
   const auto begin = std::chrono::steady_clock::now();
   {
@@ -245,7 +245,7 @@ TEST_F(Worker, EndsWhileItRenders) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
 }
 
-TEST_F(Worker, TakesRequestsByTheThousand) {
+TEST_F(Worker, HandlesThousandsOfRequests) {
   render_time_ = 0ms;
   const auto worker = make();
   std::uint64_t generation = 0;

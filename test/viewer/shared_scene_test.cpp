@@ -64,7 +64,7 @@ PictureRequest request_from(const Scene& scene, double turn, bool moving) {
           moving};
 }
 
-TEST(SharedScene, IsAskedWhileItIsRendered) {
+TEST(SharedScene, CanBeQueriedWhileRendering) {
   const Scene scene = ground_and_voxels();
   PictureWorker worker([] {});
   constexpr int kRequests = 60;

@@ -36,7 +36,7 @@ class WindowFaults : public Window {
   }
 };
 
-TEST_F(WindowFaults, ALostSurfaceIsOpenedAgain) {
+TEST_F(WindowFaults, ReopensALostSurface) {
   ASSERT_EQ(lose("acquire:suboptimal:0:0", "whole.png"), 0) << output_;
   ASSERT_EQ(output_, "");
   for (const std::string place : {"acquire", "present"}) {
@@ -54,7 +54,7 @@ TEST_F(WindowFaults, ALostSurfaceIsOpenedAgain) {
   }
 }
 
-TEST_F(WindowFaults, ALostDeviceIsReported) {
+TEST_F(WindowFaults, ReportsALostDevice) {
   for (const std::string plan : {"acquire:device:1:1", "acquire:device:20:1", "present:device:20:1"}) {
     EXPECT_EQ(lose(plan, "now.png"), 1) << plan << '\n' << output_;
     output_.erase(0, std::string("lost: device\n").size());
@@ -62,7 +62,7 @@ TEST_F(WindowFaults, ALostDeviceIsReported) {
   }
 }
 
-TEST_F(WindowFaults, WhatIsMissingOrNoInputIsReportedInOneLine) {
+TEST_F(WindowFaults, ReportsMissingOrInvalidInputInOneLine) {
   EXPECT_EQ(run("env VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent '" SCARP_VIEW "' dem.tif"), 1);
   EXPECT_TRUE(is_one_line("Vulkan")) << output_;
   EXPECT_EQ(run("env DISPLAY=:9999 WAYLAND_DISPLAY= '" SCARP_VIEW "' dem.tif"), 1);
@@ -83,7 +83,7 @@ TEST_F(WindowFaults, WhatIsMissingOrNoInputIsReportedInOneLine) {
   EXPECT_TRUE(bytes_of("dem.tif") == dem && bytes_of("dem.png") == dem);
 }
 
-TEST_F(WindowFaults, AFullDiskLeavesNoPartOfAPicture) {
+TEST_F(WindowFaults, FullDiskLeavesNoPartialPicture) {
   // A limit on the size of files, in KiB, stands for the full disk: writing fails in the same way.
   std::ofstream(folder_ / "scarp-path.csv") << "x,y,z,tx,ty,tz\n" << std::string(1020, '#');
   const std::string before = bytes_of("scarp-path.csv");
@@ -105,7 +105,7 @@ TEST_F(WindowFaults, AFullDiskLeavesNoPartOfAPicture) {
   EXPECT_TRUE(bytes_of("saved.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, AFileThatIsGoneLeavesTheLastPicture) {
+TEST_F(WindowFaults, MissingFileKeepsTheLastPicture) {
   // F5 opens the input again. Errors show the panel, which was hidden by Tab.
   ASSERT_EQ(
       use("dem.tif --size 320x240 --record events",
@@ -129,7 +129,7 @@ TEST_F(WindowFaults, AFileThatIsGoneLeavesTheLastPicture) {
   EXPECT_TRUE(bytes_of("scarp-view-5.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, AnErrorInASceneLeavesTheLastPicture) {
+TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
   const std::string scene = R"({"camera": {"eye": [0, -9, 3], "target": [0, 0, 0]},
                                 "objects": [{"shape": {"sphere": {"radius": 2}}}]})";
   std::ofstream(folder_ / "scene.json") << scene;
@@ -144,7 +144,7 @@ TEST_F(WindowFaults, AnErrorInASceneLeavesTheLastPicture) {
   EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, CtrlCEndsItWhileItConverges) {
+TEST_F(WindowFaults, CtrlCEndsItWhileConverging) {
   // A picture that takes minutes. Shells start what is in the background without this signal.
   std::ofstream(folder_ / "end.sh") << "env --default-signal=INT '" SCARP_VIEW
                                        "' dem.tif --size 320x240 --samples 1024 --aa 16 --timings times.csv &\n"

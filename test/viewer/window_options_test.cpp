@@ -64,7 +64,7 @@ struct WindowOptions : testing::Test {
   }
 };
 
-TEST_F(WindowOptions, RestWhileTheyHaveNoEffect) {
+TEST_F(WindowOptions, AreSuspendedWithoutEffect) {
   const Opening plain = opening_of(file);
   EXPECT_EQ(words_of(plain), "");
   const Opening wavy = with(plain, {{"--water", "10"}, {"--waves", "0.1"}});
@@ -83,7 +83,7 @@ TEST_F(WindowOptions, RestWhileTheyHaveNoEffect) {
   EXPECT_EQ(words_of(with(unlit, {{"--samples", "8"}})), " --samples=8");
 }
 
-TEST_F(WindowOptions, SaysWhatIsWrong) {
+TEST_F(WindowOptions, ReportErrors) {
   const Opening plain = opening_of(file);
   EXPECT_THROW(changed(plain, {"--nothing", "1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--samples", "-1"}), cli::WrongUsage);
@@ -96,7 +96,7 @@ TEST_F(WindowOptions, SaysWhatIsWrong) {
     EXPECT_THROW(subject.change(change), cli::WrongUsage) << change.option;
 }
 
-TEST_F(WindowOptions, ScreenshotsHaveNamesOfPng) {
+TEST_F(WindowOptions, ScreenshotsAreNamedPng) {
   const Opening played = with(opening_of(file), {{"--play", "events"}});
   EXPECT_NO_THROW(changed(played, {"--screenshot", "window.PNG"}));
   for (const char* name : {"window.bmp", "window", "png"})
@@ -170,7 +170,7 @@ TEST_F(WindowOptions, EveryControlChangesItsOption) {
 }
 
 // Without the input being read again, the picture is that of an input that is.
-TEST_F(WindowOptions, WhatTakesEffectAtOnceIsTheSame) {
+TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
   const std::vector<OptionChange> changes = {{"--water", "8"},      {"--fog", "height"}, {"--fog-base", "4"},
                                              {"--ramp", "viridis"}, {"--sun", "100,20"}, {"--sky", "scattering"},
                                              {"--haze", "0.4"},     {"--contours", "3"}, {"--look", "height"}};
@@ -194,7 +194,7 @@ TEST_F(WindowOptions, WhatTakesEffectAtOnceIsTheSame) {
   EXPECT_EQ(subject.stage().exaggeration(), 3);
 }
 
-TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
+TEST_F(WindowOptions, SidesDifferInOneOption) {
   Subject subject(opening_of(file), 64, 48);
   const auto with = subject.comparisons();
   EXPECT_NE(std::find(with.begin(), with.end(), "march fixed-step"), with.end());
@@ -233,7 +233,7 @@ TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
   EXPECT_EQ(subject.sides(64, 48).size(), 1u);
 }
 
-TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
+TEST_F(WindowOptions, CommandContainsTheSettings) {
   const Opening opening = with(opening_of(file), {{"--sun", "100,20"}, {"--no-shadows", "true"}, {"--top", "true"}});
   const cli::Places local({}, Coordinates::local, 1);
   Pose pose;
@@ -248,7 +248,7 @@ TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
 }
 
 // Ground below the eye and under the cursor is asked of the CPU.
-TEST_F(WindowOptions, OnADeviceSingleRaysAreTheCpus) {
+TEST_F(WindowOptions, SingleRaysUseTheCpu) {
   // Never deleted: what a driver keeps has no name any more once the driver is gone, and libraries.lsan names it.
   static const Subject* subject = nullptr;
   try {
@@ -304,7 +304,7 @@ TEST_F(WindowOptions, LargePixelsFillTheWindow) {
   }
 }
 
-TEST_F(WindowOptions, OtherLooksAreComparedWithLargePixels) {
+TEST_F(WindowOptions, CompareOtherLooksWithLargePixels) {
   Subject subject(with(opening_of(file), {{"--look", "comanche"}, {"--pixel-size", "4"}}), 64, 48);
   for (const std::string& comparison : subject.comparisons()) {
     ASSERT_NO_THROW(subject.compare(comparison)) << comparison;
@@ -319,7 +319,7 @@ TEST_F(WindowOptions, OtherLooksAreComparedWithLargePixels) {
   }
 }
 
-TEST_F(WindowOptions, TheCommandHasTheMeshWhereItStandsInTheWindow) {
+TEST_F(WindowOptions, CommandContainsTheMeshPosition) {
   // Cells of 2 m, the south-west one at 1000,2000 of the map: its sample at 1001,2001.
   const std::string map = file + ".asc", mesh = file + ".obj";
   std::ofstream grid(map);

@@ -39,7 +39,7 @@ DeviceDescription described(const std::string& name, DeviceKind kind, const std:
 
 using test::refusal;
 
-TEST(DeviceChoice, TakesTheBestThatFits) {
+TEST(DeviceChoice, PicksTheBestMatch) {
   const std::vector<DeviceDescription> devices = {
       described("llvmpipe (LLVM 15)", DeviceKind::cpu), described("Old card", DeviceKind::discrete_gpu, "Vulkan 1.2"),
       described("Intel UHD", DeviceKind::integrated_gpu), described("NVIDIA H200", DeviceKind::discrete_gpu),
@@ -65,7 +65,7 @@ TEST(DeviceChoice, TakesTheBestThatFits) {
             "device 'gpu': no Vulkan device matches (available: 'llvmpipe (LLVM 15)' (CPU))");
 }
 
-TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
+TEST(DeviceAbility, NamesTheFirstMissingAbility) {
   DeviceAbilities all{.api_major = 1,
                       .api_minor = 2,
                       .compute_queue = true,
@@ -84,7 +84,7 @@ TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
 }
 
 // Timestamps and graphics are reported for the queue that is opened.
-TEST(DeviceQueues, OneThatDrawsIsPreferredThenOneWithTimestamps) {
+TEST(DeviceQueues, PrefersGraphicsThenTimestamps) {
   using Bits = vk::QueueFlagBits;
   const vk::QueueFamilyProperties transfers(Bits::eTransfer, 1, 64), computes(Bits::eCompute, 1, 0),
       computes_timed(Bits::eCompute, 1, 64), draws(Bits::eGraphics | Bits::eCompute, 1, 0),
@@ -132,7 +132,7 @@ std::string in_child(const char* drivers, const std::function<std::string()>& f)
   return text;
 }
 
-TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
+TEST(DeviceList, IsEmptyWithoutADriverAndExplainsWhy) {
   const auto list = [] {
     const DeviceList devices = list_devices();
     return std::to_string(devices.devices.size()) + ": " + devices.why_none;
@@ -157,7 +157,7 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
   std::filesystem::remove(manifest);
 }
 
-TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
+TEST(DeviceSettingsTest, RejectsInvalidTimeouts) {
   for (const double seconds : {0.0, -1.0, std::nan(""), 1e10}) {
     EXPECT_NE(refusal([&] { Device device({.timeout_s = seconds}); }).find("timeout"), std::string::npos);
   }
@@ -165,7 +165,7 @@ TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
 
 class OpenDevice : public test::OnDevice {};
 
-TEST_F(OpenDevice, IsTheOneThatIsListed) {
+TEST_F(OpenDevice, MatchesTheList) {
   const DeviceDescription& open = device().description();
   EXPECT_TRUE(open.usable());
   EXPECT_GT(open.memory_bytes, 0u);
@@ -180,7 +180,7 @@ TEST_F(OpenDevice, IsTheOneThatIsListed) {
             0u);
 }
 
-TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
+TEST_F(OpenDevice, ReportsMissingMemory) {
   const std::string error = refusal([&] { DeviceBuffer(device(), 1ull << 50, "a continent"); });
   EXPECT_NE(error.find("no memory for a continent (1073741824.0 MiB): "), std::string::npos) << error;
   EXPECT_NE(refusal([&] { DeviceBuffer(device(), 0, "nothing"); }), "");
@@ -193,7 +193,7 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
 #endif
 #if !defined(__SANITIZE_ADDRESS__) && !SCARP_WATCHES_MEMORY
 // On a CPU device, whose memory is that of the process, in a process of its own.
-TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
+TEST_F(OpenDevice, ReportsExhaustedMemoryAndContinues) {
   if (device().description().kind != DeviceKind::cpu) GTEST_SKIP() << "this device has memory of its own";
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto use_up = [] {
@@ -222,7 +222,7 @@ TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
 }
 #endif
 
-TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
+TEST_F(OpenDevice, RejectsDrawingWithoutGraphics) {
   const Device other;
   other.impl()->description.abilities.draws = false;
   const std::string expected = "device '" + other.description().name +
@@ -233,7 +233,7 @@ TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
 
 // The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
 // one beyond the end of a buffer.
-TEST_F(OpenDevice, TellsWhatValidationSays) {
+TEST_F(OpenDevice, ReportsValidationMessages) {
   if (!test::tests_validate()) GTEST_SKIP() << "SCARP_TEST_VALIDATION=off";
   const Device watched({.validation = true});
   const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");
@@ -252,7 +252,7 @@ TEST_F(OpenDevice, TellsWhatValidationSays) {
   EXPECT_GT(watched.validation_messages().size(), 1u);
 }
 
-TEST_F(OpenDevice, IsGivenUpAfterTheTimeout) {
+TEST_F(OpenDevice, GivesUpAfterTheTimeout) {
   const Device hurried({.timeout_s = 1e-6});
   DeviceBuffer words(hurried, 4 << 20, "words");
   const std::uint32_t constants[] = {64, 1};

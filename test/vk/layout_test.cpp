@@ -16,7 +16,7 @@ constexpr std::uint32_t kTwiceWords[] = {
 #include "test/vk/twice.comp.inc"
 };
 
-TEST(ShaderLayout, IsThatOfTheSharedStruct) {
+TEST(ShaderLayout, MatchesTheSharedStruct) {
   using glsl::TwicePush;
   EXPECT_TRUE(test::has_struct(kTwiceWords, {offsetof(TwicePush, from), offsetof(TwicePush, to),
                                              offsetof(TwicePush, count), offsetof(TwicePush, rounds)}));

@@ -78,7 +78,7 @@ std::vector<std::byte> some_data(const PipelineCacheKey& key, std::size_t more =
   return data;
 }
 
-TEST_F(PipelineFiles, LieInTheUsersCaches) {
+TEST_F(PipelineFiles, AreInTheUserCacheFolder) {
   EXPECT_EQ(user_cache_folder(), caches_.string() + "/scarp");
   const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
   ::setenv("HOME", "/home/somebody", 1);
@@ -92,7 +92,7 @@ TEST_F(PipelineFiles, LieInTheUsersCaches) {
   EXPECT_EQ(pipeline_cache_name(some_key()), "pipelines-10de-2330-12345678-00112233445566778899aabbccddeeff.bin");
 }
 
-TEST_F(PipelineFiles, AreReadAsTheyWereWritten) {
+TEST_F(PipelineFiles, RoundTrip) {
   const PipelineCacheKey key = some_key();
   const std::string path = (caches_ / "scarp" / "a.bin").string();
   EXPECT_TRUE(read_pipeline_cache(path, key).empty());
@@ -104,7 +104,7 @@ TEST_F(PipelineFiles, AreReadAsTheyWereWritten) {
   EXPECT_EQ(std::distance(fs::directory_iterator(caches_ / "scarp"), {}), 1) << "no temporary files";
 }
 
-TEST_F(PipelineFiles, OfOtherDevicesAreIgnored) {
+TEST_F(PipelineFiles, FromOtherDevicesAreIgnored) {
   const PipelineCacheKey key = some_key();
   const std::string path = (caches_ / "scarp" / "a.bin").string();
   ASSERT_TRUE(write_pipeline_cache(path, some_data(key)));
@@ -127,7 +127,7 @@ TEST_F(PipelineFiles, OfOtherDevicesAreIgnored) {
   EXPECT_TRUE(read_pipeline_cache(path, key).empty());
 }
 
-TEST_F(PipelineFiles, ThatAreDamagedAreIgnored) {
+TEST_F(PipelineFiles, AreIgnoredWhenDamaged) {
   const PipelineCacheKey key = some_key();
   const std::string path = (caches_ / "scarp" / "a.bin").string();
   ASSERT_TRUE(write_pipeline_cache(path, some_data(key)));
@@ -149,7 +149,7 @@ TEST_F(PipelineFiles, ThatAreDamagedAreIgnored) {
   EXPECT_FALSE(read_pipeline_cache(path, key).empty());
 }
 
-TEST_F(PipelineFiles, ThatCannotBeWrittenAreNone) {
+TEST_F(PipelineFiles, AreSkippedWhenUnwritable) {
   const std::vector<std::byte> data = some_data(some_key());
   put((caches_ / "file").string(), "no folder");
   EXPECT_FALSE(write_pipeline_cache((caches_ / "file" / "scarp" / "a.bin").string(), data));
@@ -190,7 +190,7 @@ class DevicePipelines : public PipelineFiles {
   }
 };
 
-TEST_F(DevicePipelines, AreKept) {
+TEST_F(DevicePipelines, AreCached) {
   const std::string path = compute();
   ASSERT_EQ(fs::path(path).parent_path(), caches_ / "scarp");
   const std::string first = content(path);
@@ -205,7 +205,7 @@ TEST_F(DevicePipelines, AreKept) {
   EXPECT_TRUE(fs::exists(path));
 }
 
-TEST_F(DevicePipelines, ReplaceAFileThatIsOfNoUse) {
+TEST_F(DevicePipelines, ReplaceUselessFiles) {
   const std::string path = compute(), whole = content(path);
   ASSERT_GE(whole.size(), 48u);
   for (const std::string& useless : {std::string(), std::string("no pipelines"), whole.substr(0, 40)}) {
@@ -220,7 +220,7 @@ TEST_F(DevicePipelines, ReplaceAFileThatIsOfNoUse) {
   EXPECT_NE(content(path), of_another_device);
 }
 
-TEST_F(DevicePipelines, AreNotKeptIfNotWantedOrNotPossible) {
+TEST_F(DevicePipelines, AreNotCachedWhenDisabledOrImpossible) {
   EXPECT_EQ(compute(false), "");
   EXPECT_FALSE(fs::exists(caches_ / "scarp"));
   // A file where the folder should be.

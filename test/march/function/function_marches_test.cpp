@@ -51,7 +51,7 @@ void expect_nothing_lost(const NamedFunction& named, const FunctionJudgement& ju
   }
 }
 
-TEST(FunctionMarches, ConservativeOnesLoseNothing) {
+TEST(FunctionMarches, ConservativeMarchesLoseNoHits) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(11);
@@ -76,7 +76,7 @@ TEST(FunctionMarches, ConservativeOnesLoseNothing) {
 
 // A ridge where two planes meet. Bounds know a crease to first order only: segments as long as the tolerance do not
 // tell a ray from it that passes a thousandth of them above.
-TEST(FunctionMarches, PassCreasesClosely) {
+TEST(FunctionMarches, PassCloseToCreases) {
   const Function planes = make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})});
   const HeightFunction ridge(planes);
   for (const double above : {1e-2, 1e-4, 1e-6, -1e-6, -1e-4}) {
@@ -89,7 +89,7 @@ TEST(FunctionMarches, PassCreasesClosely) {
   }
 }
 
-TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
+TEST(FunctionMarches, RaysFromTheSurfaceLoseNoHits) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(12);
@@ -142,7 +142,7 @@ const HeightFunction& bowl() {
   return function;
 }
 
-TEST(FunctionMarches, FollowRaysOfAnyDirection) {
+TEST(FunctionMarches, AcceptAnyDirection) {
   const HeightFunction plane(make_function(Plane{5}));
   // Upright, level, and with a direction of any length.
   const Hit down = march_lipschitz_local(plane, {{1, 2, 9}, {0, 0, -4}});
@@ -165,7 +165,7 @@ TEST(FunctionMarches, FollowRaysOfAnyDirection) {
   }
 }
 
-TEST(FunctionMarches, RespectTheRange) {
+TEST(FunctionMarches, RespectTheRayRange) {
   Ray ray{{-25, 3, 5}, {1, 0, 0}};
   ray.t_max = 33;
   EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::miss);
@@ -176,7 +176,7 @@ TEST(FunctionMarches, RespectTheRange) {
   EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::below);
 }
 
-TEST(FunctionMarches, EndAtTheirReach) {
+TEST(FunctionMarches, StopAtTheirReach) {
   const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // meets the ground after 33.3 m
   for (const FunctionMarchEntry& march : function_marches()) {
     MarchSettings settings;
@@ -187,7 +187,7 @@ TEST(FunctionMarches, EndAtTheirReach) {
   }
 }
 
-TEST(FunctionMarches, TellUsedUpStepsFromHits) {
+TEST(FunctionMarches, ReportExhaustionSeparatelyFromHits) {
   const Ray ray{{-25, 3, 5}, {1, 0, 0}, 0, 200};
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = 2;
@@ -197,7 +197,7 @@ TEST(FunctionMarches, TellUsedUpStepsFromHits) {
   }
 }
 
-TEST(FunctionMarches, TheTableNamesThem) {
+TEST(FunctionMarches, AreFoundByName) {
   std::vector<std::string_view> names;
   for (const FunctionMarchEntry& march : function_marches()) {
     names.push_back(march.name);
@@ -228,7 +228,7 @@ TEST(FunctionMarches, ValidateTheirSettings) {
 }
 
 // The numbers, by what they do over a ramp: a ray along x at height 2 is 102 - t above it.
-TEST(FunctionMarches, PresetsHaveTheirNumbers) {
+TEST(FunctionMarches, PresetsSetTheDocumentedValues) {
   const HeightFunction ramp(make_function(Plane{0, 1, 0}));
   const Ray ray{{-100, 0, 2}, {1, 0, 0}, 0, 200};
   const auto steps = [&](std::string_view name, double& t) {
@@ -261,7 +261,7 @@ TEST(FunctionMarches, PresetsHaveTheirNumbers) {
 }
 
 // castle ends within a millimetre of the ground at any distance, and a ray to the sun starts there.
-TEST(FunctionMarches, RaysFromTheSurfaceLeaveItWithEveryPreset) {
+TEST(FunctionMarches, RaysFromTheSurfaceEscapeWithEveryPreset) {
   const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
   for (const MarchPreset& preset : march_presets()) {
     const FunctionMarchEntry& march = find_function_march(preset.march);
@@ -334,7 +334,7 @@ TEST(FunctionMarches, RefineTheLastInterval) {
   EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
 }
 
-TEST(FunctionMarches, LipschitzHitsUnderTheGroundWithALargeShrinkFactor) {
+TEST(FunctionMarches, LipschitzHitsBelowGroundWithALargeShrinkFactor) {
   const HeightFunction function(endless_waves());
   const double proven = largest_proven_shrink(function.bound_everywhere().slope);
   MarchSettings too_large, smaller;
@@ -355,7 +355,7 @@ TEST(FunctionMarches, LipschitzHitsUnderTheGroundWithALargeShrinkFactor) {
 }
 
 // From beyond the reach of functions, under the ground there: down through it later on.
-TEST(FunctionMarches, FollowRaysThatComeInUnderTheGround) {
+TEST(FunctionMarches, FollowRaysThatEnterBelowGround) {
   const HeightFunction function(make_function(Sines{{{10, 100, 0.5 * std::numbers::pi, 0}}}));
   const Ray ray{{-kFunctionReach - 10, 25, 5}, {1, 1, 0}, 0, 200};
   for (const FunctionMarchEntry& march : function_marches()) {
@@ -368,7 +368,7 @@ TEST(FunctionMarches, FollowRaysThatComeInUnderTheGround) {
   }
 }
 
-TEST(FunctionMarches, VectorsAnswerBitForBit) {
+TEST(FunctionMarches, SimdIsBitIdentical) {
   std::vector<NamedFunction> functions = terrain_functions();
   functions.push_back({"both at once", make_function(Maximum{functions[2].function, functions[9].function}), false});
   for (const NamedFunction& named : functions) {
@@ -405,7 +405,7 @@ TEST(FunctionMarches, VectorsAnswerBitForBit) {
   }
 }
 
-TEST(FunctionMarches, LocalBoundsTakeFewerEvaluations) {
+TEST(FunctionMarches, LocalBoundsNeedFewerEvaluations) {
   const HeightFunction function(make_function(Fractal{}));
   FunctionRandom random(13);
   double global = 0, local = 0;

@@ -65,7 +65,7 @@ double random_place(FunctionRandom& random) {
   return value(two(random.between(-reach, reach)));
 }
 
-TEST(NoiseInShaders, HasTheSameLattice) {
+TEST(NoiseInShaders, UsesTheSameLattice) {
   FunctionRandom random(1);
   for (int i = 0; i < kPlaces; ++i) {
     const double x = random_place(random) * (i % 2 ? 64 : 1), y = random_place(random);
@@ -82,7 +82,7 @@ TEST(NoiseInShaders, HasTheSameLattice) {
   }
 }
 
-TEST(NoiseInShaders, IsWithinItsBound) {
+TEST(NoiseInShaders, StaysWithinItsBound) {
   FunctionRandom random(2);
   for (const NoiseKind kind : {NoiseKind::value, NoiseKind::perlin, NoiseKind::simplex}) {
     const glsl::ScarpNoiseBound bound = glsl::scarp_noise_bound(static_cast<std::uint32_t>(kind));
@@ -107,7 +107,7 @@ TEST(NoiseInShaders, IsWithinItsBound) {
   }
 }
 
-TEST(FunctionsInShaders, HeightsAreWithinTheirBound) {
+TEST(FunctionsInShaders, HeightsStayWithinTheirBound) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     const Program program(function.program(FunctionUse::march));
@@ -172,7 +172,7 @@ TEST(FunctionsInShaders, BoundsHold) {
   }
 }
 
-TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
+TEST(FunctionsInShaders, MarchesMatchWithinSinglePrecision) {
   const auto march = [](const Program& program, const DeviceFunctionRay& ray, std::string_view name,
                         const MarchSettings& settings, double slope) {
     if (name == "lipschitz-local")
@@ -215,8 +215,8 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
-// As PassCreasesClosely of function_marches_test, as far as floats tell times: 1000 / 2^22.
-TEST(FunctionsInShaders, PassCreasesClosely) {
+// As PassCloseToCreases of function_marches_test, as far as floats tell times: 1000 / 2^22.
+TEST(FunctionsInShaders, PassCloseToCreases) {
   const HeightFunction ridge(make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})}));
   const Program program(ridge.program(FunctionUse::march));
   const SingleRounding rounding(ridge.program(FunctionUse::march));
@@ -231,7 +231,7 @@ TEST(FunctionsInShaders, PassCreasesClosely) {
   }
 }
 
-TEST(FunctionsInShaders, RaysLeaveTheSurface) {
+TEST(FunctionsInShaders, RaysEscapeTheSurface) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     const Program program(function.program(FunctionUse::march));
@@ -281,7 +281,7 @@ TEST(FunctionsInShaders, RaysLeaveTheSurface) {
   }
 }
 
-TEST(FunctionsInShaders, RefuseWhatFloatsDoNotHold) {
+TEST(FunctionsInShaders, RejectValuesBeyondFloatRange) {
   const Function high = make_function(Plane{0x1p29, 0, 0});
   const Function higher = make_function(Product{high, make_function(Product{high, high})});
   EXPECT_THROW(SingleRounding(compile(higher, FunctionUse::march)), Error);

@@ -24,7 +24,7 @@ double by_force(const HeightField& field, const dvec3& p, int parts) {
   return best;
 }
 
-TEST(ClosestPoint, IsThatOfAllTriangles) {
+TEST(ClosestPoint, MatchesASearchOfAllTriangles) {
   Random random(2);
   for (int round = 0; round < 60; ++round) {
     const HeightField field =
@@ -49,7 +49,7 @@ TEST(ClosestPoint, IsThatOfAllTriangles) {
   }
 }
 
-TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
+TEST(ClosestPoint, StaysWithinItsBoundOnBilinearCells) {
   Random random(3);
   constexpr int kParts = 6;
   for (int round = 0; round < 12; ++round) {
@@ -84,7 +84,7 @@ TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
   }
 }
 
-TEST(ClosestPoint, RefusesWhatItCannotAnswer) {
+TEST(ClosestPoint, RejectsUnsupportedQueries) {
   const std::vector<float> flat(25, 1.0f);
   const HeightField wrapped = HeightField::own(flat, 5, 5, {.wrap = Wrap::periodic}),
                     field = HeightField::own(flat, 5, 5);

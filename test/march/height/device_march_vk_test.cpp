@@ -65,7 +65,7 @@ class BatchesOnDevice : public OnDevice {
   }
 };
 
-TEST_F(BatchesOnDevice, AreTheSameForOneKindOfField) {
+TEST_F(BatchesOnDevice, MatchWhenSpecialisedForTheField) {
   DeviceHeightMarch any_field(device(), "max-mip"), in_pieces(device(), "max-mip", 5);
   Random random(3);
   int runs = 0;
@@ -92,7 +92,7 @@ TEST_F(BatchesOnDevice, AreTheSameForOneKindOfField) {
   EXPECT_GT(runs, 1);
 }
 
-TEST_F(BatchesOnDevice, RaysMayPassThroughWalls) {
+TEST_F(BatchesOnDevice, CanPassThroughWalls) {
   DeviceHeightMarch max_mip(device(), "max-mip");
   Random random(4);
   int walls = 0;

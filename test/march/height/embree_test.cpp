@@ -159,7 +159,7 @@ const std::vector<RayClass>& classes() {
   return all;
 }
 
-TEST(Embree, FindsTheSameHitsOnTheSameTriangles) {
+TEST(Embree, AgreesOnTheSameTriangles) {
   Random random(11);
   std::vector<float> samples;
   for (int row = 0; row < kSide; ++row) {

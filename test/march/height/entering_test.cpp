@@ -25,7 +25,7 @@ std::vector<HeightMarchEntry> marches_that_go_on() {
   return marches;
 }
 
-TEST_P(EnteringRays, GoOn) {
+TEST_P(EnteringRays, ContinueIntoTheField) {
   expect_entering_rays_go_on(GetParam(),
                              [](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
                                const MaxPyramid pyramid(field);
@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Marches, EnteringRays, testing::ValuesIn(marches_that_g
                          [](const auto& of) { return test_name(std::string(of.param.name)); });
 
 // The shaders' text, as C++.
-TEST(EnteringRays, GoOnInSinglePrecision) {
+TEST(EnteringRays, ContinueInSinglePrecision) {
   for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
     expect_entering_rays_go_on(
         find_height_march(name), [&](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
@@ -60,7 +60,7 @@ TEST(EnteringRays, GoOnInSinglePrecision) {
 }
 
 // A tolerance that grows with the distance does not hide where they come out.
-TEST(EnteringRays, GoOnFromFarAway) {
+TEST(EnteringRays, ContinueFromFarAway) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid, slope_bound(field)};
@@ -78,7 +78,7 @@ TEST(EnteringRays, GoOnFromFarAway) {
 }
 
 // A ray that begins under the ground of the field keeps the answer that the march documents.
-TEST(EnteringRays, ThatBeginUnderTheGroundKeepTheirAnswers) {
+TEST(EnteringRays, KeepDocumentedAnswersWhenStartingBelowGround) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid, slope_bound(field)};

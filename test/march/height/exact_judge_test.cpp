@@ -131,7 +131,7 @@ bool agree(const ExactAnswer& expected, HitStatus status, const std::vector<Hit>
 
 class Exact : public testing::TestWithParam<Kind> {};
 
-TEST_P(Exact, TiesAreDecidedAsDocumented) {
+TEST_P(Exact, BreaksTiesAsDocumented) {
   Random random(5);
   int bad = 0, hits_seen = 0;
   std::vector<Hit> hits;
@@ -173,7 +173,7 @@ TEST_P(Exact, TiesAreDecidedAsDocumented) {
 }
 
 // The ray comes over the border on the surface, rises and comes down again, all in its first cell.
-TEST(Exact, BeginsWithATouchAndComesDownInTheSameCell) {
+TEST(Exact, FindsASecondHitInTheCellOfATouch) {
   const HeightField field = HeightField::own<float>({0, 1, 2, 0}, 2, 2);
   const MaxPyramid pyramid(field);
   // Along the diagonal from the north-east the ground is at 1 - 2 s + 3 s^2, the ray at 1: again on it at s = 2/3.

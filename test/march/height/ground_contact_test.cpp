@@ -128,7 +128,7 @@ TEST(Sweep, StopsAtThePlane) {
   EXPECT_FALSE(sweep(target, {{4, 4, 2}, {4, 4, 2}, 0.5}, dvec3(0.0)));
 }
 
-TEST(Sweep, OfAPointIsARay) {
+TEST(Sweep, OfAPointMatchesARay) {
   const HeightField field = plane(8, 1);
   const MaxPyramid pyramid(field);
   const auto hit = sweep({&field, &pyramid}, {{3.2, 3.7, 4}, {3.2, 3.7, 4}, 0}, {0.5, 0.25, -6});
@@ -136,7 +136,7 @@ TEST(Sweep, OfAPointIsARay) {
   EXPECT_NEAR(hit->t, 0.5, kRounding);
 }
 
-TEST(ClosestOf, KnowsSegmentsThatAreAlmostParallel) {
+TEST(ClosestOf, HandlesNearlyParallelSegments) {
   Random random(13);
   for (int i = 0; i < cases(100'000, 10'000, 1000); ++i) {
     const dvec3 d = direction(random), across = std::pow(10, uniform(random, -12, 0)) * direction(random);
@@ -157,7 +157,7 @@ TEST(ClosestOf, KnowsSegmentsThatAreAlmostParallel) {
   }
 }
 
-TEST(Sweep, KeepsItsDigitsOverLongWays) {
+TEST(Sweep, StaysPreciseOverLongDistances) {
   const HeightField field = plane(8, 0);
   const MaxPyramid pyramid(field);
   const dvec3 from(4 + 3e6, 4 - 2e6, 1e6), motion = 2.0 * (dvec3(4, 4, 0) - from);
@@ -187,7 +187,7 @@ bool cut_by_box(const JudgedTriangle& triangle, const TurnedBox& box, double wid
   return true;
 }
 
-TEST(Overlap, IsThatOfSomeTriangle) {
+TEST(Overlap, MatchesATestOfAllTriangles) {
   Random random(12);
   int yes = 0, no = 0;
   for (int round = 0; round < cases(600, 60, 12); ++round) {
@@ -214,7 +214,7 @@ TEST(Overlap, IsThatOfSomeTriangle) {
   EXPECT_GT(no, cases(5000, 500, 100));
 }
 
-TEST(Overlap, KnowsBoxesThatTouch) {
+TEST(Overlap, IncludesTouchingBoxes) {
   const HeightField field = plane(8, 1);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
@@ -224,7 +224,7 @@ TEST(Overlap, KnowsBoxesThatTouch) {
   EXPECT_TRUE(overlaps(target, {{4, 4, 1}, {0, 0, 0}}));
 }
 
-TEST(Sweep, RefusesWhatIsNoCapsule) {
+TEST(Sweep, RejectsInvalidCapsules) {
   const HeightField field = plane(8, 1);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};

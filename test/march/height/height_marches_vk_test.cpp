@@ -44,7 +44,7 @@ glsl::ScarpHit march_text(const glsl::ScarpField& field, const glsl::ScarpRay& r
   return hit.status == glsl::kScarpDoubtful ? glsl::scarp_sampled(field, ray, settings) : hit;
 }
 
-TEST_P(HeightMarchesOnDevice, TakeThePointsOfTheirText) {
+TEST_P(HeightMarchesOnDevice, SampleTheSamePointsAsTheCpu) {
   const HeightField field = test::hills(kHillsSide, kHillsSide, Surface::bilinear);
   const MaxPyramid pyramid(field);
   glsl::host_field = &field;
@@ -77,7 +77,7 @@ TEST_P(HeightMarchesOnDevice, TakeThePointsOfTheirText) {
 }
 
 // Beyond the highest sample there is nothing.
-TEST_P(HeightMarchesOnDevice, EndAtTheTopOnRequest) {
+TEST_P(HeightMarchesOnDevice, StopAboveTheHighestSampleOnRequest) {
   const HeightField field = test::hills(kHillsSide, kHillsSide, Surface::bilinear);
   std::vector<Ray> rays = rays_along(field);
   for (Ray& ray : rays) ray.direction.z = std::abs(ray.direction.z) + 0.4;

@@ -155,7 +155,7 @@ TEST_P(Invariance, TranslationByWholeCellsAndPeriods) {
   });
 }
 
-TEST_P(Invariance, ScalesByPowersOfTwoChangeNoBit) {
+TEST_P(Invariance, PowerOfTwoScalesAreBitIdentical) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     Case scaled = c;
     scaled.settings.cell_x = std::ldexp(1.0, whole(random, -9, 9));
@@ -173,7 +173,7 @@ TEST_P(Invariance, ScalesByPowersOfTwoChangeNoBit) {
   });
 }
 
-TEST_P(Invariance, TCountsInLengthsOfTheDirectionToTheLastBit) {
+TEST_P(Invariance, TScalesExactlyWithTheDirection) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     // Far enough for the lengths that a march scales itself.
     const int power = whole(random, -700, 700);
@@ -188,7 +188,7 @@ TEST_P(Invariance, TCountsInLengthsOfTheDirectionToTheLastBit) {
   });
 }
 
-TEST_P(Invariance, ASplitRangeFindsTheSameFirstHit) {
+TEST_P(Invariance, SplitRangeFindsTheSameFirstHit) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     Case first = c, second = c;
     first.t_max = second.t_min = std::min(c.t_max, whole(random, 0, 64) / 8.0);
@@ -203,7 +203,7 @@ TEST_P(Invariance, ASplitRangeFindsTheSameFirstHit) {
   });
 }
 
-TEST_P(Invariance, ALaterStartNeverFindsAnEarlierHit) {
+TEST_P(Invariance, LaterStartNeverFindsAnEarlierHit) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     Case later = c;
     later.t_min = std::min(c.t_max, whole(random, 0, 64) / 8.0);
@@ -227,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Invariance,
                          });
 
 // Where all cells are planes, both surfaces are one.
-TEST(Surfaces, AgreeWhereCellsArePlanes) {
+TEST(Surfaces, AgreeOnPlanarCells) {
   Random random(7);
   int hits = 0;
   for (int i = 0; i < kCases; ++i) {

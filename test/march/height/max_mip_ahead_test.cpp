@@ -56,7 +56,7 @@ int compare_on_all(const HeightTarget& target, const std::vector<Ray>& rays, con
   return decided;
 }
 
-TEST(MaxMipAhead, AnswersAsTheScalarWalkDoes) {
+TEST(MaxMipAhead, MatchesTheScalarWalk) {
   Random random(91);
   for (const FieldKind& fields : spiteful_fields()) {
     for (int part = 0; part < kRaysPerPair; part += kRaysPerField) {
@@ -128,7 +128,7 @@ void rough_ground(Random& random, double relief, int cols, int rows) {
   }
   compare_on_all({&field, &pyramid}, rays, "relief " + std::to_string(relief));
 }
-TEST(MaxMipAhead, BeginsCloseAboveRoughGround) {
+TEST(MaxMipAhead, StartsJustAboveRoughGround) {
   Random random(93);
   for (const double relief : {0.5, 40.0, 4000.0}) {
     rough_ground<float>(random, relief, 65, 65);
@@ -139,7 +139,7 @@ TEST(MaxMipAhead, BeginsCloseAboveRoughGround) {
 }
 
 // Nearly level rays through the highest node, and others that nearly run along its lines.
-TEST(MaxMipAhead, TouchesOfTheHighestSample) {
+TEST(MaxMipAhead, TouchesTheHighestSample) {
   Random random(94);
   const int side = 17;
   std::vector<float> samples(side * side, 0.f);
@@ -157,7 +157,7 @@ TEST(MaxMipAhead, TouchesOfTheHighestSample) {
   compare_on_all({&field, &pyramid}, rays, "touches");
 }
 
-TEST(MaxMipAhead, UnusualNumbers) {
+TEST(MaxMipAhead, HandlesUnusualNumbers) {
   const HeightField field = hills(129, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
   compare_on_all({&field, &pyramid}, rays_of_unusual_numbers(field), "unusual numbers");

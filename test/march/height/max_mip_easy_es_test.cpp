@@ -49,7 +49,7 @@ class MaxMipEasyAsEs : public EsTest {
   }
 };
 
-TEST_F(MaxMipEasyAsEs, AnswersAsARayDisplacedByTheBound) {
+TEST_F(MaxMipEasyAsEs, MatchesARayDisplacedByTheBound) {
   int hits = 0;
   std::vector<FieldKind> kinds = spiteful_fields();
   kinds.push_back({"hills", [](Random&) { return hills(700, 900, Surface::bilinear); }});

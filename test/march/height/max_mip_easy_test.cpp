@@ -90,7 +90,7 @@ void for_each_ray(const Check& check) {
   }
 }
 
-TEST(MaxMipEasy, AnswersAsARayDisplacedByTheBound) {
+TEST(MaxMipEasy, MatchesARayDisplacedByTheBound) {
   double worst = 0;
   int rays = 0;
   for_each_ray([&](const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, const std::string& words) {
@@ -106,7 +106,7 @@ TEST(MaxMipEasy, AnswersAsARayDisplacedByTheBound) {
 }
 
 // With the statuses, walls and rays from the surface that a shader does not have.
-TEST(MaxMipEasy, TheMarchOfTheTableDoes) {
+TEST(MaxMipEasy, ListedMarchMatchesARayDisplacedByTheBound) {
   int from_surface = 0;
   for_each_ray([&](const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, const std::string& words) {
     const HeightTarget target{&field, &pyramid};
@@ -180,7 +180,7 @@ TEST(MaxMipEasy, NoRayIsLostBetweenCells) {
 }
 
 // Closed: what stands still on the last line is over the last cell.
-TEST(MaxMipEasy, TheBorderBelongsToTheField) {
+TEST(MaxMipEasy, IncludesTheBorder) {
   const HeightField field = HeightField::own(std::vector<float>(7 * 5, 2.0f), 7, 5);
   const MaxPyramid pyramid(field);
   Ground ground(field, pyramid);
@@ -199,7 +199,7 @@ TEST(MaxMipEasy, TheBorderBelongsToTheField) {
 }
 
 // Over a plane no ray along it or up from it is in the shadow of its own start.
-TEST(MaxMipEasy, NoRayHitsWhereItStarts) {
+TEST(MaxMipEasy, NeverHitsWhereARayStarts) {
   Random random(6);
   constexpr int kCols = 300, kRows = 200, kPlanes = 10;
   for (int plane = 0; plane < kPlanes; ++plane) {
@@ -225,7 +225,7 @@ TEST(MaxMipEasy, NoRayHitsWhereItStarts) {
   }
 }
 
-TEST(MaxMipEasy, ExaminesAsFewBlocksAsMaxMip) {
+TEST(MaxMipEasy, VisitsAsFewBlocksAsMaxMip) {
   const HeightField field = hills(1000, 1500, Surface::bilinear);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
@@ -243,7 +243,7 @@ TEST(MaxMipEasy, ExaminesAsFewBlocksAsMaxMip) {
   EXPECT_LT(static_cast<double>(easy_steps), 1.1 * static_cast<double>(steps));
 }
 
-TEST(MaxMipEasy, NormalsAreThoseOfTheSurface) {
+TEST(MaxMipEasy, NormalsMatchTheSurface) {
   Random random(7);
   const HeightField field = hills(40, 30, Surface::bilinear);
   const MaxPyramid pyramid(field);
@@ -260,7 +260,7 @@ TEST(MaxMipEasy, NormalsAreThoseOfTheSurface) {
 }
 
 // Rays that come in below the ground stop at once.
-TEST(MaxMipEasy, RaysFromBelowStop) {
+TEST(MaxMipEasy, StopsRaysFromBelow) {
   for (const bool solid : {false, true}) {
     const HeightField field = bowl_field(false, solid);
     const MaxPyramid pyramid(field);
@@ -277,7 +277,7 @@ TEST(MaxMipEasy, RaysFromBelowStop) {
   }
 }
 
-TEST(MaxMipEasy, OtherFieldsAreRefused) {
+TEST(MaxMipEasy, RejectsUnsupportedFields) {
   const float hole = std::numeric_limits<float>::quiet_NaN();
   const auto refused = [](float last, const HeightFieldSettings& settings) {
     const HeightField field = HeightField::own<float>({1, 2, 3, 4, 5, last}, 3, 2, settings);
@@ -295,7 +295,7 @@ TEST(MaxMipEasy, OtherFieldsAreRefused) {
 }
 
 // It is there to be pasted.
-TEST(MaxMipEasy, TheTextIsShortAndStandsAlone) {
+TEST(MaxMipEasy, SourceIsShortAndSelfContained) {
   std::ifstream file(SCARP_SOURCE_DIR "/scarp/march/height/max_mip_easy.glsl.h");
   int lines = 0;
   for (std::string line; std::getline(file, line); ++lines) {

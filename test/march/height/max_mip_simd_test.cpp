@@ -76,7 +76,7 @@ std::vector<Hit> scalar(const HeightTarget& target, const std::vector<Ray>& rays
   return hits;
 }
 
-TEST(MaxMipSimd, AnswersAsTheScalarWalkDoesBitForBit) {
+TEST(MaxMipSimd, MatchesTheScalarWalkBitForBit) {
   Random random(71);
   for (const FieldKind& fields : spiteful_fields()) {
     for (int part = 0; part < kRaysPerPair; part += kRaysPerField) {
@@ -150,7 +150,7 @@ std::vector<Ray> usual_rays(const HeightTarget& target, Random& random, int coun
   return rays;
 }
 
-TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
+TEST(MaxMipSimd, MatchesForEveryInstructionSetBatchSizeAndStrategy) {
   Random random(72);
   const std::vector<std::int64_t> sets = instruction_sets();
   ASSERT_FALSE(sets.empty());
@@ -187,7 +187,7 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
 }
 
 // More levels than a vector has lanes.
-TEST(MaxMipSimd, VeryLongFields) {
+TEST(MaxMipSimd, HandlesVeryLongFields) {
   const int cols = 131'073, rows = 3, wall = 100'000;
   std::vector<float> samples(std::size_t{cols} * rows, 0.f);
   for (int row = 0; row < rows; ++row) samples[static_cast<std::size_t>(row) * cols + wall] = 100;
@@ -208,7 +208,7 @@ TEST(MaxMipSimd, VeryLongFields) {
 
 // Starts beside the cell that they are said to be in, by much and by less than a millionth of a cell: over ground above
 // and below 0, for a wrong start looks right where 0 is under the ground.
-TEST(MaxMipSimd, StartsBesideTheirCell) {
+TEST(MaxMipSimd, HandlesStartsBesideTheirCell) {
   Random random(76);
   for (const double base : {-100.0, 100.0}) {
     const int side = 65;
@@ -238,7 +238,7 @@ TEST(MaxMipSimd, StartsBesideTheirCell) {
 }
 
 // Nearly level rays through the highest node: within rounding they are as high as it is long before.
-TEST(MaxMipSimd, TouchesOfTheHighestSample) {
+TEST(MaxMipSimd, TouchesTheHighestSample) {
   Random random(77);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const int side = 17;
@@ -261,7 +261,7 @@ TEST(MaxMipSimd, TouchesOfTheHighestSample) {
 
 // A shadow map's rays: from nodes, points of edges and others, by little above the ground or in it, along diagonals,
 // axes and other ways, over ground that is rough from sample to sample: parabolas that dip between the ends of a cell.
-TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
+TEST(MaxMipSimd, StartsJustAboveRoughGround) {
   Random random(79);
   for (const double relief : {0.5, 40.0, 4000.0}) {
     const int side = 65;
@@ -296,7 +296,7 @@ TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
 }
 
 // Rays that begin by less than floats can tell before a line that they cross late or never, and climb with the ground.
-TEST(MaxMipSimd, BeginsJustBeforeALine) {
+TEST(MaxMipSimd, StartsJustBeforeAGridLine) {
   const int side = 17;
   std::vector<float> samples;
   for (int i = 0; i < side * side; ++i) samples.push_back(static_cast<float>(side - 1 - i / side));
@@ -320,7 +320,7 @@ TEST(MaxMipSimd, BeginsJustBeforeALine) {
 }
 
 // A shadow map's rays: from nodes to a sun in the north-west, or in the south.
-TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
+TEST(MaxMipSimd, HandlesRaysFromNodesInVectors) {
   Random random(80);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
   const MaxPyramid pyramid(field);
@@ -344,7 +344,7 @@ TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
   }
 }
 
-TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
+TEST(MaxMipSimd, HandlesRaysFromNearTheGroundInVectors) {
   Random random(75);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
   const MaxPyramid pyramid(field);
@@ -369,7 +369,7 @@ TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
 
 // Copies of a ground that wraps round are walked over by the vectors, and what lies on their seams is met: rays along
 // seams, through corners of copies, and far away, where the scalar walk takes over.
-TEST(MaxMipSimd, EndlessGround) {
+TEST(MaxMipSimd, HandlesWrappedFields) {
   Random random(78);
   const HeightField field = hills<float>(Surface::bilinear, Kind::endless, random);
   const MaxPyramid pyramid(field);
@@ -397,7 +397,7 @@ TEST(MaxMipSimd, EndlessGround) {
 
 // Of rays that fall, or climb, so steeply that all happens in front of a seam which a rounded place is already behind:
 // the ray below is through the ground at t = 7.75 and at the seam at t = 8. And at u = -0, which is 0 and stays -0.
-TEST(MaxMipSimd, BeginsNextToASeam) {
+TEST(MaxMipSimd, StartsNextToASeam) {
   Random random(79);
   const int side = 128;
   std::vector<std::int16_t> samples(std::size_t{side} * side, 15);
@@ -456,7 +456,7 @@ std::vector<Ray> tiles_of_a_camera(const HeightField& field, Random& random) {
   return rays;
 }
 
-TEST(MaxMipSimd, BeamsLoseNothing) {
+TEST(MaxMipSimd, BeamsLoseNoHits) {
   Random random(74);
   std::map<std::string, std::uint64_t> in_beams;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
@@ -537,7 +537,7 @@ std::vector<Ray> fans(const HeightField& field, Random& random) {
   return rays;
 }
 
-TEST(MaxMipSimd, RaysThatGoTogetherLoseNothing) {
+TEST(MaxMipSimd, CoherentRaysLoseNoHits) {
   Random random(82);
   std::map<std::string, std::uint64_t> together;
   for (const Kind kind : {Kind::plain, Kind::endless}) {
@@ -566,7 +566,7 @@ TEST(MaxMipSimd, RaysThatGoTogetherLoseNothing) {
 }
 
 // Each among rays that fall in from outside, which form beams.
-TEST(MaxMipSimd, UnusualNumbers) {
+TEST(MaxMipSimd, HandlesUnusualNumbers) {
   const HeightField field = test::hills(129, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
   std::vector<Ray> rays;
@@ -610,7 +610,7 @@ TEST(MaxMipSimd, HandsOverFewRays) {
 }
 
 // Nor those that end in the cell that they begin in, which floats can tell where the ground is gentle.
-TEST(MaxMipSimd, HandsOverFewRaysThatEndWhereTheyBegin) {
+TEST(MaxMipSimd, HandsOverFewRaysThatEndInTheirFirstCell) {
   Random random(74);
   constexpr int kSide = 33;
   std::vector<float> samples(kSide * kSide);

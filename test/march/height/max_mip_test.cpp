@@ -46,7 +46,7 @@ Terrain hills() {
   return {HeightField::own(samples, 257, 193)};
 }
 
-TEST(MaxMip, HitsAPlaneWhereItIs) {
+TEST(MaxMip, HitsAPlane) {
   const Hit hit = flat().cast({1.25, 3.5, 10}, {0.5, 0.25, -2});
   ASSERT_TRUE(hit);
   EXPECT_DOUBLE_EQ(hit.t, 4);
@@ -56,13 +56,13 @@ TEST(MaxMip, HitsAPlaneWhereItIs) {
   EXPECT_DOUBLE_EQ(hit.v, 0.5);
 }
 
-TEST(MaxMip, CountsTInLengthsOfTheDirection) {
+TEST(MaxMip, MeasuresTInLengthsOfTheDirection) {
   EXPECT_DOUBLE_EQ(flat().cast({1, 1, 10}, {0, 1, -16}).t, 0.5);
   EXPECT_DOUBLE_EQ(flat().cast({1, 1, 10}, {0, 0x1p-900, -0x1p-896}).t, 0x1p899);
   EXPECT_DOUBLE_EQ(flat().cast({1, 1, 10}, {0, 0x1p900, -0x1p904}).t, 0x1p-901);
 }
 
-TEST(MaxMip, HitsEveryNodeFromAboveWhereverTheRayComesFrom) {
+TEST(MaxMip, HitsEveryNodeFromAnyDirectionAbove) {
   // Rays aimed at nodes slip through engines that test triangles one by one. Here each must hit, at the node.
   const Terrain terrain = hills();
   Random random(3);
@@ -78,7 +78,7 @@ TEST(MaxMip, HitsEveryNodeFromAboveWhereverTheRayComesFrom) {
   }
 }
 
-TEST(MaxMip, CountsATouchOfACrestAsAHit) {
+TEST(MaxMip, ReportsATouchOfACrestAsAHit) {
   // A ridge along the column 3; the ray is level with it and crosses.
   std::vector<float> samples(64, 0);
   for (int row = 0; row < 8; ++row) samples[static_cast<std::size_t>(8 * row + 3)] = 5;
@@ -91,7 +91,7 @@ TEST(MaxMip, CountsATouchOfACrestAsAHit) {
   EXPECT_EQ(ridge.cast({-1, 2.5, 5.000001}, {1, 0, 0}).status, HitStatus::miss);
 }
 
-TEST(MaxMip, SeesADipInsideASaddleCell) {
+TEST(MaxMip, FindsADipInsideASaddleCell) {
   // Corners 0 and 4 crosswise: along the high diagonal the surface is a valley of height 4 - 8 u (1 - u), lowest 2;
   // along the low diagonal a hill up to 2. A ray over the hill at 1.5 is above at both ends of the cell and below in
   // between.
@@ -105,12 +105,12 @@ TEST(MaxMip, SeesADipInsideASaddleCell) {
   EXPECT_FALSE(march_max_mip_bisect(target, {{0, 0, 1.5}, {1, 1, 0}})) << "the paper's search looks at the ends alone";
 }
 
-TEST(MaxMip, PassesUpwardsThroughTheSheet) {
+TEST(MaxMip, IgnoresTheSurfaceFromBelow) {
   EXPECT_EQ(flat().cast({2, 2, -5}, {0.1, 0, 1}).status, HitStatus::below);
   EXPECT_EQ(flat().cast({2, 2, -5}, {0, 0, 1}).status, HitStatus::below);
 }
 
-TEST(MaxMip, HitsAfterComingOutOfTheGround) {
+TEST(MaxMip, HitsAfterEmergingFromTheGround) {
   // Out of a hill, over a valley, into the next hill.
   const Terrain terrain{HeightField::own<float>({5, 0, 0, 5, 5, 0, 0, 5}, 4, 2)};
   const Hit hit = terrain.cast({0, 0.5, 2.5}, {1, 0, 0});
@@ -118,7 +118,7 @@ TEST(MaxMip, HitsAfterComingOutOfTheGround) {
   EXPECT_DOUBLE_EQ(hit.t, 2.5);
 }
 
-TEST(MaxMip, MissesBeforeAndAfterTheRaysRange) {
+TEST(MaxMip, MissesOutsideTheRayRange) {
   EXPECT_EQ(flat().cast({1, 1, 10}, {0, 1, -4}, 0, 1.999).status, HitStatus::miss);
   EXPECT_TRUE(flat().cast({1, 1, 10}, {0, 1, -4}, 0, 2)) << "the range is closed";
   EXPECT_TRUE(flat().cast({1, 1, 10}, {0, 1, -4}, 2, 3)) << "the range is closed";
@@ -126,7 +126,7 @@ TEST(MaxMip, MissesBeforeAndAfterTheRaysRange) {
   EXPECT_TRUE(flat().cast({1, 1, -2}, {0, -1, -2}, -4, 0)) << "t may be negative";
 }
 
-TEST(MaxMip, CountsTInTheLengthOfExtremeDirectionsAsTheOracleDoes) {
+TEST(MaxMip, MatchesTheOracleForExtremeDirections) {
   const Terrain terrain = hills();
   const HeightTarget target{&terrain.field, &terrain.pyramid};
   Ray ray{{20.3, 30.7, 40}, {0.75, 0.5, -0.25}};
@@ -141,7 +141,7 @@ TEST(MaxMip, CountsTInTheLengthOfExtremeDirectionsAsTheOracleDoes) {
   }
 }
 
-TEST(MaxMip, HitsTheBorderFromAboveWhateverTheCellSize) {
+TEST(MaxMip, HitsTheBorderFromAboveForAnyCellSize) {
   std::mt19937 random(3);
   for (int i = 0; i < 2000; ++i) {
     HeightFieldSettings settings;
@@ -162,7 +162,7 @@ TEST(MaxMip, HitsTheBorderFromAboveWhateverTheCellSize) {
   }
 }
 
-TEST(MaxMip, DoesNotFollowARayBeyondTheBorder) {
+TEST(MaxMip, StopsAtTheBorder) {
   // 6 x 6 cells under blocks of 8: a ray that has left at the border runs on inside the block.
   std::vector<float> samples(49, 0);
   for (int row = 0; row < 7; ++row) samples[static_cast<std::size_t>(7 * row + 5)] = 100;
@@ -171,7 +171,7 @@ TEST(MaxMip, DoesNotFollowARayBeyondTheBorder) {
   EXPECT_EQ(terrain.cast({0, 5.9, 50}, {0.1, 1, 0}).status, HitStatus::miss);
 }
 
-TEST(MaxMip, PassesThroughHolesAndHitsBehindThem) {
+TEST(MaxMip, PassesThroughHoles) {
   const Terrain terrain{HeightField::own<float>({0, 0, kNaN, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 6, 2)};
   EXPECT_EQ(terrain.cast({2, 0.5, 1}, {0, 0, -1}).status, HitStatus::miss);
   EXPECT_EQ(terrain.cast({1.5, 0.5, 1}, {0, 0, -1}).status, HitStatus::miss);
@@ -182,7 +182,7 @@ TEST(MaxMip, PassesThroughHolesAndHitsBehindThem) {
   EXPECT_FALSE(terrain.cast({1.25, 0.5, 1}, {1, 0, -2})) << "goes under the sheet through the hole";
 }
 
-TEST(MaxMip, DoesNotHitThePlaneOnWhichARayStarts) {
+TEST(MaxMip, DoesNotHitThePlaneARayStartsOn) {
   // Any direction in a tilted plane, from anywhere on it: rounding must not be taken for ground.
   std::vector<float> samples;
   for (int row = 0; row < 40; ++row) {
@@ -209,7 +209,7 @@ TEST(MaxMip, DoesNotHitThePlaneOnWhichARayStarts) {
   }
 }
 
-TEST(MaxMip, TellsWhereARayFromALineOfItsPlaneFallsFromIt) {
+TEST(MaxMip, LocatesDescentFromAGridLineAccurately) {
   // On a line between cells, which by rounding it has left before it begins, and falling by 10^-9 per metre: a height
   // that ran ahead of the clamped place by 10^-11 would be a hit millimetres late. From the run of 10^9 rays.
   std::vector<float> samples;
@@ -282,7 +282,7 @@ Ray any_ray(const HeightField& field) {
   return {from, point() - from};
 }
 
-RC_GTEST_PROP(MaxMip, ALaterStartFindsNoEarlierHitAndLosesNone, ()) {
+RC_GTEST_PROP(MaxMip, LaterStartNeitherFindsEarlierHitsNorLosesAny, ()) {
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);
   const Hit first = terrain.cast(ray);
@@ -325,7 +325,7 @@ TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
   }
 }
 
-TEST(MaxMip, CountsAWayOutAtANodeAsNoHit) {
+TEST(MaxMip, DoesNotReportAnExitAtANode) {
   // Through the ground and out again at a node, where the clearance is zero but for rounding: one hit each.
   Random random(5);
   std::vector<float> samples;
@@ -350,7 +350,7 @@ TEST(MaxMip, CountsAWayOutAtANodeAsNoHit) {
   }
 }
 
-RC_GTEST_PROP(MaxMip, EndsWhereItHits, ()) {
+RC_GTEST_PROP(MaxMip, RespectsTMaxAroundTheHit, ()) {
   // Cut short before the hit, the ray misses; cut right behind it, it hits at the same place.
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);

@@ -369,7 +369,7 @@ class Judge {
 
 class Oracle : public testing::TestWithParam<Pair> {};
 
-TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
+TEST_P(Oracle, ExactMarchesMatchTheOracle) {
   const FieldKind& fields = spiteful_fields()[GetParam().field];
   const RayKind& kind = spiteful_rays()[GetParam().ray];
   Random random(1000 * GetParam().field + GetParam().ray);

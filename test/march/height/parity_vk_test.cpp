@@ -88,7 +88,7 @@ void check(const Device& device, const FieldKind& fields, const std::vector<RayK
 
 class ParityOnDevice : public OnDevice, public testing::WithParamInterface<std::size_t> {};
 
-TEST_P(ParityOnDevice, AnswersAreThoseOfTheSurface) {
+TEST_P(ParityOnDevice, AnswersMatchTheSurface) {
   Random random(GetParam());
   for (int i = 0; i < kFieldsPerKind; ++i) {
     check(device(), spiteful_fields()[GetParam()], spiteful_rays(), kRaysPerKind, random);
@@ -97,7 +97,7 @@ TEST_P(ParityOnDevice, AnswersAreThoseOfTheSurface) {
 
 class ParityAcrossTiles : public OnDevice {};
 
-TEST_F(ParityAcrossTiles, AnswersAreThoseOfTheSurface) {
+TEST_F(ParityAcrossTiles, AnswersMatchTheSurface) {
   Random random(1);
   for (const FieldKind& fields : wide_fields()) check(device(), fields, rays_across_tiles(), kRaysPerKind / 2, random);
 }
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Spiteful, ParityOnDevice, testing::ValuesIn(all_fields(
 
 class QueriesOnDevice : public OnDevice {};
 
-TEST_F(QueriesOnDevice, FollowRaysThatComeInUnderTheGround) {
+TEST_F(QueriesOnDevice, FollowRaysThatEnterBelowGround) {
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     expect_entering_rays_go_on(march,
@@ -125,7 +125,7 @@ TEST_F(QueriesOnDevice, FollowRaysThatComeInUnderTheGround) {
 }
 
 // A shrink factor that the slope does not prove: what is under the ground is a hit, not lost.
-TEST_F(QueriesOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
+TEST_F(QueriesOnDevice, HitBelowGroundWithALargeShrinkFactor) {
   const HeightField field = waves();
   const DeviceGround ground(device(), field);
   MarchSettings settings;
@@ -139,7 +139,7 @@ TEST_F(QueriesOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
 }
 
 // A ray that does not move along an axis, or hardly, on the rim of a hole: ground on either side of the line is met.
-TEST_F(QueriesOnDevice, HitRimsOfHolesThatRaysRunAlong) {
+TEST_F(QueriesOnDevice, HitHoleRimsThatRaysRunAlong) {
   constexpr int kNodes = 24;
   constexpr double kRelief = 5, kLeastFall = 0.1;
   // Floats place a hit to 2^-18 of a cell (max_mip_lean.glsl.h), over which the ground rises by the relief at most.
@@ -203,7 +203,7 @@ TEST_F(QueriesOnDevice, RefineTheirHits) {
   }
 }
 
-TEST_F(QueriesOnDevice, SlicesDoNotShow) {
+TEST_F(QueriesOnDevice, AreUnaffectedBySlicing) {
   Random random(3);
   const HeightField field = spiteful_fields()[4].make(random);
   const DeviceGround ground(device(), field);
@@ -233,7 +233,7 @@ TEST_F(QueriesOnDevice, SlicesDoNotShow) {
 }
 
 // Marches that are interrupted every few turns.
-TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
+TEST_F(QueriesOnDevice, AreUnaffectedByInterruptions) {
   constexpr int kFewTurns = 5, kFewSteps = 60, kFewRays = 4;
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kFewSteps;
@@ -286,7 +286,7 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
 
 // Longer than lavapipe lets a loop be: over a slope along the ray, close above it for 100,000 cells, then against a
 // wall. Of holes there is one, far from the ray, so that `lipschitz` climbs through all levels at each step.
-TEST_F(QueriesOnDevice, LongMarchesEnd) {
+TEST_F(QueriesOnDevice, FinishLongMarches) {
   constexpr int kCols = 100'001;
   constexpr float kNodata = -1;
   const auto ground_at = [](int col, int row) {
@@ -330,7 +330,7 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
   }
 }
 
-TEST_F(QueriesOnDevice, SayWhatIsWrong) {
+TEST_F(QueriesOnDevice, ReportErrors) {
   const HeightField field = HeightField::own(std::vector<float>(16, 1.0F), 4, 4);
   const DeviceGround ground(device(), field);
   EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_height_march("exhaustive")); }),
@@ -353,7 +353,7 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("naive"), settings); }), "");
 }
 
-TEST(Marches, ThoseOfTheTableRunOnDevices) {
+TEST(Marches, ListedForDevicesRunThere) {
   for (const HeightMarchEntry& march : height_marches()) {
     EXPECT_EQ(march.gpu, device_march_names().find(std::string(march.name)) != std::string::npos) << march.name;
   }
@@ -369,7 +369,7 @@ constexpr std::uint32_t kSamplingShader[] = {
 #include "scarp/march/height/height_marches_second.comp.inc"
 };
 
-TEST(BatchLayout, IsThatOfTheShaders) {
+TEST(BatchLayout, MatchesTheShaders) {
   using glsl::RayBatch;
   EXPECT_TRUE(is_laid_out_like<glsl::RayBlock>(kShader));
   EXPECT_TRUE(is_laid_out_like<glsl::HitBlock>(kShader));

@@ -30,7 +30,7 @@ constexpr int kRaysPerPair = 60;
 constexpr int kRaysPerPair = 15;
 #endif
 
-TEST(Queries, ABatchAnswersAsItsRaysDo) {
+TEST(Queries, BatchMatchesSingleRays) {
   Random random(5);
   for (const FieldKind& fields : spiteful_fields()) {
     const HeightField field = fields.make(random);
@@ -57,7 +57,7 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
   }
 }
 
-TEST(Queries, SpansOfOneLengthAreAskedFor) {
+TEST(Queries, RejectSpansOfDifferentLengths) {
   const HeightField field = HeightField::own<float>({1, 2, 3, 4}, 2, 2);
   const MaxPyramid pyramid(field);
   const std::vector<Ray> rays(3);
@@ -67,7 +67,7 @@ TEST(Queries, SpansOfOneLengthAreAskedFor) {
   EXPECT_THROW(occluded({&field, &pyramid}, rays, blocked), Error);
 }
 
-TEST(Queries, RaysFromOutsideAreChecked) {
+TEST(Queries, ValidateCallerRays) {
   const float hole = std::numeric_limits<float>::quiet_NaN();
   const HeightField field = HeightField::own<float>({1, 2, hole, 3, 4, 5}, 3, 2);
   const HeightField wrapped = HeightField::own<float>({1, 2, 3, 4}, 2, 2, {.wrap = Wrap::periodic});
@@ -98,7 +98,7 @@ TEST(Queries, RaysFromOutsideAreChecked) {
   EXPECT_TRUE(refused(field, from(2)));
 }
 
-TEST(Queries, AnyHitLooksAheadAndAgreesWithTheClosestHit) {
+TEST(Queries, AnyHitLooksAheadAndAgreesWithClosestHit) {
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const HeightField field = hills(1025, 769, surface);
     const MaxPyramid pyramid(field);
@@ -140,7 +140,7 @@ std::vector<Ray> anywhere(const HeightField& field, std::size_t count, Random& r
   return rays;
 }
 
-TEST(Queries, AnswersStandWhereTheirRaysStandWhateverTheOrder) {
+TEST(Queries, AnswersKeepTheOrderOfTheRays) {
   const HeightField field = large();
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
@@ -171,7 +171,7 @@ TEST(Queries, AnswersStandWhereTheirRaysStandWhateverTheOrder) {
   for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
-TEST(Queries, IsLeftInItsOrderWhereAnotherIsNotWorthIt) {
+TEST(Queries, DoNotReorderSmallBatches) {
   const HeightField field = large();
   Random random(24);
   EXPECT_TRUE(ground_order(field, anywhere(field, 100, random)).empty());

@@ -100,7 +100,7 @@ void for_all(const NewField& new_field, const Check& check) {
   }
 }
 
-TEST(Sides, BelowIsAboveOfTheGroundUpsideDown) {
+TEST(Sides, BelowMatchesAboveOfTheInvertedField) {
   int hits = 0;
   std::optional<HeightField> field, other_field;
   std::optional<MaxPyramid> pyramid, other_pyramid;
@@ -133,7 +133,7 @@ TEST(Sides, BelowIsAboveOfTheGroundUpsideDown) {
   EXPECT_GT(hits, cases(100'000, 5000, 500));
 }
 
-TEST(Sides, BothIsTheEarlierHit) {
+TEST(Sides, BothReturnsTheEarlierHit) {
   int from_below = 0, from_above = 0;
   for_all([](const HeightTarget&) {},
           [&](const HeightTarget& target, const Ray& ray) {
@@ -149,7 +149,7 @@ TEST(Sides, BothIsTheEarlierHit) {
 }
 
 // From hit to hit a ray passes the surface in turn from above and from below.
-TEST(Sides, BothGoesOnFromHitToHit) {
+TEST(Sides, BothAlternatesBetweenSides) {
   Random random(8);
   const HeightField field = test::hills(65, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
@@ -185,7 +185,7 @@ TEST(Sides, BothGoesOnFromHitToHit) {
   EXPECT_GT(passed, cases(5000, 500, 100));
 }
 
-TEST(HitFilters, LeaveOutHitsAndNothingElse) {
+TEST(HitFilters, RemoveOnlyRejectedHits) {
   int accepted = 0, none = 0;
   std::vector<Hit> all;
   for_all([](const HeightTarget&) {},
@@ -214,7 +214,7 @@ TEST(HitFilters, LeaveOutHitsAndNothingElse) {
   EXPECT_GT(none, 1000);
 }
 
-TEST(HitFilters, AreAskedInUnitsOfTheRay) {
+TEST(HitFilters, ReceiveTInUnitsOfTheRay) {
   const HeightField flat = HeightField::own(std::vector<float>(9 * 9), 9, 9);
   const MaxPyramid pyramid(flat);
   std::vector<double> asked;

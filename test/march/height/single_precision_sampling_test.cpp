@@ -86,7 +86,7 @@ Marched marched_as(std::string_view name) {
 
 class SinglePrecisionSampling : public testing::TestWithParam<std::string> {};
 
-TEST_P(SinglePrecisionSampling, KeepsItsRule) {
+TEST_P(SinglePrecisionSampling, FollowsItsStepRule) {
   Counts counts;
   for (const Pair& pair : pairs()) {
     Random random(1000 * pair.field + pair.ray);
@@ -99,7 +99,7 @@ TEST_P(SinglePrecisionSampling, KeepsItsRule) {
 }
 
 // Over several stretches.
-TEST_P(SinglePrecisionSampling, KeepsItsRuleOnLongWays) {
+TEST_P(SinglePrecisionSampling, FollowsItsStepRuleOnLongRays) {
   Counts counts;
   Random random(7);
   for (const FieldKind& fields : wide_fields()) {
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
                          [](const auto& of) { return test_name(of.param); });
 
 // In a stretch that begins anywhere on a ray, points are where numerics.md says.
-TEST(SinglePrecisionSampling, StretchesBeginAnew) {
+TEST(SinglePrecisionSampling, RestartsMidRay) {
   constexpr int kCols = 131'000, kRays = 4000;
   constexpr double kUnit = 0x1p-24;
   const HeightField field = HeightField::own(std::vector<float>(kCols * 3, 0.0F), kCols, 3);

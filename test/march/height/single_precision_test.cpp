@@ -84,7 +84,7 @@ int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int ra
 
 class SinglePrecision : public testing::TestWithParam<Pair> {};
 
-TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
+TEST_P(SinglePrecision, MaxMipMatchesTheSurface) {
   const auto [field, ray] = GetParam();
   const RayKind& kind = spiteful_rays()[ray];
   const int others = check(spiteful_fields()[field], kind, 1000 * field + ray, kRaysPerPair, false);
@@ -94,7 +94,7 @@ TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
   }
 }
 
-TEST_P(SinglePrecision, BothPassesDecideAsTheSurfaceDoes) {
+TEST_P(SinglePrecision, BothPassesMatchTheSurface) {
   const auto [field, ray] = GetParam();
   check(spiteful_fields()[field], spiteful_rays()[ray], 1000 * field + ray, kRaysPerPair, true);
   RecordProperty("doubtful", std::to_string(doubtful_rays) + " of " + std::to_string(lean_rays));
@@ -103,7 +103,7 @@ TEST_P(SinglePrecision, BothPassesDecideAsTheSurfaceDoes) {
 INSTANTIATE_TEST_SUITE_P(Spiteful, SinglePrecision, testing::ValuesIn(pairs()), name_of_pair);
 
 // Rays that a shader makes: begin and direction in floats, clipped to the field in floats.
-TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
+TEST(SinglePrecisionFromFloats, MaxMipMatchesTheSurface) {
   for (const FieldKind& fields : spiteful_fields()) {
     for (const std::size_t kind : {0, 1, 2, 3}) {
       Random random(kind);
@@ -131,7 +131,7 @@ TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
   }
 }
 
-TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
+TEST(SinglePrecisionAcrossTiles, MaxMipMatchesTheSurface) {
   for (std::size_t field = 0; field < wide_fields().size(); ++field) {
     for (std::size_t ray = 0; ray < rays_across_tiles().size(); ++ray) {
       for (const bool lean : {false, true})
@@ -142,7 +142,7 @@ TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
 
 // Any-hit looks ahead: it agrees with closest-hit all the same, and reads less. Levels and rising rays have no other
 // early answer.
-TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
+TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithClosestHit) {
   const int kRays = cases(50'000, 10'000, 500);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const HeightField field = hills(2100, 900, surface);
@@ -173,7 +173,7 @@ TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
 }
 
 // Level ground as high as every block's minimum: what goes along it from its surface is not under it.
-TEST(SinglePrecisionLookingAhead, GroundThatARayRunsAlongIsNotInItsWay) {
+TEST(SinglePrecisionLookingAhead, IgnoresGroundThatARayRunsAlong) {
   constexpr int kCols = 2100, kRows = 900;
   std::vector<std::int16_t> samples(std::size_t{kCols} * kRows, 100);
   samples.back() = 200;

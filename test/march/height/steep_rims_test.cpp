@@ -117,7 +117,7 @@ TEST(SteepRims, StartsOnTheBorderFarBelowGroundHitNothing) {
   }
 }
 
-TEST(SteepRims, LeansTooSmallToMoveTheRayChangeNothing) {
+TEST(SteepRims, IgnoreNegligibleLeans) {
   const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
   SteepRays rays(flat);
   for (const double lean : leans()) {
@@ -134,7 +134,7 @@ TEST(SteepRims, LeansTooSmallToMoveTheRayChangeNothing) {
 // The height of an edge: samples of both ends at a share of its length.
 double on_edge(float a, float b, double share) { return a + share * (static_cast<double>(b) - a); }
 
-TEST(SteepRims, HitAllBordersAtTheHeightOfTheirEdges) {
+TEST(SteepRims, HitAllBordersAtTheirEdgeHeight) {
   constexpr int kCols = 11, kRows = 14;
   Random random(7);
   std::vector<float> samples(kCols * kRows);
@@ -191,7 +191,7 @@ HeightField with_hole(const std::vector<float>& samples, int side, double cell, 
                            .solid = solid});
 }
 
-TEST(SteepRims, HitTheRimsOfHolesAtTheHeightOfTheirEdges) {
+TEST(SteepRims, HitHoleRimsAtTheirEdgeHeight) {
   constexpr int kSide = 24;
   Random random(8);
   std::vector<float> samples(kSide * kSide);
@@ -251,7 +251,7 @@ TEST(SteepRims, AreHitByRaysAlongThem) {
 
 // From the ground into the hole, not so steep that they are followed all the way: rounding may let them pass the line
 // above the ground through which they sink behind it.
-TEST(SteepRims, AreHitByRaysThatLeaveTheGroundThere) {
+TEST(SteepRims, AreHitByRaysThatLeaveTheGround) {
   constexpr int kSide = 24;
   Random random(9);
   std::vector<float> samples(kSide * kSide);
@@ -302,7 +302,7 @@ TEST(SteepRims, AreNotHitFromBelow) {
 }
 
 // Nodes at col * cell are on the rim although their coordinates are rounded.
-TEST(SteepRims, NodesOnThemHaveHeights) {
+TEST(SteepRims, HaveHeightsAtTheirNodes) {
   constexpr int kCols = 300, kRows = 8;
   for (const double cell : {7.7, 0.7, 0.1, 92.6, 30.7, 0.01, 1.23, 1.0 / 3, 1.0, 10.0}) {
     for (int hole = 2; hole + 3 < kCols; hole += 7) {

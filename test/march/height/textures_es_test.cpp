@@ -80,7 +80,7 @@ class TexturesAsEs : public EsTest {
   }
 };
 
-TEST_F(TexturesAsEs, MaxMipDecidesAsTheSurfaceDoes) {
+TEST_F(TexturesAsEs, MaxMipMatchesTheSurface) {
   int hits = 0;
   for (const FieldKind& fields : spiteful_fields()) {
     Random random(17);

@@ -188,11 +188,11 @@ std::vector<Realisation> realisations(double slope) {
   return all;
 }
 
-TEST(TexturesLayout, IsThatOfTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
+TEST(TexturesLayout, MatchesTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
 
 class TexturesOnDevice : public OnDevice {};
 
-TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
+TEST_F(TexturesOnDevice, EveryMarchMatchesBuffers) {
   constexpr int kRaysPerKind = 8;
   std::map<std::string_view, DeviceQueries> over_buffers;
   std::map<std::pair<std::string_view, bool>, TextureMarch> over_textures;

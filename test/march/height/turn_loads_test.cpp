@@ -66,7 +66,7 @@ Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
   return loads;
 }
 
-TEST(TurnLoads, MarchesReadTheGroundBeforeTheirLoops) {
+TEST(TurnLoads, MarchesLoadTheGroundOutsideLoops) {
   for (const ShaderProgram& shader : DeviceHeightMarch::shaders()) {
     const Loads loads = loads_of_ground(shader.spirv);
     EXPECT_EQ(loads.in_loops, 0) << shader.file << ", " << shader.variant;

@@ -72,7 +72,7 @@ Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, i
 
 class TwoFloatRays : public testing::TestWithParam<Pair> {};
 
-TEST_P(TwoFloatRays, MeetWhatTheSurfaceHas) {
+TEST_P(TwoFloatRays, MatchTheSurface) {
   const auto [field_kind, ray_kind] = GetParam();
   const FieldKind& fields = spiteful_fields()[field_kind];
   const RayKind& rays = spiteful_rays()[ray_kind];
@@ -105,7 +105,7 @@ TEST_P(TwoFloatRays, MeetWhatTheSurfaceHas) {
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, TwoFloatRays, testing::ValuesIn(pairs()), name_of_pair);
 
-TEST(TwoFloatRay, StepsGoOnWhereTheyWereInterrupted) {
+TEST(TwoFloatRay, ResumesAfterAnInterruption) {
   Random random(5);
   for (const FieldKind& fields : spiteful_fields()) {
     const HeightField field = fields.make(random);
@@ -129,7 +129,7 @@ TEST(TwoFloatRay, StepsGoOnWhereTheyWereInterrupted) {
   }
 }
 
-TEST(SinglePrecisionSlopes, AreThoseOfTheField) {
+TEST(SinglePrecisionSlopes, MatchTheField) {
   Random random(9);
   int compared = 0;
   for (const FieldKind& fields : spiteful_fields()) {

@@ -102,7 +102,7 @@ void expect_values(const std::string& name, const Shape& shape, FunctionRandom& 
   }
 }
 
-TEST(ShapesInShaders, ValuesAreWithinTheirBound) {
+TEST(ShapesInShaders, ValuesStayWithinTheirBound) {
   FunctionRandom random(1);
   double worst = 0;
   for (const NamedShape& named : shape_zoo()) expect_values(named.name, named.shape, random, worst);
@@ -113,7 +113,7 @@ TEST(ShapesInShaders, ValuesAreWithinTheirBound) {
   fmt::print("values off by at most {:.2f} of the bound\n", worst);
 }
 
-TEST(ShapesInShaders, MarchesTellWhatSinglePrecisionAllows) {
+TEST(ShapesInShaders, MarchesMatchWithinSinglePrecision) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     const ShapeWords words = shape_words(field.program());
@@ -140,7 +140,7 @@ TEST(ShapesInShaders, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
-TEST(ShapesInShaders, RaysLeaveTheSurface) {
+TEST(ShapesInShaders, RaysEscapeTheSurface) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     const ShapeWords words = shape_words(field.program());

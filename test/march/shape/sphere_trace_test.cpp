@@ -94,7 +94,7 @@ void expect_nothing_lost(const Shape& shape, const DistanceField& field, const R
   }
 }
 
-TEST(SphereTrace, LosesNothing) {
+TEST(SphereTrace, LosesNoHits) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(21);
@@ -115,7 +115,7 @@ TEST(SphereTrace, LosesNothing) {
   }
 }
 
-RC_GTEST_PROP(SphereTrace, LosesNothingOnRandomTrees, (unsigned seed)) {
+RC_GTEST_PROP(SphereTrace, LosesNoHitsOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const Shape shape = random_shape(random, 1 + static_cast<int>(seed % 4), true);
   const DistanceField field(shape);
@@ -134,7 +134,7 @@ std::optional<double> enter_quadratic(double a, double b, double c) {
   return t >= 0 ? std::optional(t) : std::nullopt;
 }
 
-TEST(SphereTrace, AgreesWithClosedForms) {
+TEST(SphereTrace, MatchesClosedForms) {
   FunctionRandom random(22);
   const DistanceField ball(make_shape(Sphere{2})), block(make_shape(Box{{3, 2, 1}})),
       floor(make_shape(HalfSpace{{0, 1, 2}, 1})), pillar(make_shape(Cylinder{1, 4}));
@@ -183,7 +183,7 @@ TEST(SphereTrace, AgreesWithClosedForms) {
   EXPECT_GT(hits, kRays);
 }
 
-TEST(SphereTrace, CountsInLengthsOfTheDirection) {
+TEST(SphereTrace, MeasuresTInLengthsOfTheDirection) {
   const DistanceField ball(make_shape(Sphere{1}));
   for (const double scale : {1e-6, 1.0, 3e7}) {
     const Hit hit = march_sphere_trace(ball, {{0, 0, 5}, {0, 0, -scale}});
@@ -205,7 +205,7 @@ TEST(SphereTrace, CountsInLengthsOfTheDirection) {
   EXPECT_EQ(march_sphere_trace(ball, {{0, 0, 5}, {0, 1, 0}}).status, HitStatus::miss);
 }
 
-TEST(SphereTrace, RaysFromInsideHitWhatTheyMeetLater) {
+TEST(SphereTrace, RaysFromInsideHitLaterSurfaces) {
   const DistanceField two(
       make_shape(Union{{make_shape(Sphere{1}), make_shape(Moved{make_shape(Sphere{1}), {5, 0, 0}})}}));
   const Hit hit = march_sphere_trace(two, {{0.2, 0, 0}, {1, 0, 0}});
@@ -220,7 +220,7 @@ TEST(SphereTrace, RaysFromInsideHitWhatTheyMeetLater) {
   EXPECT_EQ(march_sphere_trace(block, {{0, 0, 0}, {0, 0, 1}}).status, HitStatus::below);
 }
 
-TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
+TEST(SphereTrace, RaysFromInsideContinueThroughSeams) {
   const auto block = [](double half, double z) { return make_shape(Moved{make_shape(Box{{1, 1, half}}), {0, 0, z}}); };
   // Two that touch, or nearly do, from z = 1 to 3, and one from -3 to -1.
   for (const double gap : {-1e-3, 0.0, 1e-13, 1e-11, 1e-9, 1e-8, 1e-6, 1e-4}) {
@@ -273,7 +273,7 @@ bool dips(const DistanceField& field, const Ray& ray, double t) {
   return false;
 }
 
-TEST(SphereTrace, RaysFromConvexSolidsGoFree) {
+TEST(SphereTrace, RaysFromConvexSolidsEscape) {
   FunctionRandom random(23);
   for (const NamedShape& named : shape_zoo()) {
     const bool convex = named.name == "sphere" || named.name == "box" || named.name == "rounded box" ||
@@ -306,7 +306,7 @@ TEST(SphereTrace, RaysFromConvexSolidsGoFree) {
   }
 }
 
-TEST(SphereTrace, RaysAlongAPlaneGoFree) {
+TEST(SphereTrace, RaysAlongAPlaneMiss) {
   const DistanceField floor(make_shape(HalfSpace{{0, 0, 1}, 0.3})), block(make_shape(Box{{3, 2, 1}}));
   for (const double angle : {0.0, 0.3, 1.0, 2.5}) {
     Ray ray{{0.5, 0.25, 0.3}, {std::cos(angle), std::sin(angle), 0}};
@@ -317,7 +317,7 @@ TEST(SphereTrace, RaysAlongAPlaneGoFree) {
   }
 }
 
-TEST(SphereTrace, RaysFromHollowsHitTheOtherSide) {
+TEST(SphereTrace, RaysFromConcavitiesHitTheOtherSide) {
   // From the inner side of a ring across its hole, and out of a bowl.
   const DistanceField ring(make_shape(Torus{3, 1}));
   Ray ray{{2, 0, 0}, {-1, 0, 0}};
@@ -345,7 +345,7 @@ TEST(SphereTrace, RaysFromHollowsHitTheOtherSide) {
   }
 }
 
-TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
+TEST(SphereTrace, ShadowsMatchTheJudge) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(25);
@@ -381,7 +381,7 @@ TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
   }
 }
 
-TEST(SphereTrace, TellsUsedUpStepsFromHits) {
+TEST(SphereTrace, ReportsExhaustionSeparatelyFromHits) {
   const DistanceField lattice(make_shape(Repeated{make_shape(Sphere{1}), {3, 3, 3}}));
   MarchSettings settings;
   settings.sphere_trace.max_steps = 3;
@@ -397,7 +397,7 @@ TEST(SphereTrace, TellsUsedUpStepsFromHits) {
   EXPECT_THROW(validate(settings), Error);
 }
 
-TEST(SphereTrace, IsInTheTable) {
+TEST(SphereTrace, IsListed) {
   const ShapeMarchEntry& march = find_shape_march("sphere-trace");
   EXPECT_EQ(march.cpu, march_sphere_trace);
   EXPECT_EQ(march.guarantee, Guarantee::conservative);

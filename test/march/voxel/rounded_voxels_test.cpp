@@ -29,7 +29,7 @@ VoxelHit first(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& 
 }
 
 // With the largest radius a lone voxel is a ball.
-TEST(RoundedVoxels, ALoneVoxelIsABall) {
+TEST(RoundedVoxels, SingleVoxelIsABall) {
   VoxelGrid grid(ivec3(3));
   grid.set(ivec3(1), 7);
   const dvec3 middle(1.5);
@@ -124,7 +124,7 @@ Judged judge(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& ro
   return judged;
 }
 
-TEST(RoundedVoxels, AgreeWithEachVoxelOnItsOwn) {
+TEST(RoundedVoxels, MatchPerVoxelTests) {
   Random random(2);
   int hits = 0, misses = 0, close = 0;
   for (int round = 0; round < 60; ++round) {
@@ -176,7 +176,7 @@ TEST(RoundedVoxels, WallsStayFlat) {
 }
 
 // A wall of voxels that touch at edges stops what it stops as cubes.
-TEST(RoundedVoxels, WhatTouchesAtEdgesStaysClosed) {
+TEST(RoundedVoxels, EdgeContactsStayClosed) {
   VoxelGrid grid(ivec3(8));
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     return v.x == v.z ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
@@ -194,7 +194,7 @@ TEST(RoundedVoxels, WhatTouchesAtEdgesStaysClosed) {
   EXPECT_GT(passed, 100);
 }
 
-TEST(RoundedVoxels, RaysThatLeaveAVoxelDoNotHitItAgain) {
+TEST(RoundedVoxels, RaysDoNotHitTheVoxelTheyLeave) {
   VoxelGrid grid(ivec3(2, 1, 1));
   grid.set({0, 0, 0}, 1);
   VoxelRay ray;
@@ -212,7 +212,7 @@ TEST(RoundedVoxels, RaysThatLeaveAVoxelDoNotHitItAgain) {
   EXPECT_EQ(hit.voxel, ivec3(1, 0, 0));
 }
 
-TEST(RoundedVoxels, RefusesARadiusThatIsNone) {
+TEST(RoundedVoxels, RejectsInvalidRadii) {
   EXPECT_THROW(validate(VoxelRounding{0.51, false}), Error);
   EXPECT_THROW(validate(VoxelRounding{-0.1, false}), Error);
   EXPECT_THROW(validate(VoxelRounding{std::nan(""), false}), Error);

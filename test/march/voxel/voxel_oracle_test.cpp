@@ -35,7 +35,7 @@ std::string text(const VoxelRay& ray) {
 
 class VoxelOracle : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelOracle, AllMarchesAgreeWithExhaustive) {
+TEST_P(VoxelOracle, AllMarchesMatchExhaustive) {
   int hits = 0, failures = 0;
   for (const VoxelRayKind& rays : spiteful_voxel_rays()) {
     Random random(1);
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelOracle, testing::ValuesIn(spiteful_voxel_grid
 });
 
 // The oracle itself, and the quantised ray, against the ray in double where nothing is close.
-TEST(VoxelOracle, StaysWithTheRay) {
+TEST(VoxelOracle, HitsLieOnTheUnquantisedRay) {
   Random random(5);
   for (int i = 0; i < 20'000; ++i) {
     const VoxelGrid grid =

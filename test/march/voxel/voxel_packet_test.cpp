@@ -32,7 +32,7 @@ double uniform(Random& random) { return std::uniform_real_distribution<double>(0
 
 class VoxelPacketOf : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
+TEST_P(VoxelPacketOf, MatchesSingleRays) {
   int hits = 0;
   for (const std::int64_t set : instruction_sets()) {
     const InstructionSet chosen(set);

@@ -133,7 +133,7 @@ std::string text(const VoxelHit& hit) {
 
 class VoxelShaders : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelShaders, AgreeWithTheCpu) {
+TEST_P(VoxelShaders, MatchTheCpu) {
   int hits = 0, failures = 0;
   for (const VoxelRayKind& rays : spiteful_voxel_rays()) {
     Random random(2);
@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelShaders, testing::ValuesIn(spiteful_voxel_gri
   return name;
 });
 
-TEST(VoxelShaders, KnowWhatIsAhead) {
+TEST(VoxelShaders, ComputeVoxelsAhead) {
   for (int octant = 0; octant < 8; ++octant) {
     for (int bit = 0; bit < 64; ++bit) {
       const ivec3 voxel(4 + (bit & 3), 8 + (bit >> 2 & 3), bit >> 4);
@@ -202,7 +202,7 @@ TEST(VoxelShaders, KnowWhatIsAhead) {
 }
 
 // A long way through the largest box: distances begin again 64 times.
-TEST(VoxelShaders, AgreeAtTheLargestSize) {
+TEST(VoxelShaders, MatchAtTheLargestSize) {
   constexpr int kHeight = 256;  // less memory
   VoxelGrid grid({VoxelGrid::kMaxSide, VoxelGrid::kMaxSide, kHeight}, 1);
   const ivec3 last = grid.size() - 1;
@@ -242,7 +242,7 @@ TEST(VoxelShaders, AgreeAtTheLargestSize) {
 
 // Starts that are off by some units, as those of drivers are, must not matter: the text starts from the right quotient
 // here, so its corrections are tested from both sides of it.
-TEST(VoxelShaders, DivideAsTheCpuDoes) {
+TEST(VoxelShaders, DivideAsTheCpu) {
   Random random(4);
   for (int i = 0; i < kQuotients; ++i) {
     const auto a = static_cast<std::uint64_t>(std::exp2(uniform(random, 0, 35)));

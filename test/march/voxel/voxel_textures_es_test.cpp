@@ -146,7 +146,7 @@ std::string objection(const Made& made, const VoxelRay& ray, const VoxelBox& box
   return {};
 }
 
-TEST_F(VoxelTexturesAsEs, MarchAsTheCpuDoes) {
+TEST_F(VoxelTexturesAsEs, MatchTheCpu) {
   int hits = 0, blocked = 0, grids = 0;
   for (const VoxelGridKind& kind : spiteful_voxel_grids()) {
     Random random(11);

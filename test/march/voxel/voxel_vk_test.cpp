@@ -134,7 +134,7 @@ int judge(DeviceVoxelQueries& queries, const DeviceVoxelObjects& objects, const 
 
 class VoxelsOnDevice : public OnDevice {};
 
-TEST_F(VoxelsOnDevice, AnswerAsTheCpuDoes) {
+TEST_F(VoxelsOnDevice, MatchTheCpu) {
   DeviceVoxelQueries queries(device(), {.rays_at_once = 4096}), words(device(), {.rays_at_once = 4096, .words = true});
   int hits = 0, failures = 0;
   for (const VoxelGridKind& kind : spiteful_voxel_grids()) {
@@ -163,7 +163,7 @@ TEST_F(VoxelsOnDevice, AnswerAsTheCpuDoes) {
   EXPECT_GT(hits, kGrids * kRaysOfKind);
 }
 
-TEST_F(VoxelsOnDevice, TakeEdits) {
+TEST_F(VoxelsOnDevice, ApplyEdits) {
   DeviceVoxelQueries queries(device(), {.rays_at_once = 4096});
   Random random(8);
   for (const char* name : {"voxel-spheres", "voxel-octants", "voxel-bricks"}) {
@@ -193,7 +193,7 @@ TEST_F(VoxelsOnDevice, TakeEdits) {
 }
 
 // Boxes of 2^34 voxels, whose tables are in chunks on the CPU; rays from one end to the other.
-TEST_F(VoxelsOnDevice, AnswerInWorlds) {
+TEST_F(VoxelsOnDevice, MatchInWorlds) {
   constexpr int kSide = VoxelGrid::kMaxSide, kHeight = 64;
   constexpr int kRays = 200;
   VoxelGrid grid({kSide, kSide, kHeight}, 4);
@@ -244,7 +244,7 @@ constexpr std::uint32_t kBoxShader[] = {
 #include "scarp/march/voxel/voxel_proxies.vert.inc"
 };
 
-TEST(VoxelProxiesLayout, IsThatOfTheShaders) {
+TEST(VoxelProxiesLayout, MatchesTheShaders) {
   using glsl::ScarpVoxelView, glsl::VoxelProxies;
   EXPECT_TRUE(has_struct(
       kBoxShader,
@@ -258,7 +258,7 @@ TEST(VoxelProxiesLayout, IsThatOfTheShaders) {
                           offsetof(VoxelProxies, room)}));
 }
 
-TEST(VoxelBatchLayout, IsThatOfTheShaders) {
+TEST(VoxelBatchLayout, MatchesTheShaders) {
   using glsl::ScarpVoxelRay, glsl::ScarpVoxelHit, glsl::ScarpVoxelGrid, glsl::ScarpVoxelObject;
   EXPECT_TRUE(has_struct(
       kVoxelShader, {offsetof(ScarpVoxelRay, origin), offsetof(ScarpVoxelRay, direction),

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(Depth, IsThatOfProjectedPoints) {
+TEST(Depth, MatchesProjectedPoints) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> share(0, 1);
   const DepthRange range{2, 3000, false}, reversed{2, 3000, true};
@@ -49,7 +49,7 @@ TEST(Depth, IsThatOfProjectedPoints) {
   EXPECT_DOUBLE_EQ(device_depth(8, {0.5, kInfinity, false}), 1 - 0.0625);
 }
 
-TEST(Depth, OfTheTextIsRightOnTheAxisAlone) {
+TEST(Depth, RadialDepthIsExactOnlyOnTheAxis) {
   const Camera camera = Camera::look_at({0, 0, 0}, {0, 1, 0}, 60, 400, 300);
   const auto longer = [&](double x, double y) {
     const Ray ray = camera.ray(x, y);
@@ -85,7 +85,7 @@ TEST(Depth, OrdersAnIntersectingSpherePixelByPixel) {
   }
 }
 
-TEST(Depth, RefusesPlanesInTheWrongOrder) {
+TEST(Depth, RejectsPlanesInTheWrongOrder) {
   EXPECT_THROW(validate(DepthRange{0, 10}), Error);
   EXPECT_THROW(validate(DepthRange{10, 10}), Error);
   EXPECT_THROW(validate(DepthRange{kInfinity, kInfinity}), Error);

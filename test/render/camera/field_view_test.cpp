@@ -32,7 +32,7 @@ FieldView view_of(const HeightField& field, const ViewSettings& settings, bool p
   return view_of_field(field, box_of(field, plinth), settings, 0.2, 640, 360);
 }
 
-TEST(FieldView, IsAboveLevelGroundFromAnywhere) {
+TEST(FieldView, StaysAboveLevelGround) {
   const HeightField field = field_of(kLevel);
   for (const bool plinth : {true, false}) {
     for (const double elevation : {5.0, 10.0, 20.0, 35.0, 60.0}) {
@@ -45,7 +45,7 @@ TEST(FieldView, IsAboveLevelGroundFromAnywhere) {
   }
 }
 
-TEST(FieldView, GoesTowardsTheGroundInTheMiddle) {
+TEST(FieldView, ApproachesTheGroundInTheMiddle) {
   const HeightField hill = field_of([](const auto& sample) { sample(kMiddle, kMiddle) = 1500; });
   const HeightField hole = field_of([](const auto& sample) {
     sample(kMiddle, kMiddle) = std::numeric_limits<float>::quiet_NaN();
@@ -78,7 +78,7 @@ TEST(FieldView, IsRaisedOutOfHills) {
 }
 
 // Level views of ground that goes on beyond its border begin in the middle of the plinth's height.
-TEST(FieldView, IsRaisedOutOfGroundThatGoesOn) {
+TEST(FieldView, IsRaisedOutOfWrappedGround) {
   const HeightField field = field_of(kLevel, Wrap::periodic);
   const FieldView view = view_of(field, {.elevation_deg = 0});
   EXPECT_GT(view.raised, 0);

@@ -92,7 +92,7 @@ int varied(const Image& image) {
   return count;
 }
 
-TEST_P(EveryInput, HasEveryLook) {
+TEST_P(EveryInput, SupportsEveryLook) {
   const Scene scene = GetParam().make();
   for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error, Look::comanche}) {
     PictureSettings with = settings();
@@ -106,7 +106,7 @@ TEST_P(EveryInput, HasEveryLook) {
   }
 }
 
-TEST_P(EveryInput, HasNoErrorsWithAMarchThatPassesNothing) {
+TEST_P(EveryInput, HasNoErrorsWithExactMarches) {
   PictureSettings with = settings();
   with.look = Look::error;
   const ErrorCounts errors = render_picture(GetParam().make(), camera(), with).errors.value();
@@ -117,7 +117,7 @@ TEST_P(EveryInput, HasNoErrorsWithAMarchThatPassesNothing) {
 }
 
 // What lies below the level is under water, seen at the level; what rises above it is as it was.
-TEST_P(EveryInput, HasWater) {
+TEST_P(EveryInput, SupportsWater) {
   constexpr double kWater = 3.25;  // between two faces of voxels
   const Scene scene = GetParam().make();
   PictureSettings dry = settings(), wet = settings();
@@ -143,7 +143,7 @@ TEST_P(EveryInput, HasWater) {
   EXPECT_GT(above, kWidth * kHeight / 200);
 }
 
-TEST_P(EveryInput, HasFogAndHaze) {
+TEST_P(EveryInput, SupportsFogAndHaze) {
   const Scene scene = GetParam().make();
   const PictureLayers clear = render_layers(scene, camera(), settings());
   for (const FogKind kind : {FogKind::none, FogKind::distance, FogKind::height}) {
@@ -161,7 +161,7 @@ TEST_P(EveryInput, HasFogAndHaze) {
   }
 }
 
-TEST_P(EveryInput, HasPaintOnTop) {
+TEST_P(EveryInput, SupportsGroundPaintOnTop) {
   const Scene scene = GetParam().make();
   const Image plain = render_picture(scene, camera(), settings()).image;
   std::vector<std::function<void(PictureSettings&)>> changes = {
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryInput,
                          [](const auto& kind) { return kind.param.name; });
 
 // A plinth is seen, and that is all.
-TEST(PlinthInScene, ThrowsNoShadowAndIsNoGround) {
+TEST(PlinthInScene, CastsNoShadowAndIsNotGround) {
   const Scene bare = heights(), scene = with_plinth(bare);
   EXPECT_LT(scene.box().low.z, bare.box().low.z);
   EXPECT_EQ(scene.height(16, 16), bare.height(16, 16));

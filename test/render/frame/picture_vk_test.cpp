@@ -213,25 +213,25 @@ class PicturesOnDevice : public OnDevice {
 };
 
 // The device alone makes shaded pictures as a whole: terrain_frame_vk_test.cpp.
-TEST_F(PicturesOnDevice, ShadedWithHardShadows) { expect_the_cpus(scenes(false, true), settings(Look::shaded), false); }
+TEST_F(PicturesOnDevice, MatchWithHardShadows) { expect_the_cpus(scenes(false, true), settings(Look::shaded), false); }
 
-TEST_F(PicturesOnDevice, ShadedWithSoftSunAndOcclusion) {
+TEST_F(PicturesOnDevice, MatchWithSoftSunAndOcclusion) {
   PictureSettings soft = settings(Look::shaded);
   soft.samples = 3;
   soft.sun.size_deg = 5;
   expect_the_cpus(scenes(false, true), soft, false);
 }
 
-TEST_F(PicturesOnDevice, ShadedSolidGround) {
+TEST_F(PicturesOnDevice, MatchOnSolidGround) {
   PictureSettings bare = settings(Look::shaded);
   bare.aa = 2;
   expect_the_cpus(scenes(true, false), bare, false);
 }
 
-TEST_F(PicturesOnDevice, Height) { expect_the_cpus(scenes(false, true), settings(Look::height)); }
+TEST_F(PicturesOnDevice, MatchInHeightLook) { expect_the_cpus(scenes(false, true), settings(Look::height)); }
 
 // The verdict is by the place of the hit, and the tolerance is far more than delta.
-TEST_F(PicturesOnDevice, Error) {
+TEST_F(PicturesOnDevice, MatchInErrorLook) {
   const Scenes of = scenes(false, true);
   expect_the_cpus(of, settings(Look::error));
   const ErrorCounts counts = render_picture(of.device, of.camera, settings(Look::error)).errors.value();
@@ -241,7 +241,7 @@ TEST_F(PicturesOnDevice, Error) {
 }
 
 // A march that takes samples decides as on the CPU, but for what is within delta: so it looks at as much.
-TEST_F(PicturesOnDevice, StepsAreTheCpus) {
+TEST_F(PicturesOnDevice, StepsMatchTheCpu) {
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     SCOPED_TRACE(march.name);
@@ -256,7 +256,7 @@ TEST_F(PicturesOnDevice, StepsAreTheCpus) {
   }
 }
 
-TEST_F(PicturesOnDevice, Layers) {
+TEST_F(PicturesOnDevice, LayersMatchTheCpu) {
   const Scenes of = scenes(false, true);
   std::shared_ptr<Judged> judge;
   const PictureLayers cpu = render_layers(of.cpu, of.camera, settings(Look::shaded));
@@ -282,7 +282,7 @@ TEST_F(PicturesOnDevice, Layers) {
 }
 
 // Marches that take samples may stop elsewhere, each ray by its own rule.
-TEST_F(PicturesOnDevice, EveryMarchMakesThem) {
+TEST_F(PicturesOnDevice, EveryMarchRenders) {
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu || march.guarantee == Guarantee::exact) continue;
     const Scenes of = scenes(false, true, march.name);

@@ -361,7 +361,7 @@ Scene scene_of(const Row& row, const HeightField& field) {
 
 class TerrainFrames : public OnDevice, public testing::WithParamInterface<Row> {};
 
-TEST_P(TerrainFrames, AreTheCpusPictures) {
+TEST_P(TerrainFrames, MatchTheCpu) {
   const Row& row = GetParam();
   const HeightField field = hills(row.field, row.holes);
   const PictureSettings settings = settings_of(row);
@@ -417,7 +417,7 @@ INSTANTIATE_TEST_SUITE_P(All, TerrainFrames, testing::ValuesIn(tried_rows()),
 class TerrainFrame : public OnDevice {};
 
 // 65,536 steps are more than a run takes.
-TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
+TEST_F(TerrainFrame, ResumesWhereItWasInterrupted) {
   Row row = rows()[1];
   for (const bool stepped : {true, false}) {
     // Under sanitizers the shorter one of the two.
@@ -446,7 +446,7 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
 }
 
 // Wherever it ends, nothing of it is left in the next picture, which is larger and gets other memory.
-TEST_F(TerrainFrame, MayBeInterrupted) {
+TEST_F(TerrainFrame, CanBeInterrupted) {
   Row row = rows()[6];
   const HeightField field = hills(row.field);
   PictureSettings settings = settings_of(row);
@@ -481,7 +481,7 @@ TEST_F(TerrainFrame, MayBeInterrupted) {
 }
 
 // More pixels than there are on the device at once.
-TEST_F(TerrainFrame, IsMadeInParts) {
+TEST_F(TerrainFrame, RendersInParts) {
   if (test::cases(1, 1, 0) == 0) GTEST_SKIP() << "takes a minute under sanitizers";
   constexpr int kWide = 700, kHigh = 460, kEvery = 101;
   const HeightField field = hills({}, Holes::none);
@@ -511,7 +511,7 @@ TEST_F(TerrainFrame, IsMadeInParts) {
   EXPECT_GT(ground, 1000);
 }
 
-TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
+TEST_F(TerrainFrame, ReportsWhatItsRaysHit) {
   const Row row = rows()[6];
   const HeightField field = hills(row.field);
   const PictureSettings settings = settings_of(row);
@@ -553,7 +553,7 @@ TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
 }
 
 // Grey levels are heights to within half a level; rays that just hit or miss a crest may differ.
-TEST_F(TerrainFrame, HasTheHeightsOfSteps) {
+TEST_F(TerrainFrame, MatchesTheHeightsOfSteps) {
   Row row = rows()[2];
   ASSERT_EQ(row.name, "by_view");
   const HeightField field = hills(row.field);
@@ -573,7 +573,7 @@ TEST_F(TerrainFrame, HasTheHeightsOfSteps) {
   EXPECT_GT(ground, kWidth * kHeight / 3);
 }
 
-TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
+TEST_F(TerrainFrame, LeavesUnsupportedFramesToRounds) {
   const Row row = rows()[6];
   const HeightField endless = hills(row.field), ends = hills({});
   const auto on_device = [&](const HeightField& field, const char* march) {
@@ -589,7 +589,7 @@ TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
   EXPECT_THROW(render_picture(on_device(ends, "fixed-step"), far_away, settings), Error);
 }
 
-TEST(TerrainFrameLayout, IsThatOfTheShaders) {
+TEST(TerrainFrameLayout, MatchesTheShaders) {
   using glsl::FramePush, glsl::FrameSight, glsl::FrameWave, glsl::FramePatch, glsl::FrameRampPiece;
   EXPECT_TRUE(has_struct(kRaysShader,
                          {offsetof(FramePush, settings), offsetof(FramePush, ground), offsetof(FramePush, seens),

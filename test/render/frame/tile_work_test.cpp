@@ -79,7 +79,7 @@ Scene echo_scene(const std::shared_ptr<Echo>& echo) {
   return test::terrain(HeightField::own(std::vector<float>(4), 2, 2)).answered_by(echo);
 }
 
-TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
+TEST(TileWork, TilesShareDeviceBatches) {
   const auto echo = std::make_shared<Echo>();
   const PixelTiles tiles(700, 500, 2);
   std::atomic<std::int64_t> right{0};
@@ -99,7 +99,7 @@ TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
-TEST(TileWork, StopsWhenItIsAskedTo) {
+TEST(TileWork, StopsOnRequest) {
   const Scene on_cpu = test::terrain(HeightField::own(std::vector<float>(4), 2, 2), "max-mip");
   const auto echo = std::make_shared<Echo>();
   for (const Scene& scene : {on_cpu, echo_scene(echo)}) {

@@ -53,7 +53,7 @@ bool is_floor(const PictureLayers& of, std::size_t i) {
   return std::isfinite(of.depth[i]) && of.position[i].z < 1.001f && of.normal[i].z > 0.5f;
 }
 
-TEST(VoxelLight, IsEmittedInUnitsOfTheColour) {
+TEST(VoxelLight, EmissionScalesTheColour) {
   const PictureLayers plain = layers(room({})), glowing = layers(room({}, {.emission = 2}));
   int walls = 0;
   for (std::size_t i = 0; i < plain.colour.size(); ++i) {
@@ -67,7 +67,7 @@ TEST(VoxelLight, IsEmittedInUnitsOfTheColour) {
   EXPECT_GT(walls, 100);
 }
 
-TEST(VoxelLight, IsMirroredWithTheTintOfTheSurface) {
+TEST(VoxelLight, ReflectionsTakeTheSurfaceTint) {
   const Scene metal = room({.mirror = 0.75f});
   const PictureLayers plain = layers(room({})), mirrored = layers(metal);
   int of_wall = 0, of_sky = 0;
@@ -98,7 +98,7 @@ TEST(VoxelLight, IsMirroredWithTheTintOfTheSurface) {
   EXPECT_GT(of_sky, 20);
 }
 
-TEST(VoxelLight, IsLeftOutOfUnlitPictures) {
+TEST(VoxelLight, IsOmittedFromUnlitPictures) {
   const PictureLayers plain = layers(room({}), true), metal = layers(room({.mirror = 1}, {.emission = 3}), true);
   EXPECT_EQ(plain.colour, metal.colour);
 }

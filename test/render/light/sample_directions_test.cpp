@@ -21,7 +21,7 @@ double mean_over_square(F&& f) {
   return sum / (double{kSide} * kSide);
 }
 
-TEST(SampleDirections, TheDiscIsUniform) {
+TEST(SampleDirections, DiscIsUniform) {
   for (const double radius : {0.25, 0.5, 0.9}) {
     const double share = mean_over_square([&](dvec2 s) { return length(on_disc(s)) < radius ? 1.0 : 0.0; });
     EXPECT_NEAR(share, radius * radius, 1.0 / kSide) << radius;
@@ -38,7 +38,7 @@ TEST(SampleDirections, TheDiscIsUniform) {
   EXPECT_EQ(on_disc({0.5, 0.5}), dvec2(0, 0));
 }
 
-TEST(SampleDirections, AFrameIsOrthonormalAndRightHanded) {
+TEST(SampleDirections, FrameIsOrthonormalAndRightHanded) {
   for (const dvec3& towards : {dvec3(0, 0, 1), dvec3(0, 0, -1), dvec3(1, 0, 0), dvec3(0, -1, 0), dvec3(1, 2, 3),
                                dvec3(1e-9, -1e-8, -1), dvec3(-3, 1, -1e-12)}) {
     const Frame frame(normalize(towards));
@@ -53,7 +53,7 @@ TEST(SampleDirections, AFrameIsOrthonormalAndRightHanded) {
   }
 }
 
-TEST(SampleDirections, TheHemisphereIsWeightedWithTheCosine) {
+TEST(SampleDirections, HemisphereIsCosineWeighted) {
   // Below the angle z > c from the horizon there is the share 1 - c^2.
   for (const double c : {0.1, 0.5, 0.9}) {
     const double share = mean_over_square([&](dvec2 s) { return cosine_weighted(s).z > c ? 1.0 : 0.0; });
@@ -65,7 +65,7 @@ TEST(SampleDirections, TheHemisphereIsWeightedWithTheCosine) {
   });
 }
 
-TEST(SampleDirections, TheCapIsUniformInSolidAngle) {
+TEST(SampleDirections, CapIsUniformInSolidAngle) {
   for (const double radius : {0.00465, 0.3, std::numbers::pi / 2}) {
     for (const double part : {0.3, 0.7}) {
       const double share = mean_over_square([&](dvec2 s) {

@@ -66,7 +66,7 @@ double mean_of_pixels(int pixels, std::uint32_t count, F&& f) {
 // Four standard errors of the mean of n shares whose values are 0 or 1: what stratification gains is not counted on.
 double four_sigma(int pixels, int count) { return 4 * 0.5 / std::sqrt(double{1} * pixels * count); }
 
-TEST(SkyOcclusion, OfAPlaneIsNothingAtAll) {
+TEST(SkyOcclusion, IsZeroOnAPlane) {
   for (const auto& [east, south] : {std::pair(0.0, 0.0), {0.5, -0.25}, {-3.0, 2.0}, {40.0, 0.0}}) {
     const Scene scene = scene_of(33, 33, [&, e = east, s = south](int c, int r) { return e * c + s * r; });
     for (const double x : {0.0, 3.3, 16.0, 31.99}) {
@@ -81,7 +81,7 @@ TEST(SkyOcclusion, OfAPlaneIsNothingAtAll) {
   }
 }
 
-TEST(SkyOcclusion, AtTheFootOfAWallIsThatOfItsHorizon) {
+TEST(SkyOcclusion, MatchesTheHorizonAtTheFootOfAWall) {
   // A wall along the grid's north, its crest at x = 33, seen from level ground at the distance d. Of the sky over level
   // ground, cosine-weighted, a horizon at the angle a on one side hides (1 - cos a) / 2: half of it for a = 90 degrees.
   constexpr int kLength = 4000, kPixels = 64, kCount = 256;
@@ -110,7 +110,7 @@ TEST(SkyOcclusion, EndsAtTheGivenDistance) {
   EXPECT_GT(within(kInfinity), within(20) + 0.05);
 }
 
-TEST(SkyOcclusion, ARoofHidesNothingFromItsRidge) {
+TEST(SkyOcclusion, IsZeroOnARidge) {
   // The shading normal at the ridge is upright, the slope's is not: the sky is that over the slope.
   const Scene scene = scene_of(33, 33, [](int col, int) { return -2 * std::abs(col - 16); });
   const LightPoint point = point_at(scene, 16.125, 16.5);
@@ -135,7 +135,7 @@ class Cliff : public testing::Test {
   const Scene scene_ = scene_of(200, 17, [h = height_](int col, int) { return col <= kEdge ? h : 0; });
 };
 
-TEST_F(Cliff, ThePenumbraIsThatOfTheDisc) {
+TEST_F(Cliff, PenumbraMatchesTheSunDisc) {
   const double radius = glm::radians(0.533 / 2);
   // The edge stands at the angle atan(height / distance). A disc that it covers up to the share s of its radius from
   // the middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: flat, which is off by radius^2 for a cap.
@@ -152,13 +152,13 @@ TEST_F(Cliff, ThePenumbraIsThatOfTheDisc) {
       << "the mean over a stratified disc is nearly its middle's";
 }
 
-TEST_F(Cliff, APointOfASunHasAHardShadow) {
+TEST_F(Cliff, PointSunCastsAHardShadow) {
   const double end = height_ / std::tan(altitude_);
   EXPECT_EQ(sun_at(end * 0.999, 0), 0.0);
   EXPECT_DOUBLE_EQ(sun_at(end * 1.001, 0), std::sin(altitude_));
 }
 
-TEST_F(Cliff, WhatTurnsAwayFromTheSunGetsNone) {
+TEST_F(Cliff, SurfacesFacingAwayGetNoSun) {
   const LightPoint flank = point_at(scene_, kEdge + 0.5, 8);
   EXPECT_EQ(sun_cosine(scene_, flank, to_sun_, 0.005, {SamplePattern(0, 8).pixel(0, 0, 0), 0, 8}), 0.0);
 }

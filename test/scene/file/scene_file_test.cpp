@@ -52,7 +52,7 @@ const std::string kBall = R"({"shape": {"sphere": {"radius": 1}}})";
 
 std::string with_object(const std::string& object) { return R"({"objects": [)" + object + "]}"; }
 
-TEST_F(SceneFiles, AreReadWhole) {
+TEST_F(SceneFiles, ReadEverySection) {
   const SceneFile file = read(R"({
     "about": "all of it",
     "picture": {"size": [320, 200], "aa": 3, "samples": 4, "ao_distance": 10, "seed": 7},
@@ -102,7 +102,7 @@ TEST_F(SceneFiles, AreReadWhole) {
   }
 }
 
-TEST_F(SceneFiles, HaveWaterAndFog) {
+TEST_F(SceneFiles, SupportWaterAndFog) {
   const SceneFile dry = read(with_object(kBall));
   EXPECT_FALSE(dry.water || dry.fog);
   const SceneFile file = read(R"({"water": {"level": -2.5, "colour": "#00ff00", "turbidity": 0.5, "waves": 0.1,
@@ -122,7 +122,7 @@ TEST_F(SceneFiles, HaveWaterAndFog) {
 }
 
 // Voxels by name of their looks: the corner of a rounded cube is not there, what is left has a smooth normal.
-TEST_F(SceneFiles, SayHowVoxelsLook) {
+TEST_F(SceneFiles, SupportVoxelLooks) {
   Binvox cube;
   cube.size = ivec3(2);
   cube.clear();
@@ -196,7 +196,7 @@ TEST_F(SceneFiles, CombineVoxels) {
             std::string::npos);
 }
 
-TEST_F(SceneFiles, TakeOtherScenesAsOneObject) {
+TEST_F(SceneFiles, IncludeOtherScenesAsOneObject) {
   write("pair.json", R"({"materials": {"red": {"colour": "#ff0000"}}, "objects": [
     {"shape": {"sphere": {"radius": 1}}, "material": "red"}, {"shape": {"sphere": {"radius": 1}}, "at": [4, 0, 0]}]})");
   const SceneFile file = read(R"({"materials": {"blue": {"colour": "#0000ff"}}, "objects": [
@@ -238,7 +238,7 @@ TEST_F(SceneFiles, PlaceMeshes) {
 }
 #endif
 
-TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
+TEST_F(SceneFiles, ErrorNamesPlaceAndProblem) {
   write("itself.json", R"({"objects": [{"scene": "scene.json"}]})");
   struct Case {
     std::string text, place, what;

@@ -77,7 +77,7 @@ std::string refusal(const std::string& text, const ShapeNames& names = kNames) {
   return test::refusal([&] { distance_field_from_json(Json::parse(text), "/objects/2/shape", names); });
 }
 
-TEST(ShapeJson, TellsWhereItIsWrong) {
+TEST(ShapeJson, ErrorNamesThePlace) {
   const std::string at = "/objects/2/shape";
   EXPECT_EQ(refusal(R"({"sphere": {"radius": -1}})"), at + "/sphere/radius: expected > 0, got -1");
   EXPECT_EQ(refusal(R"({"sphere": {"radius": 1e-9}})"), at + "/sphere/radius: expected at least 2^-20, got 1e-09");
@@ -111,7 +111,7 @@ TEST(ShapeJson, TellsWhereItIsWrong) {
   EXPECT_EQ(refusal(R"({"cube": {}})").substr(0, 50), at + "/cube: unknown kind of shape (avai");
 }
 
-TEST(ShapeJson, RefusesDeepNesting) {
+TEST(ShapeJson, RejectsDeepNesting) {
   std::string deep = R"({"sphere": {"radius": 1}})";
   for (int i = 0; i < 60; ++i) deep = R"({"scale": 1, "of": )" + deep + "}";
   EXPECT_EQ(refusal(deep), "");
