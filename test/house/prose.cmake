@@ -4,7 +4,8 @@
 # itself on planted text. To cover more text, add one line to one of these lists.
 cmake_minimum_required(VERSION 3.25)
 
-set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md)
+set(documents README.md CHANGELOG.md CONTRIBUTING.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md doc/dev/decisions/*.md .github/*.md
+    .github/ISSUE_TEMPLATE/*.md)
 # folders whose *.h are checked, subfolders included, for example scarp/vk
 set(header_folders scarp/accel scarp/analysis scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/source scarp/vk)
 # single headers, besides those of the folders and the common ones (doc/api/common_headers.txt)

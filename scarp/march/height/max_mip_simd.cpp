@@ -558,7 +558,8 @@ class VectorWalk {
     }
   }
 
-  // From a search over the rays of scarp-bench (decisions.md): number of waiting lanes that triggers their processing.
+  // From a search over the rays of scarp-bench (doc/dev/decisions/march.md): number of waiting lanes that triggers
+  // their processing.
   static constexpr std::size_t kQuorum = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
   static constexpr int kPackets = any ? 3 : 2;   // vectors in turn: while one waits for memory, others compute

@@ -24,7 +24,7 @@ struct Wanted {
   const HitFilter* accept = nullptr;  ///< as_wanted: null: the first hit is accepted
 };
 
-// Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
+// Look-ahead parameters of any hit, from a search over the rays of scarp-bench (doc/dev/decisions/march.md).
 constexpr std::uint32_t kPatience = 3;  // traversal steps before the first look-ahead: half of the rays need no more
 constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
 constexpr int kProbes = 24;
