@@ -59,7 +59,7 @@ bool write_rows(const Png& to, std::FILE* file, const RgbView& picture, Failure&
   return true;
 }
 
-// Returns what went wrong; empty: nothing.
+// Returns the error; empty if there is none.
 std::string write_file(const std::string& path, const RgbView& picture) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
   if (!file) return std::strerror(errno);

@@ -298,7 +298,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   Stored stored{type, is_signed_byte(band), {}, nullptr};
   // A mask that only repeats the nodata value adds nothing, and the caller's nodata value overrides it.
   if (has_own_mask(*plan.band)) stored.mask = plan.band->GetMaskBand();
-  // To learn it, a mask that is reduced would be read twice.
+  // Determining this would read a reduced mask twice.
   if (stored.mask && !plan.decimates && !hides_some(*stored.mask, window, session)) stored.mask = nullptr;
   Findings found;
   found.beyond_are_holes = !nodata;

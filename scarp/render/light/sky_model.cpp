@@ -18,7 +18,7 @@ constexpr double kLowestFullSun = 0.5;
 // view, so that a picture of the sun is exposed for the sky at its border.
 constexpr double kBesideSun = 0.26;
 
-// Directions round the horizon of which means are taken.
+// Number of directions around the horizon for means.
 constexpr int kAround = 48;
 
 // Linear in the turbidity.
