@@ -18,7 +18,7 @@ namespace {
 constexpr int kMostFrames = 1000000;
 constexpr int kTurntableFrames = 120;
 
-// The #s are in the name, not in its folders.
+// The #s must be in the name, not in its folders.
 struct Place {
   std::size_t first, count;
 };

@@ -22,8 +22,8 @@
 namespace scarp::cli {
 namespace {
 
-// Ways to a field of which twice are as far as its corners behind: they are farther off than the field's longer side
-// and the way to it by less than half of that side, and who sees all of a field is farther away.
+// Factor of the distance to a field that covers its far corners: these are farther away than the field's longer side
+// plus the distance to it by less than half of that side, and a camera that sees all of a field is farther away.
 constexpr double kFarthestCorner = 2;
 
 constexpr int kLowresWidth = 320, kLowresHeight = 240;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render`: an elevation model, a voxel model or a scene in, a picture out.
+// `scarp render`: renders an elevation model, a voxel model or a scene to a picture.
 #include <fmt/format.h>
 
 #include <memory>
@@ -19,7 +19,7 @@
 namespace scarp::cli {
 namespace {
 
-// What depends on the output.
+// Settings that depend on the output.
 void settle_output(RenderOptions& options) {
   PictureSettings& picture = options.picture;
   settle_frames(options.frames, options.output);

@@ -18,15 +18,15 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kFaintest = 64;   // rays end where haze hides all but 1 / 64 of a colour
+constexpr double kFaintest = 64;   // rays end where haze hides all except 1 / 64 of a colour
 constexpr double kLongReach = 64;  // extents, where there is less haze
 
-// Samples, or pixels of an overlay, for a picture of everything: 4 x 4 to a pixel. The near ground of a slanted view
-// has pixels about four times as close as the mean, and the others have some to spare.
+// Samples, or pixels of an overlay, for a picture of everything: 4 x 4 per pixel. In the near ground of a slanted view,
+// pixels are about four times as dense as on average.
 constexpr std::int64_t kSamplesPerPixel = 16;
 
-// The samples that a picture shows. A small picture has as many as one of 1000 x 1000 pixels, which read as fast; views
-// of a part have as many as rasters that are read completely.
+// Number of samples for a picture. A small picture uses as many as one of 1000 x 1000 pixels, which read equally fast;
+// views of a part use as many as rasters that are read completely.
 std::int64_t samples_shown(const RenderOptions& options, const ViewSettings& view) {
   constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const PictureSettings& picture = options.picture;
@@ -74,7 +74,7 @@ void require_ground(const HeightField& field, const std::string& path) {
                     path));
 }
 
-// Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps. The last one is the function's.
+// Meadows, dry grass and snow by height, rock on steep ground; or one of the ramps. The last one is the function's.
 std::vector<Material> materials_of(const ReliefRange& range, const std::string& ramp) {
   if (!ramp.empty()) return {HeightRamp{ramp, range.low, range.high}};
   const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
@@ -103,12 +103,12 @@ void paint_function(const ReliefRange& heights, RenderOptions& options) {
   PictureSettings& picture = options.picture;
   picture.ground_box =
       WorldBox{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
-  // A ramp from a file and natural ground are painted by the renderer.
+  // The renderer paints ramps from files and natural ground.
   if (!picture.ground.natural && !picture.ramp_stops)
     picture.materials = materials_of(picture.ramp_range.value_or(heights), picture.ramp);
 }
 
-// The input's own settings count where no option was given.
+// The input's own settings apply where no option was given.
 void take_defaults(InputKind kind, const RenderInput& input, RenderOptions& options) {
   PictureSettings& picture = options.picture;
   switch (kind) {
@@ -230,11 +230,11 @@ RenderInput with_defaults(InputKind kind, OpenedInput opened, RenderOptions& opt
 
 bool RenderOptions::is_given(std::string_view option) const { return cli::is_given(given, option); }
 
-// Looks that measure do.
+// Measuring looks do.
 bool reads_all_samples(const RenderOptions& options) {
   const Look look = options.picture.look;
   const bool measures = look == Look::steps || look == Look::error || look == Look::level;
-  // The shared border would be averaged with what lies beside it.
+  // The shared border would be averaged with its neighbours.
   return options.full || measures || options.field.wrap == Wrap::shared_border;
 }
 

@@ -16,34 +16,35 @@
 
 namespace scarp::cli {
 
-/// A scene, and what pictures of this kind of input do by default. What follows from the input alone has been put into
-/// the options' picture settings.
+/// A scene, and the default picture settings of this kind of input. Settings that follow from the input alone have been
+/// stored in the options' picture settings.
 struct RenderInput {
   Scene scene;
-  std::vector<std::string> notes{};             ///< one line each, for people
-  std::vector<std::string> files{};             ///< that were read, beside those that were typed
-  PlaceRaster raster{};                         ///< by which positions are converted; terrain only
+  std::vector<std::string> notes{};             ///< one line each, for users
+  std::vector<std::string> files{};             ///< files read in addition to those that were typed
+  PlaceRaster raster{};                         ///< raster that defines positions; terrain only
   std::shared_ptr<const SceneFile> document{};  ///< scene files only
-  std::string march{};                          ///< what times are printed with; empty: nothing
+  std::string march{};                          ///< label of the printed times; empty: none
   ViewSettings view{};
-  bool viewed = false;  ///< the input itself says from where it is seen, by azimuth, elevation or distance
+  bool viewed = false;  ///< the input itself sets azimuth, elevation or distance of its view
   bool coarse_voxels = false;
-  double across = 0;      ///< metres that a picture is about: visibility, reach
+  double across = 0;      ///< extent of the picture in metres: for visibility and reach
   ReliefRange heights{};  ///< of the ground, exaggerated
   double exaggeration = 1;
-  std::optional<SolidRange> numbers{};   ///< range that a volume's colours show
+  std::optional<SolidRange> numbers{};   ///< range of a volume's colours
   std::optional<dvec3> eye{}, target{};  ///< of the input's own camera
-  /// Frames a scene that contains this one; FieldView::raised is set where the eye was lifted out of the ground.
+  /// Frames a scene that contains this one; sets FieldView::raised if the eye was raised out of the ground.
   std::function<FieldView(const Scene&, const ViewSettings&)> framed{};
 };
 
-/// Reads the inputs and builds what rays need. `view` is what was typed. Throws Error naming the file.
+/// Reads the inputs and builds their accelerators. `view` holds the typed values. Throws Error naming the file.
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view);
 
 /// Returns whether rasters are read completely, however large they are; otherwise large ones are averaged.
 bool reads_all_samples(const RenderOptions& options);
 
-/// Puts into other options of the picture what follows from the input, which was opened with the options `before`.
+/// Applies the settings that follow from the input, which was opened with the options `before`, to other picture
+/// options.
 void settle_again(InputKind kind, const RenderInput& input, const RenderOptions& before, RenderOptions& options);
 
 }  // namespace scarp::cli

@@ -99,7 +99,7 @@ void add_light_options(Command& command, RenderOptions& o) {
     command.add(std::move(to), std::move(option));
   };
   PictureSettings& picture = o.picture;
-  // The number of samples may stand in the scene's file.
+  // The number of samples may be set in the scene file.
   const Rule sampled = needs(
       "--samples N", [&picture] { return picture.samples > 0; }, kEveryInput & ~kScene);
   add(&o.sun, {.names = "--sun",

@@ -19,7 +19,7 @@ namespace scarp::cli {
 constexpr double kComancheFov = 60;       // degrees, without --fov
 constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
 
-/// Texts stay texts until there is a message for them.
+/// Texts are parsed later, where messages can name the option.
 struct RenderOptions : InputOptions {
   std::string output;
   PictureSettings picture;

@@ -31,7 +31,7 @@ class Render {
   Render(InputKind kind, RenderOptions options, const ViewSettings& view) : stage_(kind, std::move(options), view) {}
 
   void run() {
-    // Reserved first: an unwritable place is found before the work and not after it.
+    // Reserved first, so that an unwritable path is reported before the work.
     ReplaceFile file(options().output);
     stage_.open();
     if (options().frames.several()) return make_all();
@@ -58,7 +58,7 @@ class Render {
     const std::vector<Camera> cameras = frame_cameras(
         frames, stage_.input().view, stage_.picture().width, stage_.picture().height,
         [&](const ViewSettings& turned) { return stage_.framed(turned); }, stage_.path_places());
-    // Without --overwrite nothing is written over.
+    // Without --overwrite nothing is overwritten.
     for (int i = 0; frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options().output, i), options().typed);
     make_frames(frames, options().output, cameras, [&](Camera camera, const std::string& name) {
@@ -74,7 +74,7 @@ class Render {
     blank_.tell();
   }
 
-  // Renders and writes one picture. What was found is returned; layers have no findings.
+  // Renders and writes one picture, and returns its findings; layers have none.
   Picture make(ReplaceFile& file, const std::string& name, const Camera& camera, const Progress& progress) {
     look_through(stage_.there(), camera,
                  stage_.picture().look == Look::shaded || options().format->layers ? stage_.picture().aa : 1);
@@ -94,7 +94,7 @@ class Render {
                                 stage_.input().raster.rows};
     std::optional<Figure> figure = figure_of(options().figure, stage_.picture(), subject);
     Picture picture = render_picture(stage_.scene(), camera, stage_.picture(), progress);
-    // Green throughout is what the look of errors should be.
+    // A picture of the look `error` without errors has one colour.
     look_if_blank(name, camera, stage_.picture().look != Look::error && has_one_colour(picture.image));
     add_legend(options().figure, stage_.picture(), subject, picture, figure);
     std::optional<MapPlace> place;
@@ -126,7 +126,7 @@ class Render {
     }
   }
 
-  // Contour lines of which nothing is seen.
+  // Invisible contour lines.
   void tell_of_contours(const Camera& camera) const {
     const double interval = stage_.picture().ground.contours;
     if (!(interval > 0)) return;
@@ -143,7 +143,7 @@ class Render {
     }
   }
 
-  // From under the ground one sees its other side, and through it.
+  // From below the ground its underside is invisible.
   void tell_if_buried(const Camera& camera, const std::string& whose) const {
     const auto ground = stage_.scene().height(camera.eye().x, camera.eye().y);
     if (!ground || camera.eye().z >= *ground) return;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// From the options of `scarp render` to files: scene, cameras, pictures.
+// Runs `scarp render`: from its options to scene, cameras and files.
 #pragma once
 
 #include "app/cli/render_options.h"
 
 namespace scarp::cli {
 
-/// `view` is what was typed. The options are consistent with each other. Throws Error.
+/// `view` holds the typed values. The options must be consistent. Throws Error.
 void render_input(InputKind kind, RenderOptions options, const ViewSettings& view);
 
 }  // namespace scarp::cli

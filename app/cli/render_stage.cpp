@@ -16,7 +16,7 @@
 namespace scarp::cli {
 namespace {
 
-// Seconds since it was made or last asked.
+// Stopwatch: seconds since construction or the last call.
 class Watch {
  public:
   double lap() {
@@ -78,7 +78,7 @@ WorldBox RenderStage::scene_box() const {
 
 void RenderStage::finish(Camera& camera, const RenderOptions& options) {
   camera.set_reach(reach_of(options.look_options, input_.across, scene_, scene_box(), camera));
-  // The judge has to stop where the march does.
+  // The reference march must stop where the march does.
   if (kind_ == InputKind::function && options.picture.look == Look::error)
     camera.set_reach(std::min(camera.reach(), options.march_settings.function.reach));
   if (input_.coarse_voxels) put_on_device(input_.scene.coarser(detail_of(camera, options.picture.aa)));
@@ -104,7 +104,7 @@ bool RenderStage::restyles(const Declared& option) const {
 
 bool RenderStage::may_read_otherwise(const RenderOptions& options) const {
   if (kind_ != InputKind::terrain || reads_all_samples(options) == reads_all_samples(options_)) return false;
-  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least.
+  // Averaging, with blocks of at least 2 x 2, leaves at least a quarter of the allowed samples.
   const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
   return 4 * samples >= Decimation{}.above;
 }
@@ -140,7 +140,7 @@ dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
   return eye + dvec3(0, 0, *options_.eye_above * exaggeration());
 }
 
-// What --top shows.
+// The area that --top shows.
 WorldBox RenderStage::map_box() const {
   WorldBox box = picture_box(scene_);
   if (options_.area.empty()) return box;

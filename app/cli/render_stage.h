@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The scene of `scarp render` and of the window, ready for rays: inputs read, put on the device, and the cameras that
-// the options ask for.
+// The scene of `scarp render` and of the window, ready for rays: reads the inputs, copies them to the device, and
+// creates the cameras of the options.
 #pragma once
 
 #include <optional>
@@ -18,13 +18,13 @@ namespace scarp::cli {
 
 class RenderStage {
  public:
-  /// `view` is what was typed. The options are consistent with each other.
+  /// `view` holds the typed values. The options must be consistent.
   RenderStage(InputKind kind, RenderOptions options, const ViewSettings& view)
       : options_(std::move(options)), kind_(kind), typed_view_(view) {}
   RenderStage(const RenderStage&) = delete;
   RenderStage& operator=(const RenderStage&) = delete;
 
-  /// Reads the inputs and builds what rays need. Throws Error naming the file.
+  /// Reads the inputs and builds their accelerators. Throws Error naming the file.
   void open();
 
   const RenderOptions& options() const { return options_; }
@@ -40,11 +40,11 @@ class RenderStage {
   const BlankFacts& facts() const { return facts_; }
   double read_seconds() const { return read_s_; }
   double build_seconds() const { return build_s_; }
-  /// Metres by which eyes were lifted out of the ground, the most so far.
+  /// Maximum height in metres by which eyes were raised out of the ground so far.
   double raised() const { return raised_; }
-  /// ", on NAME", and what it drew; empty on the CPU.
+  /// ", on NAME", and the number of drawn rays; empty on the CPU.
   std::string on_device() const;
-  /// Where nothing has an end, a point: the middle of what the picture is about.
+  /// For unbounded scenes a point: the centre of the picture's extent.
   WorldBox scene_box() const;
   /// The factor between heights of the file and z.
   double exaggeration() const;
@@ -54,16 +54,17 @@ class RenderStage {
   /// A camera that frames the scene.
   Camera framed(const ViewSettings& view);
   PathPlaces path_places() const;
-  /// Sets what depends on where a picture is seen from: reach, and coarser voxels.
+  /// Sets the properties that depend on the camera: reach, and coarser voxels.
   void finish(Camera& camera) { finish(camera, options_); }
   /// The same for options of restyled().
   void finish(Camera& camera, const RenderOptions& options);
 
-  /// Whether restyled() takes another value of the option over, without the inputs being read again.
+  /// Whether restyled() can apply another value of the option without reading the inputs again.
   bool restyles(const Declared& option) const;
   /// Whether a raster may have other samples for other options, settled, because it is large (reads_all_samples()).
   bool may_read_otherwise(const RenderOptions& options) const;
-  /// Completes other options, settled, by the input. They differ from options() by those that restyles() names.
+  /// Completes other settled options from the input. They differ from options() only in options for which restyles() is
+  /// true.
   RenderOptions restyled(RenderOptions options) const;
 
  private:

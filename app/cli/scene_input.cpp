@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 bool is_scene_path(const std::string& path) { return extension_of(path) == ".json"; }
 
-// For options that need something that the command line or the file may have.
+// For options that need something from the command line or the file.
 void require(bool there, const std::vector<std::string>& given, std::initializer_list<std::string_view> names,
              std::string_view what) {
   if (there) return;
@@ -28,7 +28,7 @@ void require(bool there, const std::vector<std::string>& given, std::initializer
   }
 }
 
-// Sets what the file has, unless the option was given.
+// Applies the file's settings, unless the option was given.
 class Taking {
  public:
   explicit Taking(const std::vector<std::string>& given) : given_(given) {}
@@ -56,7 +56,7 @@ PictureSettings picture_of(const SceneFile& file, PictureSettings settings, cons
   settings.materials = file.materials;
   if (std::find(given.begin(), given.end(), "--haze") == given.end())
     settings.haze_distance = file.haze_distance.value_or(kUnlimited);
-  // Few large pixels have a size of their own.
+  // Large pixels have their own picture size.
   if (settings.look != Look::comanche) {
     take(file.picture.width, "--size", settings.width);
     take(file.picture.height, "--size", settings.height);
@@ -124,7 +124,7 @@ ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector
 
 namespace {
 
-// What SceneField::elements() counts.
+// The elements that SceneField::elements() counts.
 std::string_view elements_of(std::string_view kind) {
   return kind == "voxels" ? "voxels" : kind == "mesh" ? "triangles" : "samples";
 }

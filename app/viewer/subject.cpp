@@ -33,8 +33,7 @@ std::vector<std::string> marches_for(cli::InputKind kind) {
   return names;
 }
 
-// Rays through pixels that are spread evenly over the picture: the sequence R2 of additive recurrence, by the plastic
-// number.
+// Rays through pixels spread evenly over the picture: the additive recurrence R2, based on the plastic number.
 std::vector<Ray> sampled_rays(const Camera& camera) {
   constexpr double kStepX = 0.75487766624669276, kStepY = 0.56984029099805327;
   std::vector<Ray> rays;
@@ -60,7 +59,7 @@ Subject::Side Subject::open(Opening opening) const {
   opened->stage.picture().width = size.width, opened->stage.picture().height = size.height;
   opened->stage.open();
   auto options = std::make_shared<const cli::RenderOptions>(opened->stage.options());
-  // What the input itself sets, for the controls.
+  // Settings of the input itself, for the controls.
   opening.options->picture = options->picture, opening.options->look_options = options->look_options;
   return {std::move(opening), std::move(opened), std::move(options)};
 }
@@ -133,7 +132,7 @@ void Subject::compare(const std::string& with) {
   }
 }
 
-// As `scarp render` makes it.
+// As in `scarp render`.
 PictureSide Subject::picture_side(const Side& side, int width, int height) {
   PictureSide picture;
   picture.settings = side.options->picture;
@@ -149,13 +148,13 @@ PictureSide Subject::picture_side(const Side& side, int width, int height) {
     cli::look_through(stage.there(), camera, settings.look == Look::shaded ? settings.aa : 1);
     return render_picture(stage.scene(), camera, settings, progress);
   };
-  // Coarser voxels are others in every picture, and the look comanche has rays of its own.
+  // Coarser voxels differ in every picture, and the look comanche has its own rays.
   if (side.opened->stage.input().coarse_voxels || picture.settings.look == Look::comanche) return picture;
   picture.judge = [opened = side.opened, options = side.options](
                       const Camera& seen, const Progress& progress) -> std::optional<JudgedRays> {
     Camera camera = seen;
     cli::RenderOptions judged = *options;
-    judged.picture.look = Look::error;  // rays end where the judge ends
+    judged.picture.look = Look::error;  // rays end where the judge's rays end
     opened->stage.finish(camera, judged);
     const Scene& scene = opened->stage.scene();
     if (!opened->judges) opened->judges = scene.judge();
