@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// scarp-bench runs from end to end and writes what README.md promises. No time is judged here.
+// scarp-bench runs from end to end and writes what README.md promises. Times are not tested here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -337,7 +337,7 @@ TEST(ScarpBench, VoxelsOnDeviceMatchCpu) {
 }
 
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
-  // Who asks for a device that is not there is told which there are, or that there is none.
+  // If no device has the given name, the error lists those available, or says that there are none.
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -372,7 +372,7 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
     EXPECT_GT(row["mrays_per_s"], 0.0);
     EXPECT_GE(row["fetches_per_ray"], row["steps_per_ray"]);
     if (mode == "max-mip") {
-      // Of 2000 rays none comes as near to the surface as single precision errs.
+      // None of the 2000 rays passes within single-precision error of the surface.
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_EQ(row["fetch_ratio"], 1.0);
     }
@@ -436,8 +436,7 @@ TEST(ScarpBench, DevicesMarksTheChosenOne) {
 #endif
 
 #ifdef SCARP_BENCH_VULKAN
-// Corners are rounded to a part of a pixel, so pixels beside edges may show what is on the other side, and nothing
-// else.
+// Corners are rounded to a fraction of a pixel, so pixels next to an edge may show its other side, and nothing else.
 TEST(ScarpBench, DrawnGridDepthsMatchRays) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
@@ -547,7 +546,7 @@ TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
       continue;
     }
     expect_fields(row, {"class", "sweeps", "scarp_us", "bullet_us", "ratio", "contacts", "bullet_contacts", "differ"});
-    // Bullet computes in float: it may see a touch otherwise.
+    // Bullet computes in float: it may decide grazing rays differently.
     EXPECT_LE(row["differ"].get<int>(), row["sweeps"].get<int>() / 50 + 1) << row;
   }
   EXPECT_EQ(judged, 2);
@@ -586,7 +585,7 @@ TEST(ScarpBench, ReportsUsageErrorsInOneLine) {
   }
 }
 
-// NaN is neither too small nor too large; a check that traces NaN rays traces none, and finds nothing wrong.
+// NaN is neither too small nor too large; a run over NaN rays would trace none and find nothing wrong.
 TEST(ScarpBench, NumbersAreFinite) {
   std::map<std::string, std::vector<std::string>> options = {
       {"--rays", {"leaks", "voxel-leaks", "function-leaks"}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// scarp-bench's comparisons with Embree and Bullet over one field. No time is judged here.
+// scarp-bench's comparisons with Embree and Bullet over one field. Times are not tested here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
     if (row["mode"] == "max-mip") {
       EXPECT_EQ(row["miss_rate"], 0.0);
       EXPECT_EQ(row["false_rate"], 0.0);
-      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: what is promised
+      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: the promised accuracy
       if (ray_class == "nodes") {
         EXPECT_EQ(row["lost"], 0);
       }
@@ -84,8 +84,8 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
 }
 
 TEST(ScarpBench, EnginesAgreeOnHits) {
-  // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine has got
-  // other rays.
+  // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine was
+  // given different rays.
   std::map<std::string, double> max_mip;
   const json all = output_of("heights --sizes 129 --rays small --repeats 1");
   for (const json& row : all["rows"]) {
@@ -127,7 +127,7 @@ TEST(ScarpBench, BulletWithoutAcceleratorMatchesEmbree) {
   }
 }
 
-// Of how many rays the answer of a mode is not that of single rays, by each mode's name.
+// By the name of each mode: number of rays whose answer is not that of single rays.
 std::map<std::string, int> differences(const RaySet& set, const EmbreePeer& peer) {
   const auto answers_of = [&](const Engine& engine) {
     std::vector<float> answers(static_cast<std::size_t>(set.size()));

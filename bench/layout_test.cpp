@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What gpu_raster.cpp pushes lies where grid_mesh.vert reads it.
+// The push constants of gpu_raster.cpp have the layout of grid_mesh.vert.
 #include <gtest/gtest.h>
 
 #include "bench/grid_mesh.glsl.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of voxels that a Vulkan device draws, in both ways, beside the rasteriser of quads and beside triangles of
-// the same device.
+// Pictures of voxels that a Vulkan device draws, by both methods, compared with the rasteriser of quads and with
+// triangles of the same device.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -43,7 +43,7 @@ class PixelMatchOnDevice : public test::OnDevice {
       EXPECT_EQ(beside.differ, 0) << way.name << ": " << beside.first;
       hits.assign(hits.size(), Hit{});
       EXPECT_GT(compare_with_triangles(snapped, drawn, hits, view.frame).differ, 0);
-      // Else the comparison would be one of edges.
+      // Otherwise mostly edges would be compared.
       EXPECT_LT(beside.near_edges, beside.pixels / 20);
     }
   }

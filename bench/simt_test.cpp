@@ -27,7 +27,7 @@ const std::string kTable = SCARP_SOURCE_DIR "/bench/simt_blocks.csv";
 
 using Block = SimtBlock;
 
-// A frame with so many turns of the walk, each of which reads 8 bytes at the address.
+// A frame with this many iterations of the walk, each of which reads 8 bytes at the address.
 void add_frame(SimtTrace& trace, int turns, std::uint64_t address) {
   trace.enter(Block::frame);
   for (int turn = 0; turn < turns; ++turn) {
@@ -44,7 +44,7 @@ TEST(SimtBundle, LoopsRunUntilTheSlowestRayIsDone) {
   const SimtBundle bundle = replay(lanes);
   EXPECT_EQ(bundle.of(Block::begin), 1u);
   EXPECT_EQ(bundle.of(Block::frame), 2u);
-  // Both first frames take the two turns of the longer one.
+  // Both first frames take the two iterations of the longer one.
   EXPECT_EQ(bundle.of(Block::walk), 2u + 3u);
   EXPECT_EQ(bundle.lanes[static_cast<std::size_t>(Block::walk)], 1u + 3u + 2u);
   EXPECT_EQ(bundle.of(Block::end), 1u);
@@ -193,7 +193,7 @@ struct SimtTraces : testing::Test {
   const RayCounts counts{160, 88, 4096, 4096, 64};
   SimtShaders shaders = read_simt_shaders(kTable);
 
-  // Each block that a ray enters has a price.
+  // Each block that a ray enters has a cost.
   void expect_priced(const SimtTrace& trace, const std::string& shader) {
     const SimtBundle bundle = replay(std::span(&trace, 1));
     for (std::size_t block = 0; block < kSimtBlocks; ++block) {
@@ -234,7 +234,7 @@ TEST_F(SimtTraces, NaiveTakesFewerStepsWhenClipped) {
   for (std::size_t i = 0; i < set.library_rays.size(); i += 7) {
     bool hit[2];
     for (const bool clipped : {false, true}) {
-      // The least step is a share of the way: so small that it does not count.
+      // The minimum step is a fraction of the distance: so small that it has no effect.
       const SimtNaive naive{{.min_step = 1e-6, .max_steps = 1 << 20}, clipped};
       SimtTrace trace;
       const SimtAnswer answer = trace_naive(ground, set.library_rays[i], true, naive, &trace);
@@ -274,7 +274,7 @@ TEST(SimtVoxelTraces, MatchTheCpu) {
       const SimtBundle bundle = replay(std::span(&trace, 1));
       EXPECT_GE(bundle.of(SimtBlock::walk), bundle.of(SimtBlock::cross));
       EXPECT_EQ(bundle.of(SimtBlock::object) > 0, bundle.of(SimtBlock::turned) == 1);
-      // A turn either takes a step or finds the voxel.
+      // An iteration either takes a step or finds the voxel.
       if (march.name == "voxel-planes") {
         EXPECT_EQ(bundle.of(SimtBlock::walk), stats.steps + bundle.of(SimtBlock::hit));
       }

@@ -9,7 +9,7 @@
 
 namespace scarp::cli {
 
-/// What a subcommand supports beyond the border of a field: nothing, periodic wrap, or mirror images as well.
+/// Ground that a subcommand supports beyond the border of a field: none, periodic wrap, or mirror images as well.
 enum class BeyondBorders { none, wraps, mirrors };
 
 /// --exaggeration as typed, beside FieldOptions::exaggeration.

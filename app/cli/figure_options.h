@@ -15,7 +15,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct FigureOptions {
   bool legend = false, scale_bar = false, north_arrow = false, contour_labels = false;
   std::string title, graticule, layout = "on";

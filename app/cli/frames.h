@@ -12,7 +12,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct FrameOptions {
   std::string path;
   int frames = 0;  // 0: one per row of the path

@@ -14,7 +14,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct LookOptions {
   std::optional<double> water, visibility, fog_base, fog_falloff, reach;
   std::string water_colour, fog, lowres;

@@ -14,7 +14,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct MeshOptions {
   std::string file, at, up = "y";
   double scale = 1, turn_deg = 0;

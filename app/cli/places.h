@@ -59,7 +59,7 @@ class Places {
 };
 
 /// Returns z of the highest surface at (x, y), ground or whatever a vertical ray from above hits; nullopt if there is
-/// none. A plinth is no surface.
+/// none. A plinth does not count.
 std::optional<double> surface_at(const Scene& scene, double x, double y);
 
 /// Horizontal bounds of a scene: of the samples of a raster alone, else of the box. z is 0 or that of the box.

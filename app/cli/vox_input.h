@@ -15,7 +15,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct VoxOptions {
   VoxSceneOptions scene;
   bool surface_colours = false;

@@ -45,7 +45,7 @@ constexpr double kSignalWait = 0.5;     // seconds between two checks for Ctrl-C
 constexpr int kRedraws = 3;             // frames that Dear ImGui needs to settle after an event
 constexpr int kBookmarks = 9;
 
-// What a drag with the left button moves.
+// The object that a drag with the left button moves.
 enum class Dragged { view, sun, line };
 
 class Viewer {
@@ -521,7 +521,7 @@ class Viewer {
 
   // --- what leaves the window ---------------------------------------------------------------------------------------
 
-  // Of two sides both.
+  // Saves both sides if there are two.
   void save_picture() {
     saves_ = false;
     redraws_ = kRedraws;

@@ -159,7 +159,7 @@ class RayRuns : public RaySlices<Kind> {
   }
 
   DeviceBuffer rays_, answers_;
-  // Of one run, only for rays under way: the rays, their indices and results.
+  // The rays under way in one run, their indices and results.
   std::vector<Ray> packed_;
   std::vector<std::size_t> open_;
   std::vector<Hit> answered_;

@@ -16,7 +16,7 @@ struct BeamBounds {
   double last = 0;     // length from there to where the ray ends
 };
 
-/// Of at most Beam::kRays rays. `sign` is that of their directions along the beam's axis, which must be 0, 1 or 2;
+/// Bounds at most Beam::kRays rays. `sign` is that of their directions along the beam's axis, which must be 0, 1 or 2;
 /// results are relative to `middle`. Sets start and per_t of each ray, 0 for those that miss the box, and returns a bit
 /// for each of the others. slowest is not above 0 if one of them has a different sign.
 std::uint64_t bound_beam(const BoxTree::Rays& rays, const WorldBox& box, const dvec3& middle, int axis, double sign,

@@ -3,7 +3,7 @@
 // means.
 //
 // The coverage of a block of 8 is measured along the axis along which it covers most: 0 to 4 of its 4 columns. Blocks
-// that cover all 4 are solid: walls stay closed, however thin. Of the others, the fraction that they cover is solid:
+// that cover all 4 are solid: walls stay closed, however thin. The others are solid in the fraction that they cover:
 // every second block of a row of single voxels, a quarter for scattered points. A model's coverage of a picture thus
 // stays the same from level to level; a majority vote of the 8 would lose thin parts, and "any of 8" would thicken
 // them. An ordered pattern (ordered_pattern.h) selects the solid blocks: 1, 2 or 3 in each run of 4 along an axis.

@@ -16,7 +16,7 @@ namespace scarp {
 /// Rounding of placed points and boxes, relative to their coordinates, with a margin.
 inline constexpr double kPlacing = 0x1p-47;
 
-/// Of two objects at the same time or distance, the one with the lower index counts.
+/// At the same time or distance, the object with the lower index counts.
 inline bool is_before(double a, std::uint32_t a_object, double b, std::uint32_t b_object) {
   return a < b || (a == b && a_object < b_object);
 }

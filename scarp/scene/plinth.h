@@ -33,7 +33,7 @@ class Plinth {
   /// through the base.
   std::optional<Wall> intersect(const Ray& ray) const;
 
-  /// Of the base, in sample units.
+  /// Height of the base, in sample units.
   double base_sample() const { return base_sample_; }
 
  private:

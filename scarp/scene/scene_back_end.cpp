@@ -79,7 +79,7 @@ void Scene::trace_occluded(std::span<const Ray> rays, From from, std::span<const
   for (std::size_t i = 0; i < pairs.size(); ++i) blocked[pairs[i].ray] |= answers[i];
 }
 
-// Of rays up to their hits.
+// Pairs along rays up to their hits.
 std::vector<Scene::Pair> Scene::pairs_in_tree(std::span<const Ray> rays, std::span<const Hit> hits) const {
   std::vector<std::vector<std::uint32_t>> met(rays.size());
   for_each(rays.size(), [&](std::size_t i) {

@@ -2,7 +2,7 @@
 // Private to the station: the queries of a voxel field (scene_voxels()), whose objects are placed models.
 //
 // Rays are traced in the space of each model that they may hit, and quantised there (voxel_ray.h). t is in units of the
-// direction's length throughout. Of hits at the same t, the one with the lowest index counts.
+// direction's length throughout. Among hits at the same t, the lowest index counts.
 //
 // Batches traverse a hierarchy of their own as beams of 64 rays, and each model's grid in vectors (voxel_packet.h);
 // diverging rays are traced one by one. This is why the models are not objects of the scene, whose hierarchy contains

@@ -94,7 +94,7 @@ bool is_clean(const float* line, int samples, std::optional<double> nodata) {
   return plain == samples && marked == 0;
 }
 
-// What samples are in the file.
+// Storage of the samples in the file.
 struct Stored {
   GDALDataType type = GDT_Unknown;
   bool signed_bytes = false;

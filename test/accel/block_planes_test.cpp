@@ -92,14 +92,14 @@ TEST(BlockPlanes, BoundHeightsOfAnyMagnitude) {
   }
 }
 
-// One cliff of the full range among gentle ground, which slopes cannot follow and must not spoil the rest.
+// A single cliff of the full range on gentle ground: slopes cannot follow it, and it must not spoil the rest.
 TEST(BlockPlanes, StayTightOnGentleGroundBesideACliff) {
   Samples heights = slope(257, 257, 2, 1);
   heights[20 * 257 + 40] = 20000;
   const HeightField field = field_of<float>(heights, 257, 257);
   const MaxPyramid pyramid(field);
   expect_above(field, pyramid);
-  // Mean over the blocks: 2 x 2 cells rise by 6, four blocks have the cliff.
+  // Mean over the blocks: 2 x 2 cells rise by 6; four blocks contain the cliff.
   const double mean = 6 + 4 * 20000 / (128.0 * 128), step = pyramid.planes().code().step;
   EXPECT_LT(pyramid.planes().steepest() * step, mean + 2 * step);
 }

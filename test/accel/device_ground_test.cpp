@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pyramid that a device makes is the CPU's, bit for bit, and shaders read the samples that the field has.
+// The pyramid built by a device is the CPU's, bit for bit, and shaders read the samples of the field.
 #include "scarp/accel/device_ground.h"
 
 #include <gtest/gtest.h>
@@ -98,7 +98,7 @@ TEST_F(DeviceGrounds, PyramidsMatchTheCpuAtAnySize) {
 }
 
 TEST_F(DeviceGrounds, PyramidsMatchTheCpuAtAnyHeight) {
-  // Both extremes of 16 bits; floats that are tiny, huge, far from 0, all the same, 0 of both signs, all nodata.
+  // Both extremes of 16 bits; floats that are tiny, huge, far from 0, all equal, zeros of both signs, all nodata.
   expect_same(HeightField::own(std::vector<std::int16_t>{-32768, 32767, 0, -1, 1, 7}, 3, 2));
   expect_same(HeightField::own(std::vector<std::uint16_t>{0, 65535, 1, 32768, 32767, 7}, 3, 2));
   for (const double base : {0.0, 1e6, -1e6, 4e38 / 3, -3e38}) {
@@ -121,7 +121,7 @@ TEST(CodeTables, MatchTheFormulaForAnyFloat) {
     const auto begin = tables.begin(), middle = begin + glsl::kPyramidCodes, end = tables.end();
     ASSERT_TRUE(std::is_sorted(begin, middle) && std::is_sorted(middle, end));
     for (int i = 0; i < 20000; ++i) {
-      // Any sample of the range, and the neighbours of what codes stand for.
+      // Any sample of the range, and the neighbours of decoded values.
       float sample =
           static_cast<float>(range.low + (range.high - range.low) * static_cast<double>(random()) / 4294967295.0);
       if (i % 2) sample = static_cast<float>(code.height(static_cast<std::uint16_t>(random() % 65536)));
@@ -179,7 +179,7 @@ TEST_F(DeviceGrounds, UpdateCreatesNoPasses) {
 }
 
 // More samples than one storage buffer of lavapipe holds (128 MiB), and a level wider than one dispatch; the checked
-// build takes half a minute for that and contents itself with a long row. Rays meet what is there.
+// build would take half a minute for that, so it uses a long row. Rays hit the ground there.
 TEST_F(DeviceGrounds, LongFieldsWork) {
 #ifdef NDEBUG
   const int cols = 17'500'000;
@@ -198,7 +198,7 @@ TEST_F(DeviceGrounds, LongFieldsWork) {
   };
   std::vector<Ray> rays(1000);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Half of them over the last samples, which lie beyond the range.
+    // Half of them are over the last samples, which are outside the range.
     rays[i].origin = {uniform(i % 2 ? 0.97 * cols : 0, cols - 1), uniform(0, 1), uniform(66000, 70000)};
     rays[i].direction = {i % 4 < 2 ? 1.0 : -1.0, uniform(-1, 1) / 1024, -uniform(5, 500)};
     rays[i].t_max = 1000;
@@ -215,7 +215,7 @@ TEST_F(DeviceGrounds, LongFieldsWork) {
   EXPECT_GT(met, 500);
 }
 
-// What a shader reads through ground_buffers.glsl.h: four heights of each cell, and whether it is a hole.
+// Reads through ground_buffers.glsl.h the four heights of each cell, and whether it is a hole.
 TEST_F(DeviceGrounds, ShadersReadTheFieldsSamples) {
   struct Push {
     glsl::Address ground, out;

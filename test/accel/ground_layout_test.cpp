@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// C++ and the shaders agree on the layout of what they share.
+// C++ and the shaders agree on the layout of shared structs.
 #include <gtest/gtest.h>
 
 #include <cstddef>

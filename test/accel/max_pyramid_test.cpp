@@ -61,7 +61,7 @@ void expect_tight(const HeightField& field, const MaxPyramid& pyramid) {
         if (true_bounds.hole) {
           ASSERT_EQ(low, -kInfinity);
         } else if (low == -kInfinity) {
-          ASSERT_EQ(true_bounds.low, pyramid.code().height(0));  // as low as codes go
+          ASSERT_EQ(true_bounds.low, pyramid.code().height(0));  // the lowest code
         } else {
           ASSERT_LE(low, true_bounds.low);
           ASSERT_LT(true_bounds.low - low, exact ? step : 2 * step);
@@ -110,7 +110,7 @@ TEST(MaxPyramid, BoundsHeightsOfAnyOffsetAndScale) {
 }
 
 TEST(MaxPyramid, BoundsRangesNarrowerThanRounding) {
-  // Neighbouring floats far above the datum, and a reserve that doubles hardly tell from nothing.
+  // Neighbouring floats far above the datum, and a reserve that is barely representable in doubles.
   for (const double datum : {1.0, 8388608.0, -3e30}) {
     auto samples = noise<float>(33, 18);
     const float low = static_cast<float>(datum), high = std::nextafter(low, std::numeric_limits<float>::infinity());
@@ -141,7 +141,7 @@ TEST(MaxPyramid, IgnoresHoles) {
   std::mt19937 random(8);
   for (int i = 0; i < 60; ++i) {
     const auto at = random() % ints.size();
-    ints[at] = 9999;  // higher than all: a hole that is taken for ground would show
+    ints[at] = 9999;  // higher than all others: a hole taken for ground would show
     floats[at] = i % 2 ? std::numeric_limits<float>::quiet_NaN() : 9999.f;
   }
   for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
@@ -183,7 +183,7 @@ void expect_update_equals_build(const HeightFieldSettings& settings) {
   std::mt19937 random(9);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   const int cols = 37, rows = 29;
-  // Samples 0 and 999 stay in, so that a pyramid built anew has the same range.
+  // Samples 0 and 999 stay, so that a rebuilt pyramid has the same range.
   auto samples = noise<T>(cols, rows);
   if (settings.wrap == Wrap::shared_border) {
     for (int row = 0; row < rows; ++row)
@@ -228,7 +228,7 @@ TEST(MaxPyramid, UpdateMatchesARebuild) {
 TEST(MaxPyramid, UpdateTouchesOnlyChangedBlocks) {
   HeightField field = HeightField::own(noise<std::int16_t>(65, 65), 65, 65);
   MaxPyramid pyramid(field);
-  // An entry spoilt far from the edit stays spoilt.
+  // A corrupted entry far from the edit stays corrupted.
   const_cast<std::uint32_t*>(pyramid.blocks())[0] = 12345;
   const std::int16_t sample = 7;
   pyramid.update(field, field.set_samples({60, 60, 1, 1}, &sample, 1));
@@ -245,7 +245,7 @@ TEST(MaxPyramid, RebuildsWhenSamplesLeaveTheCodeRange) {
   reserved.update(field, changed);
   expect_tight(field, pyramid);
   expect_tight(field, reserved);
-  EXPECT_EQ(reserved.code().step, step);  // the range was reserved: no need
+  EXPECT_EQ(reserved.code().step, step);  // not needed: the range was reserved
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The accelerators of voxel grids against their definitions by brute force, and after edits against being built anew.
+// The accelerators of voxel grids against their definitions by brute force, and after edits against a rebuild.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ int octant_side(const std::vector<ivec3>& solid, const ivec3& v, int octant) {
   return least;
 }
 
-// What is built in vectors.
+// Accelerators that are built with SIMD.
 struct Built {
   EmptyCubes cubes;
   EmptySpheres spheres;
@@ -142,7 +142,8 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
   return name;
 });
 
-// Rows of less than a vector, of one, of some; longer than what counts; along each axis; before and after edits.
+// Rows shorter than a vector, of one and of several vectors, and beyond the longest run that counts; along each axis;
+// before and after edits.
 TEST(VoxelAccelerators, MatchTheirDefinitionsForRowsOfAnyLength) {
   Random random(14);
   for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
@@ -166,8 +167,8 @@ TEST(VoxelAccelerators, MatchTheirDefinitionsForRowsOfAnyLength) {
   }
 }
 
-// What edits alter may be far away, beyond another solid voxel, on all sides or on one; they add and remove at once,
-// and report more than they change.
+// The effects of edits may be far away, beyond another solid voxel, on all sides or on one. The edits add and remove at
+// once, and report more than they change.
 TEST(VoxelAccelerators, MatchARebuildAfterHostileEdits) {
   Random random(15);
   const std::array sizes{ivec3(70, 31, 43), ivec3(129, 23, 20), ivec3(31, 90, 24)};
@@ -190,7 +191,7 @@ TEST(VoxelAccelerators, MatchARebuildAfterHostileEdits) {
         if (edit % 4 == 0) changed = grid.fill_sphere(at, radius, 1);
         if (edit % 4 == 1) changed = grid.clear_sphere(at + 1.5, radius);
         if (edit % 4 == 2) {
-          // Some voxels come, some go.
+          // Some voxels are added, some removed.
           changed = grid.edit({low, high}, [&](const ivec3&, const VoxelGrid::Voxel&) {
             return uniform(random, 0, 1) < 0.3 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
           });

@@ -30,7 +30,7 @@ double dense_clearance(const HeightField& field, double col, double row, double 
   return least;
 }
 
-// What samples leave open: a ray may dip between them, and starts on the ground.
+// Tolerance of sampling: a ray may dip between samples, and starts on the ground.
 constexpr double kRounding = 1e-6;
 double between_samples(const HeightField& field) { return kRounding + (field.max_height() - field.min_height()) / 100; }
 
@@ -45,7 +45,7 @@ TEST(BilinearGround, ShadowsMatchDenseSamples) {
     const BilinearGround ground(field);
     for (int i = 0; i < 3; ++i) {
       const SunRay sun = sun_ray(field, suns[turn++ % suns.size()]);
-      // Of a cell per unit of t.
+      // Cells per unit of t.
       const auto unit = static_cast<double>(SunRay::kUnit);
       const double cols = static_cast<double>(sun.col) / unit, rows = static_cast<double>(sun.row) / unit;
       if ((cols == 0 || rows == 0) && field.nodata_count() > 0) continue;  // along lines beside holes
@@ -125,7 +125,7 @@ TEST(BilinearGround, LinesOfSightMatchDenseSamples) {
         EXPECT_TRUE(line.visible) << where();
       }
       EXPECT_EQ(line.visible, back.visible) << where();
-      // Samples beside the ends are no clearances.
+      // Samples next to the ends do not count as clearances.
       if (clearance < -kRounding) {
         EXPECT_LT(line.clearance, clearance + kRounding) << where();
       }

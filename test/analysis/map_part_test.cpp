@@ -110,7 +110,7 @@ TEST(MapPart, PartsAddUpToTheWhole) {
   }
 }
 
-// Ground above the band hides the sun from as far as it reaches, and limits of distance leave out whole bands.
+// Ground above the band casts shadows into it, and distance limits exclude whole bands.
 TEST(MapPart, DistantGroundAffectsTheBand) {
   std::vector<float> heights(40 * 200, 0);
   for (int col = 0; col < 40; ++col) heights[static_cast<std::size_t>(col)] = 100;

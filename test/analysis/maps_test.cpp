@@ -21,7 +21,7 @@ std::string place(const MapField& kind, std::size_t i) {
   return kind.name + ", column " + std::to_string(i % cols) + ", row " + std::to_string(i / cols);
 }
 
-// All fields in optimised builds, a share in others: the judge's rational numbers take most of the time.
+// All fields in optimised builds, some in others: the judge's rational numbers take most of the time.
 std::vector<MapField> some_fields() {
   const auto stride = static_cast<std::size_t>(cases(1, 1, 4));
   auto all = map_fields();
@@ -30,7 +30,7 @@ std::vector<MapField> some_fields() {
   return some;
 }
 
-// A share of the observers, others for each field.
+// Some of the observers, different ones for each field.
 std::vector<Node> some_observers(const HeightField& field) {
   static std::size_t turn = 0;
   const auto all = map_observers(field);
@@ -46,7 +46,7 @@ TEST(Maps, ViewshedsMatchTheJudge) {
   unsigned turn = 0;
   for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
-      // One set of settings per observer, in turn: all meet all shapes.
+      // One set of settings per observer, in turn: all are combined with all shapes.
       const auto settings = map_settings();
       const auto& chosen = settings[turn++ % settings.size()];
       const auto judged = judge_viewshed(kind.field, observer, chosen);
@@ -79,7 +79,7 @@ TEST(Maps, LeastVisibleHeightsMatchTheJudge) {
     }
 }
 
-// A plane 10 m below the eye; a wall with a hole on it hides what is behind.
+// A plane 10 m below the eye; a wall with a hole on it hides the ground behind it.
 TEST(Maps, AnglesMatchTheLinesOfSight) {
   constexpr int kSide = 21;
   std::vector<float> heights(kSide * kSide, 0);

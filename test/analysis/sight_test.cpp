@@ -33,11 +33,11 @@ HeightField field_of(int cols, int rows, double cell, const std::function<double
   return HeightField::own(std::move(samples), cols, rows, {.cell_x = cell, .cell_y = cell});
 }
 
-// A place in the field, rounded to what lines of sight are rounded to.
+// A position in the field, rounded as lines of sight are.
 SightEnd random_end(const HeightField& field, std::mt19937& random) {
   const auto along = [&](int samples) {
     const auto steps = static_cast<unsigned>((samples - 1) * kSubcells);
-    // Nodes and grid lines as often as places between.
+    // Nodes and grid lines as often as positions between them.
     const auto place = static_cast<unsigned>(random() % (steps + 1));
     constexpr auto kCell = static_cast<unsigned>(kSubcells);
     return (random() % 2 ? place / kCell * kCell : place) / static_cast<double>(kCell);
@@ -59,7 +59,7 @@ TEST(LineOfSight, MatchesTheJudgeEverywhere) {
         ASSERT_EQ(answer.visible, judged)
             << kind.name << ": " << from.col << "," << from.row << " to " << to.col << "," << to.row;
         EXPECT_EQ(answer.visible, !answer.obstruction);
-        // Clearance is rounded; its sign is that of the answer but for grazing.
+        // Clearance is rounded; its sign is that of the answer except for grazing lines.
         if (std::abs(answer.clearance) > kHeightRounding) {
           EXPECT_EQ(answer.clearance > 0, answer.visible);
         }
@@ -245,8 +245,8 @@ TEST(Viewshed, SeesAllOfAPlaneFromAbove) {
       EXPECT_EQ(code, Seen::visible);
 }
 
-// An eye at the height of a cone's base sees of its flank what faces it: up to the tangents from the eye to the base,
-// where the cosine of the angle around the axis is radius over distance. From the tip it sees everything.
+// An eye at the height of a cone's base sees the part of its flank that faces it: up to the tangents from the eye to
+// the base, where the cosine of the angle around the axis is radius over distance. From the tip it sees everything.
 TEST(Viewshed, SeesTheNearSideOfACone) {
   const auto field =
       field_of(81, 81, 10, [](int col, int row) { return std::max(0., 200 - 10 * std::hypot(col - 40, row - 40)); });

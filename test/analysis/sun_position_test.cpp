@@ -25,7 +25,7 @@ TEST(SunPosition, MatchesThePublishedNrelExample) {
 }
 
 // J. Meeus, "Astronomical Algorithms", example 25.b: 1992 October 13, 0h TD (59 s before in UT): declination
-// -7.783817 degrees. At the pole the altitude is the declination, but for parallax (0.0024 degree).
+// -7.783817 degrees. At the pole the altitude is the declination, except for parallax (0.0024 degree).
 TEST(SunPosition, AltitudeAtThePoleIsTheDeclination) {
   const SunPosition sun = sun_position(parse_time("1992-10-12T23:59:01Z"), {0, 90 * kDegree, 0});
   EXPECT_NEAR(sun.altitude / kDegree, -7.783817 - 0.0024, 0.001);

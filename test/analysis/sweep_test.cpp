@@ -144,7 +144,7 @@ TEST(Sweeps, ViewshedsMatchRays) {
                                     << view.observer().row << ", eye " << view.eye();
     });
   }
-  // All ways through the code are taken.
+  // All branches of the code are taken.
   EXPECT_GT(statistics.skipped, 1000);
   EXPECT_GT(statistics.careful, 1000);
   EXPECT_GT(statistics.walked, 10);
@@ -208,7 +208,7 @@ struct GridSymmetry {
   }
 };
 
-// A field turned by quarters or mirrored has its maps turned and mirrored: no direction is favoured.
+// The maps of a field rotated by quarter turns or mirrored are rotated and mirrored, too: no direction is favoured.
 TEST(Sweeps, AreSymmetric) {
   SweepDraw draw(4);
   for (int number = 0; number < 64; ++number) {
@@ -242,7 +242,7 @@ TEST(Sweeps, AreSymmetric) {
   }
 }
 
-// What two nodes see of one another, and what a higher sun does.
+// Two nodes see each other or neither does, and a higher sun lights more.
 TEST(Sweeps, AreReciprocalAndMonotone) {
   SweepDraw draw(6);
   int visible = 0, lit_later = 0;

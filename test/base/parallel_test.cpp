@@ -39,7 +39,7 @@ TEST(ParallelFor, DoesNothingForAnEmptyRange) {
   }
 }
 
-// Written by many threads without locks and read afterwards: what the thread sanitizer is run on.
+// Written by many threads without locks and read afterwards, for the thread sanitizer.
 TEST(ParallelFor, WritesAreVisibleAfterwards) {
   std::vector<int> squares(100000, -1);
   parallel_for(100000, 100, [&](std::int64_t begin, std::int64_t end) {
@@ -76,7 +76,7 @@ TEST(ParallelFor, ReportsProgressSeriallyUpToOne) {
   }
 }
 
-// Many short pieces, so that threads come to report just after one another.
+// Many short pieces, so that threads report in quick succession.
 TEST(ParallelFor, ProgressNeverDecreases) {
   double last = 0;
   parallel_for(
@@ -124,7 +124,7 @@ TEST(ParallelFor, ThrowsInterruptedOnTheLastReport) {
                Interrupted);
 }
 
-// A pool as an engine has one: threads that are always there, each with every second piece or so.
+// A thread pool like an engine's: persistent threads, each with every n-th piece.
 class Pool final : public Executor {
  public:
   void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) override {

@@ -31,7 +31,7 @@ std::string refusal(const std::string& path) {
   return test::refusal([&] { ReplaceFile{path}; });
 }
 
-// Root may write anywhere: takes that away while it lives.
+// Root may write anywhere: drops that right during its lifetime.
 class WithoutRoot {
  public:
   WithoutRoot() : root_(::geteuid() == 0) {
@@ -107,7 +107,7 @@ TEST_F(ReplaceFileTest, CommitKeepsPermissions) {
   for (const int before : {0640, 0600, 0666}) {
     fs::permissions(path("a.png"), fs::perms(before));
     ReplaceFile file(path("a.png"));
-    // As writers do that make the file anew.
+    // Like writers that recreate the file.
     fs::remove(file.temporary_path());
     write(file.temporary_path(), "new");
     file.commit();
@@ -196,7 +196,7 @@ TEST_F(ReplaceFileTest, AbruptExitLeavesNoTemporaryFile) {
   write(path("kept.png"), "old");
   ReplaceFile first(path("kept.png"));
   {
-    // Its place in the list is used again.
+    // Its slot in the list is reused.
     ReplaceFile whole(path("whole.png"));
     write(whole.temporary_path(), "new");
     whole.commit();

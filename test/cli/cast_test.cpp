@@ -63,7 +63,7 @@ class Cast : public testing::Test {
     expect_refused(options, fragment);
   }
 
-  // A straight look down at each node, its place given by `place(col, row)`; `inner`: not at those on the border.
+  // Looks straight down at each node, whose position is `place(col, row)`; `inner`: not at those on the border.
   template <class Place>
   std::vector<Row> look_down(const Names& options, const Place& place, bool inner = false) {
     std::string table = "col_in,row_in,x,y,z,dx,dy,dz\n";
@@ -113,7 +113,7 @@ TEST_F(Cast, LonlatNodesHitTheirSamples) {
   const double west = -84.5, south = 36.25, cell = 1.0 / 1024;
   const std::string bounds = fmt::format("--bounds={},{},{},{}", west - cell / 2, south - cell / 2,
                                          west + (kCols - 0.5) * cell, south + (kRows - 0.5) * cell);
-  // Their cells on the ground are no such numbers: a node of the border may come to lie a rounding outside.
+  // Their cells on the ground are rounded: a node of the border may be outside by a rounding error.
   look_down(
       {"--crs", "lonlat", "--raster-crs", "EPSG:4326", bounds},
       [&](int col, int row) { return std::pair(west + cell * col, south + cell * (kRows - 1 - row)); }, true);
@@ -132,7 +132,7 @@ TEST_F(Cast, CoordinateSystemsAgree) {
   };
   const double north = sample(2, 1) + (sample(3, 1) - sample(2, 1)) / 3.0,
                below = sample(2, 2) + (sample(3, 2) - sample(2, 2)) / 3.0;
-  // The series are good to some micrometres, and the slope is about 1.
+  // The series are accurate to some micrometres, and the slope is about 1.
   constexpr double kSeries = 1e-5;
   const Row map = cast(fmt::format("{},{}", x, y), "map"), lonlat = cast("-84.535001630948,36.390278541168", "lonlat");
   for (const Row& row : {map, lonlat}) {
@@ -448,7 +448,7 @@ TEST_F(Cast, ReadsAndWritesFilesAndStreams) {
   EXPECT_NE(run(with({"-"})).err.find("-: empty file"), std::string::npos);
   EXPECT_EQ(run(with({path("rays.csv"), "-o", path("hits.npy")})).status, 0);
   EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 14 * 8 % 64u);
-  // What one cast wrote, the next one reads: a table whose fields it knows or passes over.
+  // The output of one cast is input for the next: a table whose fields it knows or ignores.
   EXPECT_NE(run(with({path("hits.npy")})).err.find("no column 'dx'"), std::string::npos);
   EXPECT_EQ(run(with({rays("x,y,z,dx,dy,dz\n")})).out, "ray,status,t,x,y,z,col,row,u,v,nx,ny,nz,wall\n");
 }
@@ -550,7 +550,7 @@ TEST_F(Cast, WarnsThatAFieldWithoutCompleteCellsIsNeverHit) {
 }
 
 #ifdef SCARP_VULKAN
-// Rows of a device are those of the CPU, but for delta of numerics.md, by which the CPU's rays are raised and lowered:
+// Rows of a device are those of the CPU within delta of numerics.md. The CPU's rays are raised and lowered by delta:
 // where these three agree, so does the device, and its hits are no farther from the CPU's than theirs.
 TEST_F(Cast, DeviceMatchesCpu) {
   const auto devices = nlohmann::json::parse(test::run_on_device({"devices", "--json"}).out);
@@ -600,7 +600,7 @@ TEST_F(Cast, DeviceMatchesCpu) {
       if (status != "hit") continue;
       const double t = number(cpu[i], "t");
       const double off = std::max(std::abs(number(low[i], "t") - t), std::abs(number(high[i], "t") - t));
-      // The device's time is two floats, from a begin in double.
+      // The device's time is two floats, relative to a start in double.
       EXPECT_LE(std::abs(number(device[i], "t") - t), off + 0x1p-22 * t) << i;
     }
     EXPECT_GT(compared["hit"], 60) << wrap;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command line from outside: what it prints, what it leaves, how it ends.
+// The command line from outside: its output, its files, its exit status.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -50,7 +50,7 @@ class Cli : public testing::Test {
     EXPECT_EQ(scratch_.files(), before);
   }
 
-  // Until there is a file beside the one that the test made.
+  // Waits until there is a file besides the one that the test made.
   void wait_for_output() const {
     for (int i = 0; i < 2000 && scratch_.files().size() < 2; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -62,8 +62,7 @@ class Cli : public testing::Test {
 
 #ifdef SCARP_CAIRO
 TEST_F(Cli, ScaleBarHasTheTrueLength) {
-  // 30 m in 320 pixels: of at most a quarter of that, 5 m are the longest round length. The first half of the bar is
-  // black.
+  // 30 m in 320 pixels: 5 m is the longest round length up to a quarter of that. The first half of the bar is black.
   const auto result =
       run({"render", good(), "-o", path("map.png"), "--top", "--size", "320x240", "--scale-bar", "--legend"});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -122,7 +121,7 @@ TEST_F(Cli, EveryLookAndMarchRuns) {
 }
 
 TEST_F(Cli, MapHasTheAspectRatioOfTheGround) {
-  // Of the size that comes of itself, and without light, which would take a minute under sanitizers.
+  // At the default size, and without light, which would take a minute under sanitizers.
   const auto result = run({"render", good(), "-o", path("out.png"), "--top", "--look", "height"});
   EXPECT_EQ(result.status, 0) << result.err;
   const test::Rgb picture = test::read_png(path("out.png"));
@@ -197,7 +196,7 @@ TEST_F(Cli, DetectsUnwritableOutputBeforeRendering) {
   const Names before = scratch_.files();
   for (const std::string& output :
        {path("no/such/folder/out.png"), path(""), std::string("/proc/out.png"), path("out.bmp")}) {
-    // The input does not exist either: the output is looked at first.
+    // The input does not exist either: the output is checked first.
     const auto result = run({"render", path("missing.tif"), "-o", output});
     EXPECT_EQ(result.status, 1) << output;
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
@@ -216,7 +215,7 @@ TEST_F(Cli, ReportsHowFarTheEyeIsBelowGround) {
   EXPECT_NE(result.err.find("the eye is 3660 m below the ground"), std::string::npos) << result.err;
 }
 
-// By no subcommand that writes, and whatever it is that it reads.
+// Applies to all subcommands that write, and to all their inputs.
 TEST_F(Cli, OutputsNeverOverwriteInputs) {
   const auto terrain = [&](const std::string& name, int west = 0) {
     return write(name, fmt::format("ncols 2\nnrows 2\nxllcorner {}\nyllcorner 0\ncellsize 10\n1 2\n3 4\n", west));
@@ -535,7 +534,7 @@ TEST_F(Cli, ReportsAFullStandardOutput) {
   }
 }
 
-// Ends a long render with a signal; it must be gone soon and leave nothing.
+// Stops a long render by a signal; it must exit soon and leave no files.
 class Interrupt : public Cli, public testing::WithParamInterface<int> {};
 
 TEST_P(Interrupt, LeavesNoOutput) {
@@ -578,7 +577,7 @@ class OpenPipe {
   int file_ = -1;
 };
 
-// Waits at a pipe for a function that nobody writes, and so asks nobody whether there was a signal.
+// Waits at a pipe for a function that nobody writes, and so cannot check for signals.
 TEST_P(Interrupt, EndsBlockedReads) {
   const std::string pipe = path("pipe");
   const OpenPipe kept(pipe);
@@ -595,11 +594,11 @@ TEST_P(Interrupt, EndsBlockedReads) {
     EXPECT_EQ(result.err, "scarp: interrupted\n");
     EXPECT_EQ(scratch_.files(), Names{"pipe"});
   }
-  // After the second signal there is no waiting: its number is told, and not the first one's.
+  // The second signal ends the program at once: its number is reported, not that of the first.
   const int second = GetParam() == SIGINT ? SIGTERM : SIGINT;
   test::Program program(waiting, nullptr, pipe);
   begun(program);
-  // Of two that are pending at once the system chooses which comes first.
+  // If two are pending at once, the system chooses which comes first.
   const std::string status = fmt::format("/proc/{}/status", program.pid());
   for (int i = 0; i < 2000 && test::text_of(status).find("\nShdPnd:\t0000000000000000\n") == std::string::npos; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -618,7 +617,7 @@ TEST_F(Cli, KeepsIgnoredSignalsIgnored) {
   const std::string pipe = path("pipe");
   OpenPipe function(pipe);
   const auto before = std::signal(SIGHUP, SIG_IGN);
-  // Asks whether there was a signal when it has read the function.
+  // Checks for signals after it has read the function.
   test::Program program({"render", "--function", "/dev/stdin", "-o", path("out.png"), "--size", "8x6"}, nullptr, pipe,
                         test::Ignored::inherited);
   std::signal(SIGHUP, before);

@@ -49,14 +49,14 @@ class ColourScale : public testing::Test {
   const std::string out_ = scratch_.path("out.png");
 };
 
-// What `gdaldem color-relief` (GDAL 3.6) makes of these heights: red to white by 255 / 320 per metre, rounded.
+// Colours of `gdaldem color-relief` (GDAL 3.6) for these heights: red to white by 255 / 320 per metre, rounded.
 TEST_F(ColourScale, ColourFilesMatchGdaldem) {
   const std::string ramp = scratch_.write("ramp.txt", "320 white\n0 255:0:0\nnv 0 0 0\n");
   const Rgb picture = map(slope(), {"--ramp", ramp});
   for (int col = 0; col < 32; ++col) {
     const std::uint8_t* rgb = picture.pixel(col, 16);
     EXPECT_EQ(rgb[0], 255);
-    // Within a slice, colours are mixed in linear light over steps that no eye tells apart.
+    // Within a slice, colours are mixed in linear light over steps that the eye cannot distinguish.
     EXPECT_NEAR(rgb[1], 255.0 / 320 * (10 * col + 5), 1.5) << col;
   }
   const auto wrong = render(slope(), {"--ramp", ramp, "--ramp-range", "0,10"});
@@ -127,7 +127,7 @@ TEST_F(ColourScale, ExaggerationFollowsTheRelief) {
     EXPECT_EQ(result.status, 0) << result.err;
     return result.err;
   };
-  // 0.288 m over 320 m: by 111 it were a tenth.
+  // 0.288 m over 320 m: with 111 it would be a tenth.
   EXPECT_NE(with(flat, "").find("hardly shows (--exaggeration auto, or a factor such as 100"), std::string::npos);
   EXPECT_NE(with(flat, "auto").find("--exaggeration auto is 100: the relief of 0.288 m over 320 m"), std::string::npos);
   const std::string chosen = text_of(out_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The look comanche, water, fog, flights and composites as typed.
+// The look comanche, water, fog, flights and composites on the command line.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -151,7 +151,7 @@ TEST(Flight, ResumesWhereItStopped) {
   EXPECT_NE(test::text_of(scratch.path("f-001.png")), "mine");
 }
 
-// The frame of noise is larger than those of haze.
+// The PNG of the noise is larger than those of the haze.
 TEST(Flight, FullDiskKeepsEarlierFrames) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);
@@ -199,7 +199,7 @@ TEST(Overlay, IsPlacedByItsGeoreference) {
   for (int y = 2; y < 78; y += 5) {
     for (int x = 2; x < 78; x += 5) {
       const auto* p = picture.bytes.data() + 3 * (y * 80 + x);
-      // Within a pixel of its border colours are mixed, by the warper and once more when it is looked up.
+      // Within a pixel of its border colours are mixed, by the warper and again by the lookup.
       if (x >= 38 && x <= 42) continue;
       EXPECT_EQ(p[1] == 0 && p[2] == 0, x < 40) << x << ", " << y;
     }
@@ -241,7 +241,7 @@ TEST(Composite, ShowsTheNearerPixel) {
       test::run({"render", dem, "-o", ours, "--top", "--size", "8x8", "--aa", "1", "--depth-range", "1,1000"}).status,
       0);
   // A level plate in green: seen from above it hides what is deeper. The eye is 80 + 80 + 80 m over the middle of the
-  // box; what depth that is, the file says.
+  // box; the depth is read from the file.
   std::vector<float> zero(64, 0.0f), one(64, 1.0f), z(64, 300.0f), device(64);
   const auto write = [&](const std::string& name, float plate) {
     for (std::size_t i = 0; i < 64; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions on the command line: pictures, layers, what is known of them, and as elevation models.
+// Terrain functions on the command line: pictures, layers, info, and elevation models.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class Functions : public testing::Test {
     return scratch_.write("ramp.json", R"({"type": "plane", "height": 7, "slope": [0.5, 0]})");
   }
   std::string out(const char* name) const { return scratch_.path(name); }
-  // One line that says `what`, and no file.
+  // One line that contains `what`, and no file.
   void expect_refusal(std::vector<std::string> arguments, const std::string& what) const {
     const auto result = test::run(std::move(arguments));
     EXPECT_NE(result.status, 0);
@@ -125,7 +125,7 @@ TEST_F(Functions, AreDescribedByInfo) {
     EXPECT_GE(at["range"].get<double>(), 1);
     EXPECT_GE(at["slope"].get<double>(), 1);
   }
-  // Of a ramp all is known but for rounding.
+  // For a ramp everything is known except for rounding.
   const Json plane = Json::parse(test::run({"info", "--function", ramp(), "--json"}).out);
   for (const Json& at : plane["tightness"]) {
     EXPECT_NEAR(at["range"].get<double>(), 1, 1e-9);

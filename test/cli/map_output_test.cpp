@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maps as files: georeferenced TIFF, other formats, and what is drawn on them.
+// Maps as files: georeferenced TIFF, other formats, and overlays.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ class MapOutput : public testing::Test {
   std::string dem_;
 };
 
-// Of 400 x 300 pixels over 40 x 30 cells: ten pixels a cell.
+// 400 x 300 pixels over 40 x 30 cells: ten pixels per cell.
 TEST_F(MapOutput, PixelsAreGeoreferenced) {
   for (const bool south_up : {false, true}) {
     const std::string dem = south_up ? write("up.tif", {600000, 30, 0, 4000000 - 31 * 30, 0, 30}, 32616, true) : dem_;

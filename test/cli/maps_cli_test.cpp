@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp viewshed`, `shadow`, `los` and `profile`: what they write, and what they refuse in one line.
+// `scarp viewshed`, `shadow`, `los` and `profile`: their output, and their one-line errors.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -152,7 +152,7 @@ TEST_F(MapsCli, AppliesViewshedPixelValues) {
   EXPECT_EQ(crowded.nodata, 252);
   EXPECT_EQ(crowded.beyond, 254);
   EXPECT_EQ(crowded.share, plain.share);
-  // As gdal_viewshed has them: hidden and out of range are one value.
+  // As in gdal_viewshed: hidden and out of range have the same value.
   const Seen theirs = seen({"-vv", "255", "-iv", "0", "-ov", "0", "-a_nodata", "0"});
   EXPECT_EQ(theirs.nodata, 0);
   EXPECT_EQ(theirs.visible, 255);
@@ -248,7 +248,7 @@ TEST_F(MapsCli, ShadowAcceptsTimes) {
   expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
 }
 
-// The parts put together are the whole, pixel by pixel, and lie where their rows do.
+// The parts together are the whole map, pixel by pixel, and each is georeferenced by its rows.
 TEST_F(MapsCli, PartsMatchTheWhole) {
   const Names maps[] = {
       Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9"},
@@ -364,7 +364,7 @@ TEST_F(MapsCli, ProfileWritesATableOrAFigure) {
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
 }
 
-// Green where the observer sees the ground, grey where not, the colours of heights where nothing was asked.
+// Green where the observer sees the ground, grey where not, height colours outside of the map.
 TEST_F(MapsCli, PreviewOverlaysTheMap) {
   const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("v.tif")};
 #ifndef SCARP_CAIRO
@@ -438,7 +438,7 @@ TEST_F(MapsCli, ReportsBadInputInOneLineWithoutOutput) {
   expect_refused(on_dem("los") + Names{"--lines", dem_}, "dem.asc");
 }
 
-// What else people type, one line each.
+// Other usage errors, one line each.
 TEST_F(MapsCli, ValidatesPlacesTimesAndFiles) {
   const std::string out = path("x.tif");
   const Names view = on_dem("viewshed") + Names{"-o", out, "--observer"};
@@ -476,7 +476,7 @@ TEST_F(MapsCli, ValidatesPlacesTimesAndFiles) {
     expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out},
                    "--raster-crs");
 #endif
-  // Found before the work.
+  // Found before the work starts.
   const Names there = on_dem("viewshed") + Names{"--observer", "500105,5000105", "--of", "GTiff", "-o"};
   expect_refused(there + Names{path("none/x.tif")}, "'" + path("none") + "' does not exist");
   expect_refused(there + Names{path("")}, path(""));
@@ -524,7 +524,7 @@ TEST_F(MapsCli, FullDiskLeavesNoOutput) {
 #ifdef SCARP_CAIRO
   expect_full(on_dem("profile") + line + Names{"-o", path("x.svg")}, kFew, "x.svg");
   expect_full(on_dem("profile") + line + Names{"-o", path("x.png")}, kFew, "x.png");
-  // The map is there, its picture is not.
+  // The map exists, its picture does not.
   constexpr std::uint64_t kSome = 6000;
   scratch_.write("x.tif", "old");
   expect_full(view + Names{"-o", path("x.tif"), "--preview", path("x.png")}, kSome, "x.png");
@@ -548,7 +548,7 @@ TEST_F(MapsCli, InterruptLeavesNoOutput) {
     Program program({"viewshed", dem, "--raster-crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o",
                      path("x.tif"), "--preview", path("x.png")});
 #ifdef SCARP_CAIRO
-    // The picture's file is reserved when the work begins.
+    // The picture's file is reserved when the work starts.
     for (int i = 0; i < 2000 && scratch_.files() == before; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_NE(scratch_.files(), before);

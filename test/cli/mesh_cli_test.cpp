@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render --mesh`: a mesh among terrain, and what is refused.
+// `scarp render --mesh`: a mesh on terrain, and errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ TEST_F(MeshOption, StandsAtMeshAt) {
   const std::vector<int> north_west = reds({"--mesh-at", "480,1440,9000"});
   EXPECT_NEAR(north_west[1], 16, 2);
   EXPECT_NEAR(north_west[2], 16, 2);
-  // On the ground in the middle, where hills hide a part of what is level.
+  // On the ground in the middle, where hills hide part of the level roof.
   const std::vector<int> on_ground = reds({});
   EXPECT_GT(on_ground[0], 5);
   EXPECT_LT(on_ground[0], 100);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of the command line as such: numbers are finite and in their range, help is complete, and options without
+// Options of the command line in general: numbers are finite and in their range, help is complete, and options without
 // effect are refused.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,7 +28,7 @@ namespace {
 using test::run;
 using Names = std::vector<std::string>;
 
-// What the program declares.
+// The declarations of the program.
 const cli::Program& declared() {
   static cli::Program program;
   if (program.commands().empty()) cli::add_commands(program);
@@ -114,7 +114,7 @@ TEST(Help, ListsEveryOptionAndTopic) {
   EXPECT_EQ(unknown.err.find("scarp: error: --help 'wather': unknown topic of 'scarp render' (topics: all, general, "),
             0u)
       << unknown.err;
-  // Whatever else was typed.
+  // Regardless of other options.
   EXPECT_EQ(run({"render", "--watr", "3", "--fov", "x", "--help", "fog"}).status, 0);
   EXPECT_EQ(run({"--help", "cast"}).out, run({"cast", "--help"}).out);
 }
@@ -143,7 +143,7 @@ TEST(Options, RejectNumbersOutOfRange) {
   }
 }
 
-// Whatever the order of the options, the message is the same.
+// The message does not depend on the order of the options.
 TEST(Options, AreCheckedInTheOrderTyped) {
   const Names first{"--fov", "0"}, second{"--waves", "2"};
   const auto message = [](const Names& a, const Names& b) {
@@ -162,7 +162,7 @@ TEST(Options, AreCheckedInTheOrderTyped) {
   }
 }
 
-// A preset is applied before the settings that were typed, wherever it stands.
+// A preset is applied before typed settings, in any order on the command line.
 TEST(Options, OverrideAPreset) {
   test::Scratch scratch;
   const std::string out = scratch.path("out.png");
@@ -301,12 +301,12 @@ TEST_F(WithoutEffect, IsRejectedForScenesAndFunctions) {
   expect_refused(function, {"--refine-halvings", "3", "--march", "naive"}, "--refine bisect");
 }
 
-// Each option of a picture is refused by the looks that do not read it, and makes another picture with those that do.
+// Each option of a picture is rejected by the looks that do not read it, and changes the picture with those that do.
 TEST_F(WithoutEffect, IsRejectedForLooks) {
   struct Case {
-    Names options;     // the one that is meant, and its value
+    Names options;     // the option, and its value
     Names looks;       // that read it
-    Names others{};    // that it needs
+    Names others{};    // that it requires
     bool seen = true;  // in a picture as small as this one
   };
   const Names soft{"--samples", "4"}, fog{"--fog", "height"}, lake{"--water", "30"}, lit{"shaded", "comanche"},
@@ -388,7 +388,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
       EXPECT_TRUE(picture(look, c.options, c.others) != without[key]) << what;
     }
   }
-  // Whoever adds an option says here which looks read it.
+  // A new option must be listed here with the looks that read it.
   const Names of_all = {"--size", "--look", "--no-plinth", "--lowres", "--reach"};
   using cli::Topic;
   for (const auto& [topic, options] : cli::options_by_topic(render)) {

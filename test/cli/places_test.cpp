@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Positions in map coordinates, in degrees and above ground, and what is refused.
+// Positions in map coordinates, in degrees and above ground, and errors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render --device`: a picture on whatever device there is, and what is refused.
+// `scarp render --device`: a picture on any available device, and errors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class RenderOnDevice : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_on_device(std::move(arguments));
   }
-  // One line that says `what`, and no file.
+  // One line that contains `what`, and no file.
   void expect_refusal(const Result& result, const std::string& what) const {
     EXPECT_NE(result.status, 0);
     EXPECT_EQ(lines(result.err), 1) << result.err;
@@ -85,7 +85,7 @@ TEST_F(RenderOnDevice, RendersFunctionsAndScenes) {
     const auto device = run_on_device(arguments);
     ASSERT_EQ(device.status, 0) << device.err;
     EXPECT_NE(device.out.find(", on "), std::string::npos) << device.out;
-    // Points of the ground move by millimetres over some kilometres: below a colour's last bit but for where light and
+    // Points of the ground move by millimetres over some kilometres: below a colour's last bit except where light and
     // shade, or ground and sky, meet.
     const auto picture = read_png(picture_);
     int unlike = 0;
@@ -102,7 +102,7 @@ TEST_F(RenderOnDevice, RendersFunctionsAndScenes) {
   }
 }
 
-// Hits on voxels are those of the CPU to the bit, so pictures and tables are.
+// Hits on voxels are those of the CPU to the bit, and therefore pictures and tables, too.
 TEST_F(RenderOnDevice, RendersVoxelsAsTheCpu) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);

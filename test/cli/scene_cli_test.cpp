@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes on the command line: what is printed, which options go with them, what is written.
+// Scenes on the command line: printed output, accepted options, written files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -62,7 +62,7 @@ TEST_F(Scenes, AreOverriddenByOptions) {
   EXPECT_NE(test::run({"render", path_, path_, "-o", picture_}).err.find("stands alone"), std::string::npos);
 }
 
-// Sky, water and fog of the file, and what options make of them.
+// Sky, water and fog of the file, and options that change them.
 TEST_F(Scenes, ApplyTheirEnvironment) {
   const auto scene = [&](const std::string& environment) {
     std::ofstream(path_)
@@ -153,7 +153,7 @@ TEST_F(Scenes, UseTheirCameraInEveryLook) {
 }
 
 #ifdef SCARP_CAIRO
-// Of one ramp over heights.
+// Colours of one ramp over heights.
 TEST_F(Scenes, ShowALegendWhenColouredByARamp) {
   const auto rendered = [&](const std::string& materials) {
     std::ofstream(path_) << R"({"camera": {"eye": [0, -20, 5], "target": [0, 0, 0]}, "materials": {)" << materials
@@ -186,10 +186,9 @@ TEST_F(Scenes, AreDescribedByInfo) {
   EXPECT_EQ(Json::parse(test::run({"info", path_, "--json"}).out)["objects"][0]["fields"][0]["samples"], 72);
 }
 
-// A million levels: one line with where that is, and no stack used up.
+// A million levels: one line with the position, and no stack overflow.
 TEST_F(Scenes, RejectDeepNesting) {
-  // Who calls itself for each of them needs more than the usual stack of 8 MiB, at the 32 bytes that a call takes at
-  // least.
+  // A recursive parser would need more than the usual stack of 8 MiB, at 32 bytes or more per call.
   constexpr int kLevels = 1 << 18;
   const auto nested = [&](const std::string& before, const std::string& level, const std::string& core,
                           const std::string& after, const std::string& last) {

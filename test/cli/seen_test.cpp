@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A picture that shows nothing has a warning that says why.
+// A picture that shows nothing comes with a warning that says why.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ class Seen : public testing::Test {
   static double hill(int col, int row) { return std::round(200 + 100 * std::sin(col * 0.5) * std::cos(row * 0.4)); }
   std::string hills() const { return grid("hills.asc", 100, hill); }
 
-  // What a run says beside its notes; it must succeed.
+  // Output of a run other than its notes; it must succeed.
   std::string warning(const std::string& input, Names options, const std::string& output = "out.png") const {
     Names arguments{"render", input, "-o", scratch_.path(output), "--size", "48x27"};
     arguments.insert(arguments.end(), options.begin(), options.end());

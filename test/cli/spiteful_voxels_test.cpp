@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// MagicaVoxel files made to break readers: headers, chunks, models, palettes, truncation. Each is expected to do what
-// an artist would expect of it.
+// MagicaVoxel files made to break readers: headers, chunks, models, palettes, truncation. Each must do what an artist
+// would expect.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ using namespace test::spite;
 constexpr Size kFour{4, 4, 4}, kTwo{2, 2, 2};
 const std::string kBlock = block(kFour);
 
-// Commands that are tried on some of the cases.
+// Commands for some of the cases.
 const std::vector<std::string> kAll{"cast", "section", "voxelise"};
 
 // About as much as an editor writes: two models in a scene, a layer, a palette, materials, its own settings.
@@ -140,7 +140,7 @@ TEST(SpitefulVox, Palettes) {
   });
 }
 
-// Red by the default palette, by entry kRed - 1 of RGBA whatever IMAP says; not by the entry of the index itself.
+// Red by the default palette, by entry kRed - 1 of RGBA regardless of IMAP; not by the entry of the index itself.
 TEST(SpitefulVox, ColoursMatchTheEditor) {
   std::string rgba = palette(0x0000ff, kRed - 1).substr(12) + test::spite::bytes({255, 0, 0, 255});
   rgba += palette(0x0000ff, 256 - kRed).substr(12);

@@ -96,7 +96,7 @@ TEST_F(CliVox, MemoryDependsOnSolidVoxels) {
   file.nodes[1].content = group;
   write_vox(model_, file);
   const auto json = nlohmann::json::parse(run({"info", model_, "--json"}).out);
-  // Of 3.3 MB that each would take if all its voxels were stored.
+  // Each would take 3.3 MB if all its voxels were stored.
   EXPECT_LT(json["bytes"].get<int>(), kModels * 60'000);
   // Octants take 8 bytes per voxel of the boxes.
   expect_refused({"render", model_, "-o", path("out.png"), "--march", "voxel-octants"}, "1.1 GB of memory");
@@ -125,7 +125,7 @@ TEST_F(CliVox, RendersAnimationFrames) {
   EXPECT_EQ(past.status, 0);
   EXPECT_NE(past.err.find("note: frame 9: the animation ends at frame 4, which is shown\n"), std::string::npos)
       << past.err;
-  // Scene files note it with the name of the file.
+  // For scene files the note includes the name of the file.
   const std::string scene =
       scratch_.write("scene.json", R"({"objects": [{"voxels": {"file": "model.vox", "frame": 5}}]})");
   const auto placed = run({"render", scene, "-o", path("placed.png"), "--size", "30x30"});
@@ -134,8 +134,8 @@ TEST_F(CliVox, RendersAnimationFrames) {
       << placed.err;
 }
 
-// From four sides, and along a path: as an input, and in a scene. The tower in the plate's eastern corner is in another
-// place of each picture.
+// From four sides, and along a path: as an input, and in a scene. The tower in the plate's eastern corner is at a
+// different position in each picture.
 TEST_F(CliVox, RendersTurntablesAndPaths) {
   VoxFile file = read_vox(model_);
   for (std::uint8_t z = 1; z < 3; ++z) file.models[0].voxels.push_back({2, 0, z, 1});
@@ -158,7 +158,7 @@ TEST_F(CliVox, RendersTurntablesAndPaths) {
   EXPECT_EQ(frames(scene, "scene", 4, turn), turned);
   const std::vector<std::string> fly{"--path", flight, "--frames", "3", "--sun", "235,45"};
   EXPECT_EQ(frames(scene, "flown", 3, fly), frames(model_, "flight", 3, fly));
-  // A quarter turn is what --view shows from there.
+  // After a quarter turn the picture is that of --view.
   ASSERT_EQ(run({"render", model_, "-o", path("a.png"), "--size", "48x32", "--turntable"}).status, 1);
   ASSERT_EQ(run({"render", model_, "-o", path("a.png"), "--size", "48x32", "--haze", "0", "--view", "290,30"}).status,
             0);
@@ -169,7 +169,7 @@ TEST_F(CliVox, RendersTurntablesAndPaths) {
   EXPECT_EQ(test::text_of(path("a.png")), test::text_of(path("b1.png")));
 }
 
-// The default palette's entry 216 is a pure red; from above, in full sun, it stays what it is.
+// The default palette's entry 216 is a pure red; from above, in full sun, it does not change.
 TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
   std::string first;
   for (const char* march : {"voxel-exhaustive", "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-cubes-jump",
@@ -331,7 +331,7 @@ TEST_F(CliVox, EveryLookDiffers) {
   }
 }
 
-// A plate of 3 x 3 with 2 voxels of room: 49 cells, 40 of them with the number that they are away.
+// A plate of 3 x 3 with 2 voxels of room: 49 cells, 40 of them with the number of their distance.
 TEST_F(CliVox, SectionPrintsDistances) {
   const std::string svg = path("section.svg");
   const auto count = [](const std::string& text, const std::string& part) {
@@ -351,7 +351,7 @@ TEST_F(CliVox, SectionPrintsDistances) {
   EXPECT_EQ(count(cubes, "<text"), 32);
 }
 
-// 2^21 times the same model: groups of two that are the same.
+// 2^21 times the same model: nested groups of two equal children.
 TEST_F(CliVox, ErrorNamesOversizedScenes) {
   constexpr int kLevels = 21;
   VoxFile file;
@@ -367,7 +367,7 @@ TEST_F(CliVox, ErrorNamesOversizedScenes) {
   write_vox(model_, file);
   expect_refused({"render", model_, "-o", path("out.png")}, named);
   expect_refused({"info", model_}, named);
-  // Hidden ones are counted by info alone.
+  // Only info counts hidden ones.
   file.nodes[0].attributes = {{"_hidden", "1"}};
   write_vox(model_, file);
   expect_refused({"info", model_}, named);

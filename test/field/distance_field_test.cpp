@@ -106,7 +106,7 @@ TEST(DistanceField, IsOneLipschitz) {
   }
 }
 
-// Trees that nobody thought of: the same.
+// The same for random trees.
 RC_GTEST_PROP(DistanceField, SignMatchesSetMembershipOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const Shape shape = random_shape(random, 1 + static_cast<int>(seed % 4), false);
@@ -130,7 +130,7 @@ RC_GTEST_PROP(DistanceField, IsOneLipschitzOnRandomTrees, (unsigned seed)) {
   }
 }
 
-// Solids tell the distance itself: so far along the gradient, and no nearer, is the surface.
+// Solids return the exact distance: the surface is this far along the gradient, and no nearer.
 TEST(DistanceField, IsExactOutsideSingleSolids) {
   for (const NamedShape& named : shape_zoo()) {
     const bool exact = named.name.find("sphere") != std::string::npos || named.name == "box" ||
@@ -186,12 +186,12 @@ TEST(DistanceField, GradientsMatchFiniteDifferences) {
       };
       const double h = 1e-4;
       const dvec3 coarse = differences(2 * h), fine = differences(h);
-      // Central differences are off by a third of what doubling the step changes, which tells by how much.
+      // The error of central differences is a third of their change when the step is doubled.
       const double off = length(coarse - fine) + 4 * field.rounding(kReach) / h;
       creases += length(field.gradient(p) - fine) > off + 1e-7;
       ASSERT_NEAR(length(field.normal(p)), 1, 1e-12) << named.name;
     }
-    // Nearer than 0.1 mm to a crease: one in a hundred that are within 0.1 m of a surface's edge.
+    // Positions closer than 0.1 mm to a crease are one in a hundred of those within 0.1 m of a surface's edge.
     EXPECT_LE(creases, samples / 100) << named.name;
   }
 }
@@ -233,7 +233,7 @@ TEST(DistanceField, SegmentBoundsHold) {
   }
 }
 
-// Guards may leave out what cannot change the value, and nothing else.
+// Guards may skip only nodes that cannot change the value.
 TEST(DistanceField, UnionIsTheMinimumOfItsParts) {
   std::vector<Shape> parts;
   std::vector<DistanceField> fields;
@@ -268,8 +268,8 @@ TEST(DistanceField, KeepsMaterials) {
   const auto painted = [](const Shape& shape, int material) { return make_shape(Painted{shape, material}); };
   const Shape ball = painted(make_shape(Sphere{1}), 3), block = make_shape(Box{{2, 2, 0.5}});
   const DistanceField cut(painted(make_shape(Subtraction{block, ball}), 7));
-  EXPECT_EQ(cut.material({1.9, 0, 0.5}), 7);  // the inner material goes first, the outer is for what has none
-  EXPECT_EQ(cut.material({0.99, 0, 0}), 3);   // the cut has that of what was cut out
+  EXPECT_EQ(cut.material({1.9, 0, 0.5}), 7);  // the inner material takes precedence, the outer is the default
+  EXPECT_EQ(cut.material({0.99, 0, 0}), 3);   // the cut has the material of the subtracted solid
   const DistanceField bare(make_shape(Union{{block, make_shape(Moved{ball, {5, 0, 0}})}}));
   EXPECT_EQ(bare.material({0, 0, 0.5}), 0);
   EXPECT_EQ(bare.material({5, 0, 1}), 3);
@@ -290,7 +290,7 @@ TEST(DistanceField, SmoothOperationsStayWithinAQuarterOfTheRadius) {
     if (std::abs(x - y) >= 0.8) {
       ASSERT_LE(rounded, slack);
     }
-    // An intersection may be more: that is the distance to its box.
+    // An intersection may be larger: it is the distance to its box.
     ASSERT_GE(common.value(p), std::max(x, y) - slack);
     ASSERT_TRUE(cut.value(p) >= std::max(x, -y) - slack && cut.value(p) <= std::max(x, -y) + 0.2 + slack);
   }

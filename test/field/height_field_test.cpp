@@ -55,7 +55,7 @@ TEST(HeightField, AppliesScaleOffsetAndExaggeration) {
   EXPECT_DOUBLE_EQ(field.max_height(), 232);
 }
 
-// A hole far away takes the general way to the same bits.
+// With a hole far away, the general code returns the same bits.
 TEST(HeightField, ShadingNormalsDoNotDependOnHolesElsewhere) {
   constexpr int kSide = 8;
   std::vector<float> samples;
@@ -160,7 +160,7 @@ RC_GTEST_PROP(HeightField, GradientMatchesFiniteDifferences, ()) {
       HeightField::own<float>({value(), value(), value(), value()}, 2, 2, {.cell_x = 3, .cell_y = 7, .scale = 0.25});
   const double x = *rc::gen::inRange(1, 99) * 0.03, y = *rc::gen::inRange(1, 99) * 0.07;
   const dvec2 slope = field.gradient(x, y).value();
-  // Along one axis a bilinear surface is linear: central differences are exact but for the rounding of heights up to
+  // Along one axis a bilinear surface is linear: central differences are exact except for the rounding of heights up to
   // 250 m over a step of 1/64 m.
   const double d = 0x1p-6, rounding = 8 * 250 * 0x1p-52 / d;
   RC_ASSERT(std::abs((field.height(x + d, y).value() - field.height(x - d, y).value()) / (2 * d) - slope.x) < rounding);
@@ -168,7 +168,7 @@ RC_GTEST_PROP(HeightField, GradientMatchesFiniteDifferences, ()) {
 }
 
 TEST(HeightField, CountsHolesInLongRows) {
-  // Rows longer than what is looked at as one, with holes here and there; 0 marks -0, too.
+  // Rows longer than a chunk of the count, with scattered holes; 0 also marks -0.
   constexpr int kCols = 150;
   std::vector<float> samples(2 * kCols, 3);
   samples[5] = 0, samples[70] = -0.0f, samples[149] = std::numeric_limits<float>::quiet_NaN(), samples[160] = -7;

@@ -51,11 +51,11 @@ TEST(HeightFunction, GradientsMatchFiniteDifferences) {
       ++creases;
       if (named.smooth) ADD_FAILURE() << named.name << " at " << x << ", " << y << ": off by " << error;
     }
-    EXPECT_LE(creases, 30) << named.name;  // one position in a hundred is nearer than 2 mm to a crease: too many
+    EXPECT_LE(creases, 30) << named.name;  // one position in a hundred is closer than 2 mm to a crease: too many
   }
 }
 
-// All that is asked of a bound over [x, x + size] x [y, y + size].
+// All quantities bounded over [x, x + size] x [y, y + size].
 struct Seen {
   double low = 1e300, high = -1e300, slope = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Extents after edits are those of all samples, looked at one by one.
+// Extents after edits equal those computed from all samples one by one.
 #include "scarp/field/sample_extent.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TYPED_TEST_SUITE(SampleExtentTest, SampleTypes);
 
 TYPED_TEST(SampleExtentTest, ForgetsOverwrittenExtremes) {
   Ground<TypeParam> ground({});
-  // In the midst of a tile, where four meet, and in all corners of the field.
+  // In the interior of a tile, where four meet, and in all corners of the field.
   for (const SampleRect& at : std::vector<SampleRect>{{70, 80, 1, 1},
                                                       {63, 63, 2, 2},
                                                       {0, 0, 1, 1},
@@ -108,7 +108,7 @@ TYPED_TEST(SampleExtentTest, CoversTheFullRangeOfTheType) {
 }
 
 TYPED_TEST(SampleExtentTest, CountsNodataAddedAndRemoved) {
-  // Above all samples and below all: taken for ground, either would show.
+  // Above all samples and below all: either would show if taken for ground.
   for (const int nodata : {0, 9999}) {
     Ground<TypeParam> ground(static_cast<TypeParam>(nodata));
     ground.fill({kCols - 3, kRows - 3, 3, 3}, static_cast<TypeParam>(nodata));

@@ -15,7 +15,7 @@
 namespace scarp::test {
 namespace {
 
-// What a grid should be: a table of optional entries.
+// Reference model of a grid: a table of optional entries.
 struct Model {
   ivec3 size;
   std::vector<VoxelGrid::Voxel> voxels;
@@ -92,7 +92,7 @@ TEST_P(Grids, RotationsAreInvertible) {
     for_each_voxel(grid.box(), [&](const ivec3& v) {
       const ivec3 at = rotated_voxel(v, grid.size(), turn);
       ASSERT_EQ(turned.solid(at), grid.solid(v));
-      // The middle of a voxel turns with the middle of the grid.
+      // The centre of a voxel is rotated with the centre of the grid.
       ASSERT_EQ(dvec3(at) + 0.5 - 0.5 * dvec3(turned.size()), turn(dvec3(v) + 0.5 - 0.5 * dvec3(grid.size())));
     });
   }
@@ -174,7 +174,7 @@ TEST(VoxelGrid, StaysConsistentAfterAThrowingEdit) {
   EXPECT_THROW(grid.set(placed), Error);
   before.expect(grid);
 
-  // By an entry that does not fit, and by itself: as it fills, and as it clears.
+  // Overlapping itself, with an entry that does not fit: when it fills, and when it clears.
   const auto edit = [&](const VoxelGrid::Voxel& to, const std::function<VoxelGrid::Voxel()>& last) {
     int asked = 0;
     grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) { return ++asked == 20'000 ? last() : to; });
@@ -199,8 +199,8 @@ TEST(VoxelGrid, RejectsSizesOutOfRange) {
   EXPECT_THROW(grid.unite(VoxelGrid({4, 4, 5})), Error);
 }
 
-// Pages that the source knows, and full ones that share their masks, hold what voxels one by one would; also after
-// edits.
+// Pages that the source knows, and full ones that share their masks, have the same content as voxels set one by one,
+// also after edits.
 TEST(VoxelGrid, BuildsWorldsPageByPage) {
   for (const ivec3& size : {ivec3(300, 20, 24), ivec3(256, 16, 20), ivec3(70, 33, 50)}) {
     const auto height = [](int x, int y) { return 12 + (x / 40 + y / 5) % 4 - (y >= 4 && y < 8 ? 9 : 0); };
@@ -324,7 +324,7 @@ TEST(VoxelGrid, BuildFromBricksMatchesEdits) {
   EXPECT_THROW(VoxelGrid::built(size, 5, too_large), Error);
 }
 
-// The post's object: 32^3, each solid voxel with a colour of its own.
+// The object of the post: 32^3, each solid voxel with its own colour.
 TEST(VoxelGrid, StoresTheStandardObjectCompactly) {
   VoxelGrid grid({32, 32, 32}, 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// naive, fixed-step and relaxed: they do what their texts say, including what they are known to get wrong.
+// naive, fixed-step and relaxed: they follow their documentation, including their known errors.
 #include <gtest/gtest.h>
 
 #include <array>

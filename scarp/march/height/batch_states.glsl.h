@@ -13,7 +13,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Of `max-mip`.
+/// State of `max-mip`.
 struct BatchWalk {
   ScarpHit hit;
   ScarpWalk walk;
@@ -21,7 +21,7 @@ struct BatchWalk {
   float z_low;
 };
 
-/// Of the others.
+/// State of the other marches.
 struct BatchMarch {
   ScarpHit hit;
   ScarpMarchState state;

@@ -95,7 +95,7 @@ class DeviceHeightMarch {
   std::optional<DeviceBuffer> states_;
   DeviceBuffer under_way_;
   std::map<PipelineKey, ComputePipeline> pipelines_;
-  // Of the batch.
+  // State of the current batch.
   const ComputePipeline* running_ = nullptr;
   glsl::RayBatch batch_{};
   DeviceRayQuery query_{};

@@ -10,7 +10,7 @@
 //                 else                                                    the sign of the clearance decides
 //
 // A frame begins at a point that two floats give exactly, and in its first cells floats are exact to 2^-18 of a cell.
-// So a hit is decided and located there, whatever the ray's length, and the margin only costs a new frame for rays that
+// A hit is decided and located there, whatever the ray's length, and the margin only costs a new frame for rays that
 // graze the ground. A ray that starts below the surface, or enters it from a hole, is left to the exact text
 // (max_mip.glsl.h) in a second pass: the status is then kScarpDoubtful.
 //

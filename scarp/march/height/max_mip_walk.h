@@ -479,8 +479,8 @@ class Walk {
     return !strict_ && side_ == Side::above && rim(grid_ray()).may_sink(t, through_ == Through::x_line ? 0 : 1);
   }
 
-  // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
-  // neighbours that share the place are one. Returns true if the query is answered.
+  // Records a touch at t, at a given place of a cell, which need not be on the ray's way. In lists of all hits, those
+  // of neighbours that share the place count as one. Returns true if the query is answered.
   bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;
     if (lists()) {

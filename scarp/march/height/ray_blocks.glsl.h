@@ -70,7 +70,7 @@ static_assert(sizeof(HitBlock) == kHitBlockBytes && sizeof(HitBlock) == kRayBloc
 /// Number of blocks for this many rays.
 constexpr std::uint64_t ray_blocks(std::uint64_t rays) { return (rays + kRayBlock - 1) / kRayBlock; }
 
-// What a buffer reference is in GLSL.
+// Counterpart of a buffer reference in GLSL.
 struct RayBlockAt {
   const RayBlock& is;
 };

@@ -202,7 +202,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     const VD far = hn::Mul(hn::Sub(last, origin[i]), inverse);
     const MD later = hn::AndNot(level, hn::Ge(near, t));
     MI enters = hn::RebindMask(di, later);
-    // Of planes at the same t the last one; in the order x, y, z that is the current one.
+    // If planes are crossed at the same t, the last one counts: in the order x, y, z the current one.
     if (ties.bits >> 3 != 0) {
       enters = hn::AndNot(hn::And(hn::RebindMask(di, hn::Not(hn::Gt(near, t))), entered_by(entered, ties, i, false)),
                           enters);

@@ -27,7 +27,7 @@ const double kRoomOfVoxel = 1.0lf / 16384.0lf;
 // Rasterisers may round the depth by some units of 2^-24.
 const double kNearer = 1.0lf - 1.0lf / 1024.0lf;
 
-// Of a box with this centre and half size along axes.
+// A box with this centre and half size along the axes.
 double least_along(dvec3 row, dvec3 middle, dvec3 axes[3], dvec3 reach) {
   double sum = dot(row, middle);
   for (int i = 0; i < 3; ++i) sum -= abs(dot(row, axes[i])) * reach[i];

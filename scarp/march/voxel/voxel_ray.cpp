@@ -82,7 +82,7 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
   if (!std::isfinite(direction.t_per_s)) return {};
   const VoxelTies ties = direction.ties;
   const double late = direction.exact ? ray.room : std::max(ray.room, kTouch * 0x1p-20);
-  // Clip to the box. Of planes crossed at the same t the last one is the entry face.
+  // Clip to the box. If planes are crossed at the same t, the last one is the entry face.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
   dvec3 from = ray.origin;

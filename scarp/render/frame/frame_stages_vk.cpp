@@ -53,7 +53,7 @@ int lights(const glsl::FrameSettings& s, std::uint32_t parts) {
   return (parts & glsl::kFrameHasShadows) != 0 ? 1 : 0;
 }
 
-// Of rays whose cell_time is the time between two samples.
+// For rays whose cell_time is the time between two samples.
 glsl::ScarpSampling samples(int interpolate, int max_steps) {
   return glsl::scarp_fixed_step(1, interpolate != 0 ? glsl::kScarpRefineSecant : glsl::kScarpRefineNone, max_steps);
 }

@@ -82,7 +82,7 @@ class FrameStages {
       owners_{"owners of rays"}, grounds_{"grounds in sight"}, counters_{"counts of rays"}, sums_{"sums of pixels"},
       pixels_{"pixels"};
   std::vector<std::uint32_t> words_;
-  // Of the picture.
+  // State of the current picture.
   const FrameWork* work_ = nullptr;
   const Progress* progress_ = nullptr;
   double done_ = 0;  // share of the picture

@@ -80,8 +80,8 @@ struct FrameRampPiece {
 /// Everything except `aa` and members documented in pixels is in metres of the world or grid units. Heights in metres
 /// are relative to the lowest ground, because floats lose precision at large heights above the sea.
 struct FrameSettings {
-  // Of the camera, in grid units: the ray through a position in the picture is the sum of these, x pixels to the right
-  // and y down. Along the view axis it travels a metre per time.
+  // The camera in grid units: the ray through a position in the picture is the sum of these, x pixels to the right and
+  // y down. Along the view axis it travels a metre per time.
   ScarpLine line;
   ScarpLine line_right;
   ScarpLine line_down;

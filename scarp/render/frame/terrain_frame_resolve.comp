@@ -106,7 +106,7 @@ vec3 colour_of_point(uint slot, FrameWater water) {
   return colour;
 }
 
-// Of a picture of the steps.
+// Colour in a picture of the steps.
 vec3 share_of_steps(FrameSeen camera, bool meets) {
   float share = min(1.0, float(camera.steps) / float(settings().is.most_steps));
   // A stepped ray that hits nothing takes all its steps, sampled or not.

@@ -37,7 +37,7 @@ class Lighting {
   /// Returns linear light; `rays` and their results are those that `asked` refers to.
   vec3 on(const LightPoint& at, const LightRays& asked, std::span<const Ray> rays,
           std::span<const std::uint8_t> blocked) const;
-  /// Of a point: to the sun at most, and to the sky.
+  /// Rays per point: to the sun at most, and to the sky.
   int sun_rays() const;
   int sky_rays() const;
   /// Whether surfaces block the sun, and the number of rays per point and purpose; none in unlit pictures.

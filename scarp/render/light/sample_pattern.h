@@ -44,7 +44,7 @@ class SamplePattern {
   PixelPoints pixel(int x, int y, std::uint32_t purpose) const;
 
   std::uint32_t seed() const { return seed_; }
-  /// Of a point's number in its pixel.
+  /// Bits of a point's number in its pixel.
   int index_bits() const { return index_bits_; }
 
  private:

@@ -69,7 +69,7 @@ vec3 sunlight_below_air(double turbidity, double altitude) {
   return light;
 }
 
-// Of linear sRGB (IEC 61966-2-1).
+// Luminance of linear sRGB (IEC 61966-2-1).
 float luminance(vec3 colour) { return dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
 // Cosine-weighted mean over the hemisphere: the radiance of white level ground in skylight.

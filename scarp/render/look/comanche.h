@@ -38,7 +38,7 @@ struct ComancheSettings {
 /// Throws Error naming the first setting out of range.
 void validate(const ComancheSettings& settings);
 
-/// Of the step at a grazing angle, `step_by_view`.
+/// Longest step at a grazing angle, with `step_by_view`.
 constexpr double kLongestStep = 8;
 
 /// A camera low over the field's south, looking north: the usual view of endless ground.
@@ -59,7 +59,7 @@ class StepMarch {
     double t = 0;
     std::uint32_t steps = 0;
   };
-  /// Of a ray of the camera; directions have length 1. `water` may be null.
+  /// For a ray of the camera; directions have length 1. `water` may be null.
   Answer march(const Ray& ray, const Water* water) const;
   /// For a ray that does not start at the camera: it has no planes.
   Hit march(const Ray& ray) const;

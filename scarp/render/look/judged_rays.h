@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verdicts of the look `error`, for rays of the caller's choice, with the steps that they took.
+// The verdicts of the look `error` for arbitrary rays, with the steps that they took.
 #pragma once
 
 #include <array>

@@ -29,7 +29,7 @@ SCARP_FN int scarp_patch_octaves(int set) { return set == kScarpDetail ? 4 : set
 SCARP_FN real scarp_patch_size(int set, real detail_size) {
   return set == kScarpDetail ? detail_size : set == kScarpBlur ? real(3.0) * detail_size : real(0.7) * detail_size;
 }
-/// Of the next octave.
+/// Size of the next octave.
 SCARP_FN real scarp_smaller_patch(real size) { return size / real(2.17); }
 
 /// Direction, in x and y of the world, in which patches of an octave are stretched: alternating, so that no two octaves

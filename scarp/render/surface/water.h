@@ -35,7 +35,7 @@ struct WaterSettings {
 /// Throws Error naming the first setting out of range.
 void validate(const WaterSettings& settings);
 
-/// Of air to water.
+/// Refractive index from air to water.
 constexpr double kWaterIndex = 1.333;
 
 /// Returns the reflected fraction of light, 0..1, for this cosine of the angle between ray and normal.

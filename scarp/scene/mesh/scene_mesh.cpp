@@ -156,7 +156,7 @@ class MeshField final : public SceneField {
     const MeshField& mesh;
     const MeshRay& ray;
     const MeshFilter* filter;
-    std::exception_ptr failure{};  // of the caller's filter: Embree must not be left by an exception
+    std::exception_ptr failure{};  // thrown by the filter: exceptions must not pass through Embree
     std::uint32_t triangles = 0;
   };
 

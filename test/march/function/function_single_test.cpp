@@ -45,7 +45,7 @@ glsl::ScarpTwoFloat two(double x) {
 }
 double value(const glsl::ScarpTwoFloat& x) { return static_cast<double>(x.high) + static_cast<double>(x.low); }
 
-// A function's program as the shaders' text reads it.
+// A function's program in the layout that the shaders read.
 class Program {
  public:
   explicit Program(const FunctionProgram& program) : words_(function_words(program)) {
@@ -247,7 +247,7 @@ TEST(FunctionsInShaders, RaysEscapeTheSurface) {
       if (!prepared.marches) continue;
       const Hit hit = hit_from_device(ray, prepared,
                                       glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, false));
-      // Later on, by when the ray is clear of the surface or under it by more than rounding, it is judged as free.
+      // Once the ray is above or below the surface by more than rounding, it is judged as free.
       const double delta = 4 * static_cast<double>(prepared.ray.rounding), speed = length(ray.direction);
       Ray later = ray;
       later.start = RayStart::free;
@@ -266,7 +266,7 @@ TEST(FunctionsInShaders, RaysEscapeTheSurface) {
       if (h < 0) {
         EXPECT_TRUE(at_once) << named.name << ", ray " << i;
       } else if (at_once) {
-        // Along the surface either answer is right, on the way out of it a hit is none.
+        // Along the surface either answer is right; on the way out a hit is wrong.
         EXPECT_FALSE(rises) << named.name << ", ray " << i;
       } else {
         left += rises;

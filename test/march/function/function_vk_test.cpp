@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions on a Vulkan device: all their marches tell what single precision allows (function_judge.h), any-hit
-// agrees with closest-hit, and validation has nothing to say.
+// Terrain functions on a Vulkan device: all their marches return what single precision allows (function_judge.h),
+// any-hit agrees with closest-hit, and validation is silent.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST_F(FunctionsOnDevice, MarchesMatchWithinSinglePrecision) {
   }
 }
 
-// Invocations share a vector and its turns of loops, and come to their last evaluations at different steps: the longest
+// Invocations share a vector and its loop iterations, and reach their last evaluations at different steps: the longest
 // program, and the most of these.
 TEST_F(FunctionsOnDevice, RaysDoNotAffectNeighbours) {
   const int kTogether = cases(16, 16, 4);
@@ -110,7 +110,7 @@ TEST_F(FunctionsOnDevice, RaysDoNotAffectNeighbours) {
   }
 }
 
-// castle ends within a millimetre of the ground, less than a float may be off: its rays to the sun begin there.
+// castle ends within a millimetre of the ground, less than a float may be off: its rays to the sun start there.
 TEST_F(FunctionsOnDevice, RaysFromTheSurfaceEscape) {
   const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
   const DeviceFunction on_device(device(), hills);

@@ -72,7 +72,7 @@ TEST(ClosestPoint, StaysWithinItsBoundOnBilinearCells) {
       EXPECT_NEAR(field.height_from_sample(
                       height_in_cell(Surface::bilinear, *field.cell_heights(found->cell), found->u, found->v)),
                   found->point.z, 1e-12);
-      // No point of the cell or its neighbours beside it is closer by more than the bound.
+      // No point of the cell or its neighbours is closer by more than the bound.
       for (int j = 0; j < 200; ++j) {
         const double x = found->point.x + uniform(random, -0.01, 0.01),
                      y = found->point.y + uniform(random, -0.01, 0.01);

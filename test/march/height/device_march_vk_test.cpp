@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays that stay on a Vulkan device: shaders made for one kind of field answer as those for any, in one run
-// or in many, and rays through walls as over ground that is not solid.
+// Batches of rays that stay on a Vulkan device: shaders specialised for one kind of field return the same answers as
+// general ones, in one run or in many, also for rays through walls and over ground that is not solid.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ constexpr std::size_t kKindsOfField = 4;
 
 class BatchesOnDevice : public OnDevice {
  protected:
-  // The answers to rays, in so many runs.
+  // The answers to rays, in this many runs.
   struct Marched {
     std::vector<glsl::ScarpHit> hits;
     int runs = 0;

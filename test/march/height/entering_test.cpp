@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All marches on rays that come in under the ground: they go on, and hit where they later go down through it.
+// All marches on rays that enter below the ground: they continue, and hit where they later descend through it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(EnteringRays, ContinueInSinglePrecision) {
   }
 }
 
-// A tolerance that grows with the distance does not hide where they come out.
+// A tolerance that grows with the distance does not hide the exit.
 TEST(EnteringRays, ContinueFromFarAway) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);
@@ -77,7 +77,7 @@ TEST(EnteringRays, ContinueFromFarAway) {
   }
 }
 
-// A ray that begins under the ground of the field keeps the answer that the march documents.
+// A ray that starts below the ground of the field has the documented answer of the march.
 TEST(EnteringRays, KeepDocumentedAnswersWhenStartingBelowGround) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The marches that take samples on a Vulkan device, beside their text as C++: the same points, also along rays that are
+// The sampling marches on a Vulkan device, compared with their text as C++: the same points, also along rays that are
 // clipped at the highest sample.
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST_P(HeightMarchesOnDevice, SampleTheSamePointsAsTheCpu) {
     const Hit hit = hit_from_device(rays[i], prepared, expected);
     EXPECT_EQ(blocked[i], static_cast<bool>(hits[i]));
     met += static_cast<bool>(hits[i]);
-    // Rounding of the device may take a ray to other points.
+    // Rounding on the device may lead a ray to other points.
     others += hits[i].status != hit.status || costs[i].steps != expected.steps;
   }
   EXPECT_GT(met, kRaysAlongHills / 4);
@@ -107,7 +107,7 @@ TEST_P(HeightMarchesOnDevice, StopAboveTheHighestSampleOnRequest) {
     EXPECT_EQ(clipped_hits[i].status, hits[i].status);
     if (!hits[i]) continue;
     ++met;
-    // Rounding at the border is that of another end.
+    // Rounding at the border is like that of a different end.
     EXPECT_NEAR(clipped_hits[i].t, hits[i].t, 1e-3);
   }
   EXPECT_EQ(clipped_costs[0].steps, 0u);

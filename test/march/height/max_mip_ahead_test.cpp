@@ -26,7 +26,7 @@ const int kRaysPerPair = cases(10'000, 1000, 16);
 const int kRays = cases(100'000, 10'000, 400);
 constexpr int kRaysPerField = 500;
 
-// Returns how many of the rays vectors decide.
+// Returns the number of rays that vectors decide.
 int compare(const HeightTarget& target, const std::vector<Ray>& rays, const std::string& what) {
   if (!max_mip::looks_ahead(target)) return 0;
   int decided = 0;
@@ -90,12 +90,12 @@ TEST(MaxMipAhead, FollowsRaysAlongHills) {
     const int decided = compare_on_all({&field, &pyramid}, rays, "hills");
     if (HasFailure()) return;
     if (!max_mip::looks_ahead({&field, &pyramid})) GTEST_SKIP() << "vectors of this machine are too short";
-    // Only rays that pass the ground by less than the margins remain open: far fewer than half.
+    // Only rays that pass the ground within the margins remain undecided: far fewer than half.
     EXPECT_GT(decided, kRays / 2);
   }
 }
 
-// From nodes, edges and points of cells, and from outside through them; above the ground by less than floats can tell,
+// From nodes, edges and points of cells, and from outside through them; above the ground by less than float precision,
 // or below it; along axes and diagonals; over ground that is rough from sample to sample.
 template <class T>
 void rough_ground(Random& random, double relief, int cols, int rows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy: the shader text as C++ and the row of the table, by the bound that it is documented with.
+// max-mip-easy: the shader text as C++ and the row of the table, by its documented bound.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::size_t> plain_kinds(const std::vector<FieldKind>& kinds) {
   return plain;
 }
 
-// As the text asks for.
+// As the text requires.
 bool is_within_limits(glm::vec3 origin, glm::vec3 direction) {
   constexpr float kLimit = 1e6f;
   const auto longest = [](glm::vec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
@@ -52,7 +52,7 @@ EasyAnswer answer_of(const Ground::EasyHit& hit) {
   return {hit.hit, hit.below, double{hit.t}, {hit.cell.x, hit.cell.y}, double{hit.place.x}, double{hit.place.y}};
 }
 
-// Casts a ray of floats, closest and any, and with operations reordered; returns what is wrong.
+// Casts a ray of floats, closest and any hit, and with operations reordered; returns the errors.
 std::string cast(const HeightField& field, const MaxPyramid& pyramid, glm::vec3 origin, glm::vec3 direction,
                  float t_max, double* worst = nullptr) {
   Ground ground(field, pyramid);
@@ -65,7 +65,7 @@ std::string cast(const HeightField& field, const MaxPyramid& pyramid, glm::vec3 
   return objection;
 }
 
-// Calls check(field, pyramid, ray, words) for rays of all kinds over all fields that the march takes.
+// Calls check(field, pyramid, ray, words) for rays of all kinds over all fields that the march supports.
 template <class Check>
 void for_each_ray(const Check& check) {
   for (const bool wide : {false, true}) {
@@ -179,7 +179,7 @@ TEST(MaxMipEasy, NoRayIsLostBetweenCells) {
   EXPECT_EQ(wrong, 0);
 }
 
-// Closed: what stands still on the last line is over the last cell.
+// Closed: a ray that does not move along the axis on the last line is over the last cell.
 TEST(MaxMipEasy, IncludesTheBorder) {
   const HeightField field = HeightField::own(std::vector<float>(7 * 5, 2.0f), 7, 5);
   const MaxPyramid pyramid(field);
@@ -259,7 +259,7 @@ TEST(MaxMipEasy, NormalsMatchTheSurface) {
   }
 }
 
-// Rays that come in below the ground stop at once.
+// Rays that enter below the ground stop at once.
 TEST(MaxMipEasy, StopsRaysFromBelow) {
   for (const bool solid : {false, true}) {
     const HeightField field = bowl_field(false, solid);
@@ -294,7 +294,7 @@ TEST(MaxMipEasy, RejectsUnsupportedFields) {
   EXPECT_EQ(refused(6, {.wrap = Wrap::periodic}), takes + "wraps (use max-mip)");
 }
 
-// It is there to be pasted.
+// The text is meant for pasting.
 TEST(MaxMipEasy, SourceIsShortAndSelfContained) {
   std::ifstream file(SCARP_SOURCE_DIR "/scarp/march/height/max_mip_easy.glsl.h");
   int lines = 0;

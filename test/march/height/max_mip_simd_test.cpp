@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The vectors answer as the scalar walk does, bit for bit: every kind of field and ray of the oracle's suite, on every
-// instruction set that this machine has, in batches of odd sizes, with each idea left out.
+// instruction set that this machine has, in batches of odd sizes, with each optimisation disabled.
 #include "scarp/march/height/max_mip_simd.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ const int kRaysPerSet = cases(3000, 1000, 25);
 const int kCameras = cases(60, 15, 1);
 const int kFans = cases(120, 30, 1);
 const std::size_t kBatchSizes = static_cast<std::size_t>(cases(3, 3, 1));
-// In builds with sanitizers every 17th, for memory that a group of rays overruns.
+// Every 17th in builds with sanitizers, to find out-of-bounds accesses of a group of rays.
 const std::size_t kUnusualStride = static_cast<std::size_t>(cases(1, 1, 17));
 #ifdef NDEBUG
 constexpr int kNodesApart = 1;
@@ -114,7 +114,7 @@ HeightField hills(Surface surface, Kind kind, Random& random) {
   return HeightField::own(std::move(samples), cols, rows, settings);
 }
 
-// As renderers do that have no rays from the surface: set off by less than the margin of floats, a quarter of a code.
+// Like renderers without rays from the surface: offset by less than the margin of floats, a quarter of a code.
 constexpr double kSetOff = 1e-4;  // metres
 Ray next_to_the_ground(const Ray& on_surface) {
   Ray ray = on_surface;
@@ -123,7 +123,8 @@ Ray next_to_the_ground(const Ray& on_surface) {
   return ray;
 }
 
-// Rays as renderers ask them: from a camera, from the surface to a sun and from next to it, from anywhere to anywhere.
+// Typical rays of renderers: from a camera, from the surface to a sun and from just off it, and between random
+// positions.
 std::vector<Ray> usual_rays(const HeightTarget& target, Random& random, int count = kUsualRays) {
   const HeightField& field = *target.field;
   std::vector<Ray> rays;
@@ -206,8 +207,8 @@ TEST(MaxMipSimd, HandlesVeryLongFields) {
   }
 }
 
-// Starts beside the cell that they are said to be in, by much and by less than a millionth of a cell: over ground above
-// and below 0, for a wrong start looks right where 0 is under the ground.
+// Starts outside of their stated cell, by much and by less than a millionth of a cell: over ground above and below 0,
+// because a wrong start looks right if 0 is below the ground.
 TEST(MaxMipSimd, HandlesStartsBesideTheirCell) {
   Random random(76);
   for (const double base : {-100.0, 100.0}) {
@@ -295,7 +296,7 @@ TEST(MaxMipSimd, StartsJustAboveRoughGround) {
   }
 }
 
-// Rays that begin by less than floats can tell before a line that they cross late or never, and climb with the ground.
+// Rays that start within float precision in front of a line, cross it late or never, and climb with the ground.
 TEST(MaxMipSimd, StartsJustBeforeAGridLine) {
   const int side = 17;
   std::vector<float> samples;
@@ -361,14 +362,14 @@ TEST(MaxMipSimd, HandlesRaysFromNearTheGroundInVectors) {
     closest_hits_max_mip_simd(target, rays, hits, options);
     return static_cast<double>(take_vector_stats().handed_over) / static_cast<double>(rays.size());
   };
-  // Of two questions per ray. Left to the scalar walk is what hits in the first cell.
+  // Per two queries of each ray. Rays that hit in the first cell are left to the scalar walk.
   const double in_floats = handed_over({.doubles = false}), in_doubles = handed_over({});
   EXPECT_GT(in_floats, 1.0);
   EXPECT_LT(in_doubles, in_floats / 2);
 }
 
-// Copies of a ground that wraps round are walked over by the vectors, and what lies on their seams is met: rays along
-// seams, through corners of copies, and far away, where the scalar walk takes over.
+// Vectors traverse copies of a wrapped field, and hit ground on their seams: rays along seams, through corners of
+// copies, and far away, where the scalar walk takes over.
 TEST(MaxMipSimd, HandlesWrappedFields) {
   Random random(78);
   const HeightField field = hills<float>(Surface::bilinear, Kind::endless, random);
@@ -391,12 +392,12 @@ TEST(MaxMipSimd, HandlesWrappedFields) {
   compare(target, rays, scalar(target, rays), rays.size(), {}, "seams");
   const VectorStats stats = take_vector_stats();
   EXPECT_GT(stats.block_steps, rays.size());
-  // Of two questions per ray: rays along an axis and next to corners are in doubt.
+  // Per two queries of each ray: rays along an axis and next to corners are in doubt.
   EXPECT_LT(stats.handed_over, rays.size());
 }
 
-// Of rays that fall, or climb, so steeply that all happens in front of a seam which a rounded place is already behind:
-// the ray below is through the ground at t = 7.75 and at the seam at t = 8. And at u = -0, which is 0 and stays -0.
+// Rays that fall or climb so steeply that they hit in front of a seam when a rounded position is already behind it: the
+// ray below is through the ground at t = 7.75 and at the seam at t = 8. And at u = -0, which equals 0 and stays -0.
 TEST(MaxMipSimd, StartsNextToASeam) {
   Random random(79);
   const int side = 128;
@@ -435,7 +436,7 @@ TEST(MaxMipSimd, StartsNextToASeam) {
   EXPECT_EQ(bits(hit.u), bits(march_max_mip(plain_target, at_border).u));
 }
 
-// As a camera asks, which looks down at the field from somewhere: 8 x 8 pixels after one another.
+// Rays of a camera that looks down at the field: 8 x 8 pixels after one another.
 std::vector<Ray> tiles_of_a_camera(const HeightField& field, Random& random) {
   const dvec3 eye{uniform(random, -200, field.width() + 200), uniform(random, -200, field.depth() + 200),
                   uniform(random, 300, 900)};
@@ -476,7 +477,7 @@ TEST(MaxMipSimd, BeamsLoseNoHits) {
       }
     }
   }
-  // Else there was nothing to lose.
+  // Otherwise there was nothing to lose.
   for (const auto& [name, rays] : in_beams) EXPECT_GT(rays, 0u) << name;
 }
 
@@ -492,7 +493,7 @@ std::vector<Ray> fans(const HeightField& field, Random& random) {
     const double beside = fan % 8 == 7 ? 3 : 0;
     dvec3 eye{pick(-beside, field.width() + beside), pick(-beside, field.depth() + beside), 0};
     eye.z = field.height(eye.x, eye.y).value_or(400) + std::exp2(uniform(random, -20, 6));
-    // Level rays by little below a peak, which only an exact maximum does not pass.
+    // Level rays slightly below a peak: only an exact maximum does not let them pass.
     const bool level = fan % 8 == 5;
     dvec3 peak = eye;
     if (level) {
@@ -591,7 +592,7 @@ TEST(MaxMipSimd, HandlesUnusualNumbers) {
   }
 }
 
-// Else the vectors could hand over all rays and be right.
+// Otherwise the vectors could hand over all rays and still be right.
 TEST(MaxMipSimd, HandsOverFewRays) {
   Random random(73);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
@@ -609,7 +610,7 @@ TEST(MaxMipSimd, HandsOverFewRays) {
   EXPECT_LT(take_vector_stats().handed_over, rays.size() / 2);
 }
 
-// Nor those that end in the cell that they begin in, which floats can tell where the ground is gentle.
+// Nor those that end in their first cell, which floats can decide on gentle ground.
 TEST(MaxMipSimd, HandsOverFewRaysThatEndInTheirFirstCell) {
   Random random(74);
   constexpr int kSide = 33;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// max-mip where the answer is known: touches, leaks, starts, ends; and the symmetries that any march must have.
+// max-mip with known answers: touches, leaks, starts, ends; and the symmetries that any march must have.
 #include "scarp/march/height/max_mip.h"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST(MaxMip, HitsEveryNodeFromAnyDirectionAbove) {
     const dvec3 offset{whole(random, -6, 6), whole(random, -6, 6), 60};
     const Hit hit = terrain.cast(node + offset, -offset, 0, 1.25);
     ASSERT_TRUE(hit) << col << ", " << row;
-    // Clearances are off by 16 u times what goes into them (numerics.md), and the ray closes in by at least 20 m per t.
+    // Clearances are off by 16 u times their inputs (numerics.md), and the ray approaches by at least 20 m per t.
     EXPECT_NEAR(hit.t, 1, 16 * 0x1p-53 * (2 * 75 + 2 * (257 + 193) * 30) / 20);
   }
 }
@@ -183,7 +183,7 @@ TEST(MaxMip, PassesThroughHoles) {
 }
 
 TEST(MaxMip, DoesNotHitThePlaneARayStartsOn) {
-  // Any direction in a tilted plane, from anywhere on it: rounding must not be taken for ground.
+  // Any direction in a tilted plane, from any point of it: rounding must not look like ground.
   std::vector<float> samples;
   for (int row = 0; row < 40; ++row) {
     for (int col = 0; col < 40; ++col) samples.push_back(static_cast<float>(0.5 * col + 0.25 * row));
@@ -210,8 +210,8 @@ TEST(MaxMip, DoesNotHitThePlaneARayStartsOn) {
 }
 
 TEST(MaxMip, LocatesDescentFromAGridLineAccurately) {
-  // On a line between cells, which by rounding it has left before it begins, and falling by 10^-9 per metre: a height
-  // that ran ahead of the clamped place by 10^-11 would be a hit millimetres late. From the run of 10^9 rays.
+  // On a line between cells, which by rounding it has left before its start, and falling by 10^-9 per metre: a height
+  // 10^-11 ahead of the clamped position would make the hit millimetres late. From the run of 10^9 rays.
   std::vector<float> samples;
   for (int row = 0; row < 48; ++row) {
     for (int col = 0; col < 64; ++col)
@@ -288,19 +288,19 @@ RC_GTEST_PROP(MaxMip, LaterStartNeitherFindsEarlierHitsNorLosesAny, ()) {
   const Hit first = terrain.cast(ray);
   ray.t_min = *rc::gen::inRange(0, 1000) * 1e-3;
   const Hit later = terrain.cast(ray);
-  // Of a clearance (numerics.md), for rays of any_ray().
+  // Rounding of a clearance (numerics.md), for rays of any_ray().
   const double rounding = 16 * 0x1p-53 * (2 * 60 + 4 * (257 + 193) * 30);
   if (first && first.t > ray.t_min) {
-    // Whether it begins beside the field, above the ground or below it (to rise before that hit), the ray still has it
-    // before it. Only where it begins on the ground as far as two clearances can tell, that here and the march's, it
-    // may be seen on either side.
+    // Whether the ray starts outside of the field, above the ground or below it (and rises before that hit), the hit is
+    // still ahead. Only if it starts on the ground within the rounding of two clearances, that here and the march's, it
+    // may be on either side.
     const dvec3 start = ray.at(ray.t_min);
     const std::optional<double> ground = terrain.field.height(start.x, start.y);
     if (!ground || std::abs(start.z - *ground) > 2 * rounding) RC_ASSERT(later);
   }
   if (later) {
     RC_ASSERT(later.t >= ray.t_min);
-    // Either root may be off by the rounding of a clearance over the speed at which the ray closes in.
+    // Either root may be off by the rounding of a clearance over the speed at which the ray approaches.
     const dvec2 slope = terrain.field.gradient(later.cell, later.u, later.v);
     const double closing = std::abs(ray.direction.z - slope.x * ray.direction.x - slope.y * ray.direction.y);
     if (first) RC_ASSERT((first.t - later.t) * closing <= 2 * rounding);
@@ -310,7 +310,7 @@ RC_GTEST_PROP(MaxMip, LaterStartNeitherFindsEarlierHitsNorLosesAny, ()) {
 
 TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
   // An odd number of rows: the last blocks are narrower than their fellows. Towards lower rows and through a node of
-  // the seam, at which the ray also comes into the next column. The cell behind it must not be left out.
+  // the seam, at which the ray also comes into the next column. The cell behind it must not be skipped.
   constexpr int kSide = 7;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     std::vector<float> samples(kSide * kSide, 0);
@@ -326,7 +326,7 @@ TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
 }
 
 TEST(MaxMip, DoesNotReportAnExitAtANode) {
-  // Through the ground and out again at a node, where the clearance is zero but for rounding: one hit each.
+  // Through the ground and out again at a node, where the clearance is zero except for rounding: one hit each.
   Random random(5);
   std::vector<float> samples;
   for (int i = 0; i < 65 * 65; ++i) samples.push_back(static_cast<float>(uniform(random, 0, 6)));
@@ -342,7 +342,7 @@ TEST(MaxMip, DoesNotReportAnExitAtANode) {
     ray.t_max = 2;
     ASSERT_EQ(all_hits_max_mip(target, ray, hits), HitStatus::hit);
     for (const Hit& hit : hits) {
-      // Just before each hit the ray is above the ground, by more than what it falls in that time.
+      // Just before each hit the ray is above the ground, by more than its fall in that time.
       const dvec3 before = ray.at(hit.t - 0x1p-16);
       const auto ground = terrain.field.height(before.x, before.y);
       ASSERT_TRUE(!ground || before.z > *ground) << "hit at " << hit.t << " from below, at node " << col << ", " << row;

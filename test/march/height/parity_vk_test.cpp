@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The marches on a Vulkan device, on the oracle's fields and rays: their answers are what single precision allows
-// (RoundingJudge), any-hit agrees with closest-hit, and validation has nothing to say.
+// The marches on a Vulkan device, on the oracle's fields and rays: their answers are within single precision
+// (RoundingJudge), any-hit agrees with closest-hit, and validation is silent.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ namespace {
 const int kRaysPerKind = cases(200, 50, 25);
 constexpr int kFieldsPerKind = 2;
 
-// Compiling a march for lavapipe takes longer than running it: once for all fields.
+// Compiling a march for lavapipe takes longer than running it, so this happens once for all fields.
 DeviceQueries& queries(std::string_view march) {
   static std::map<std::string_view, DeviceQueries> all;
   const auto found = all.find(march);
@@ -124,7 +124,7 @@ TEST_F(QueriesOnDevice, FollowRaysThatEnterBelowGround) {
   }
 }
 
-// A shrink factor that the slope does not prove: what is under the ground is a hit, not lost.
+// A shrink factor that the slope does not justify: positions below the ground are hits, not losses.
 TEST_F(QueriesOnDevice, HitBelowGroundWithALargeShrinkFactor) {
   const HeightField field = waves();
   const DeviceGround ground(device(), field);
@@ -138,7 +138,7 @@ TEST_F(QueriesOnDevice, HitBelowGroundWithALargeShrinkFactor) {
   expect_hits_under_the_ground(field, rays, hits);
 }
 
-// A ray that does not move along an axis, or hardly, on the rim of a hole: ground on either side of the line is met.
+// A ray that does not move along an axis, or hardly, on the rim of a hole: it hits ground on either side of the line.
 TEST_F(QueriesOnDevice, HitHoleRimsThatRaysRunAlong) {
   constexpr int kNodes = 24;
   constexpr double kRelief = 5, kLeastFall = 0.1;
@@ -215,7 +215,7 @@ TEST_F(QueriesOnDevice, AreUnaffectedBySlicing) {
   DeviceQueries sliced(device(), find_height_march("max-mip"), {}, {.rays_at_once = 77});
   whole.closest_hits({&field, &ground}, rays, hits, costs);
   sliced.closest_hits({&field, &ground}, rays, other, none);
-  // 13 slices; a second pass each, if rays in it begin below the ground.
+  // 13 slices; a second pass each, if rays in it start below the ground.
   EXPECT_LE(whole.passes().size(), 2u);
   EXPECT_GE(sliced.passes().size(), 13u);
   EXPECT_LE(sliced.passes().size(), 26u);
@@ -284,8 +284,8 @@ TEST_F(QueriesOnDevice, AreUnaffectedByInterruptions) {
   EXPECT_GT(more_runs, 5);
 }
 
-// Longer than lavapipe lets a loop be: over a slope along the ray, close above it for 100,000 cells, then against a
-// wall. Of holes there is one, far from the ray, so that `lipschitz` climbs through all levels at each step.
+// Longer than lavapipe's limit for loops: over a slope along the ray, just above it for 100,000 cells, then against a
+// wall. One hole, far from the ray, makes `lipschitz` climb through all levels at each step.
 TEST_F(QueriesOnDevice, FinishLongMarches) {
   constexpr int kCols = 100'001;
   constexpr float kNodata = -1;
@@ -304,8 +304,9 @@ TEST_F(QueriesOnDevice, FinishLongMarches) {
   const DeviceTarget target{&field, &ground, slope_bound(field)};
   // In the row of cells between heights of 4 and 0, where the ground is 1.
   const Ray ray{{10.5, 2.25, 1.5}, {1, 0, 0}};
-  // Steps are no shorter than floats are apart 100,000 metres away, and hits are told at less clearance than that.
-  constexpr double kLeastStep = 1e-6;  // of the way: a tenth of a metre
+  // Steps are no shorter than the spacing of floats at 100,000 metres, and hits are reported at a smaller clearance
+  // than that.
+  constexpr double kLeastStep = 1e-6;  // of the distance: a tenth of a metre
   MarchSettings settings;
   constexpr int kManySteps = 10'000'000;
   settings.naive = {.min_step = kLeastStep, .tolerance = kLeastStep / 10, .max_steps = kManySteps};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Batches answer as single rays do, on all threads; and what rays from outside are refused for.
+// Batches return the answers of single rays, on all threads; and errors for invalid rays.
 #include "scarp/march/height/queries.h"
 
 #include <gtest/gtest.h>
@@ -107,7 +107,7 @@ TEST(Queries, AnyHitLooksAheadAndAgreesWithClosestHit) {
     int hits = 0, far = 0;
     for (int i = 0; i < 50'000; ++i) {
       Ray ray = along_hills(field, random, i % 2);
-      // Some end just before what stops them, or just behind.
+      // Some end just in front of their hit, or just behind it.
       const Hit first = march_max_mip(target, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
       const Hit hit = march_max_mip(target, ray);
@@ -120,7 +120,7 @@ TEST(Queries, AnyHitLooksAheadAndAgreesWithClosestHit) {
   }
 }
 
-// A field that no cache holds: large batches over it are answered in another order.
+// A field larger than any cache: large batches over it are reordered.
 HeightField large() {
   const int cols = 4200, rows = 2100;
   std::vector<std::int16_t> samples;
@@ -163,7 +163,7 @@ TEST(Queries, AnswersKeepTheOrderOfTheRays) {
   }
   EXPECT_GT(found, 5000);
 
-  // Each ray once; and, in the new order, there is nothing left to put in order.
+  // Each ray once; and the new order is a fixed point.
   std::vector<Ray> ordered;
   for (const std::uint32_t i : order) ordered.push_back(rays[i]);
   EXPECT_TRUE(ground_order(field, ordered).empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rims of holes, borders and nodes belong to the ground, however a ray meets them; and the end of a ray changes no hit.
+// Rims of holes, borders and nodes belong to the ground for rays in any direction; and the end of a ray changes no hit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -112,7 +112,7 @@ TEST_F(RimsOfHoles, AreHitAtTheirNodes) {
   EXPECT_GT(met, 500);
 }
 
-// t_max is closed: asked again up to its own t, a ray has the same hit, and up to any earlier t none.
+// t_max is inclusive: cut at the t of its hit, a ray has the same hit, and cut at any earlier t none.
 TEST(Ends, DoNotChangeHits) {
   Random random(5);
   int hits = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shader text of max-mip, compiled as C++ with floats, on the oracle's fields and rays: no GPU is needed to know
-// that its decisions are right. RoundingJudge says what an answer may be.
+// The shader text of max-mip, compiled as C++ with floats, on the oracle's fields and rays: no GPU is needed to verify
+// its decisions. RoundingJudge decides which answers are valid.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ const int kRaysPerPair = cases(2'500, 500, 40);
 const int kWideRays = cases(500, 100, 20);
 constexpr int kRaysPerField = 250;
 
-// Rays that the lean pass has left to the exact text, of all.
+// Number of rays that the lean pass has left to the exact text.
 std::size_t lean_rays = 0, doubtful_rays = 0;
 
 // Both passes of a device.
@@ -44,7 +44,7 @@ glsl::ScarpHit march_lean(const glsl::ScarpField& ground, const glsl::ScarpRay& 
   return glsl::scarp_max_mip(ground, ray, any);
 }
 
-// Casts rays of a kind over fields of a kind; returns how many have another status than in double.
+// Casts rays of a kind over fields of a kind; returns the number of those whose status differs from that in double.
 int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int rays, bool lean) {
   Random random(seed);
   int other_status = 0, bad = 0;
@@ -70,7 +70,7 @@ int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int ra
       other_status += exact.status != hit.status;
       std::string objection = judge.objection(hit);
       if (objection.empty() && blocked != static_cast<bool>(hit)) objection = "any-hit contradicts closest-hit";
-      // The judge must be no stricter than double precision.
+      // The judge must not be stricter than double precision.
       const std::string self = judge.objection(exact);
       if (!self.empty()) objection += " / the march in double: " + self;
       if (objection.empty()) continue;
@@ -88,7 +88,7 @@ TEST_P(SinglePrecision, MaxMipMatchesTheSurface) {
   const auto [field, ray] = GetParam();
   const RayKind& kind = spiteful_rays()[ray];
   const int others = check(spiteful_fields()[field], kind, 1000 * field + ray, kRaysPerPair, false);
-  // Rays that were not aimed at anything meet a rounding tie once in a blue moon.
+  // Rays that are not aimed at anything rarely meet a rounding tie.
   if (kind.name == "random" || kind.name == "from above") {
     EXPECT_LE(others, std::max(1, kRaysPerPair / 1000));
   }
@@ -102,7 +102,7 @@ TEST_P(SinglePrecision, BothPassesMatchTheSurface) {
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, SinglePrecision, testing::ValuesIn(pairs()), name_of_pair);
 
-// Rays that a shader makes: begin and direction in floats, clipped to the field in floats.
+// Rays computed by a shader: start and direction in floats, clipped to the field in floats.
 TEST(SinglePrecisionFromFloats, MaxMipMatchesTheSurface) {
   for (const FieldKind& fields : spiteful_fields()) {
     for (const std::size_t kind : {0, 1, 2, 3}) {
@@ -154,7 +154,7 @@ TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithClosestHit) {
     std::uint64_t hits = 0, closest_fetches = 0, any_fetches = 0;
     for (int i = 0; i < kRays; ++i) {
       Ray ray = along_hills(field, random, i % 2);
-      // Some end just before what stops them, or just behind.
+      // Some end just in front of their hit, or just behind it.
       const Hit first = march_max_mip({&field, &pyramid}, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
       const DeviceRay prepared = device_ray(field, ray);
@@ -172,7 +172,7 @@ TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithClosestHit) {
   }
 }
 
-// Level ground as high as every block's minimum: what goes along it from its surface is not under it.
+// Level ground as high as every block's minimum: a ray along it from its surface is not below it.
 TEST(SinglePrecisionLookingAhead, IgnoresGroundThatARayRunsAlong) {
   constexpr int kCols = 2100, kRows = 900;
   std::vector<std::int16_t> samples(std::size_t{kCols} * kRows, 100);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Targets without a part that a march needs are refused.
+// Targets that lack a part required by a march are rejected.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shaders of marches read in their loops, from their SPIR-V: drivers do not move loads through an address out of
-// loops, so the ground's description has to be read before them.
+// Checks the loads in the loops of march shaders, from their SPIR-V: drivers do not hoist loads through an address out
+// of loops, so the ground's description must be read before them.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct Loads {
   int elsewhere = 0;
 };
 
-// Loads of members of GroundBuffers, but of its table of levels, which a march reads by its level.
+// Loads of members of GroundBuffers, except its table of levels, which a march indexes by level.
 Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
   constexpr std::uint32_t kMemberDecorate = 72, kOffset = 35, kTypeStruct = 30, kTypePointer = 32, kConstant = 43,
                           kLoad = 61, kAccessChain = 65, kInBoundsAccessChain = 66, kLoopMerge = 246, kLabel = 248,
@@ -39,7 +39,7 @@ Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
       of.resize(std::max<std::size_t>(of.size(), word[2] + 1));
       of[word[2]] = word[4];
     } else if (operation == kTypeStruct) {
-      // GroundBuffers is known by its last member, the block Ground by having no other member.
+      // GroundBuffers is recognised by its last member, the block Ground by having no other member.
       const bool is_block = words == 3 && blocks.contains(word[2]);
       const auto found = offsets.find(word[1]);
       const bool is_ground = found != offsets.end() && found->second.size() > 20 &&

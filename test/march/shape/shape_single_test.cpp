@@ -70,7 +70,7 @@ constexpr int kPositions = 200, kRays = 20;
 glsl::ScarpSphereTrace settings(const ShapeSingleRounding& rounding) {
   return {1e-6f, 1024, 1 << 30, static_cast<float>(shape_ray_growth(rounding))};
 }
-// Of a ray, where it is off most.
+// Largest error along a ray.
 double most_off(const ShapeSingleRounding& rounding, const glsl::ScarpFunctionRay& ray) {
   return static_cast<double>(ray.rounding) +
          shape_ray_growth(rounding) * static_cast<double>(ray.speed) * static_cast<double>(ray.exit);
@@ -166,7 +166,7 @@ TEST(ShapesInShaders, RaysEscapeTheSurface) {
         ++left;
         continue;
       }
-      // Out of a concave edge it may go into the solid at once.
+      // At a concave edge it may enter the solid at once.
       bool leaves = true;
       for (double metres = r; metres < 64 * r; metres *= 2)
         leaves = leaves && field.value(ray.at(metres / length(ray.direction))) > 0.1 * metres;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Distance fields on a Vulkan device: `sphere-trace` tells what single precision allows (shape_judge.h), any-hit agrees
-// with closest-hit, and validation has nothing to say.
+// Distance fields on a Vulkan device: `sphere-trace` returns what single precision allows (shape_judge.h), any-hit
+// agrees with closest-hit, and validation is silent.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -24,7 +24,7 @@ constexpr int kShapeRays = 500;
 constexpr int kShapeRays = 60;
 #endif
 
-// Making a shader for lavapipe takes longer than its rays: shape_single_test has all.
+// Compiling a shader for lavapipe takes longer than tracing its rays: shape_single_test covers all shapes.
 bool is_one_of(const std::string& name) {
   for (const char* one : {"turned box", "cone", "scaled, moved torus", "intersection", "smooth subtraction", "lattice",
                           "touching lattice of bounds", "forty solids", "quarry with holes", "cave"}) {

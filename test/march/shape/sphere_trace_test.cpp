@@ -87,7 +87,7 @@ void expect_nothing_lost(const Shape& shape, const DistanceField& field, const R
       counts.early += bool(hit);
       break;
     case FunctionVerdict::undecided:
-      // A touch, nearly one, or used-up evaluations: up to there it is proven that there is nothing.
+      // A touch, nearly one, or exhausted evaluations: the ray is proven to be free up to there.
       ++counts.undecided;
       if (hit) count_early(judge, hit);
       break;
@@ -106,7 +106,7 @@ TEST(SphereTrace, LosesNoHits) {
     fmt::print("{}: {} crossings, {} clear, {} undecided, {} exhausted, {} early, {} inexact, {:.1f} steps\n",
                named.name, counts.crossings, counts.clear, counts.undecided, counts.exhausted, counts.early,
                counts.inexact, counts.steps / kRays);
-    // Enough of either kind for the test to mean something.
+    // Enough of either kind to make the test meaningful.
     EXPECT_GE(counts.crossings, kRays / 40) << named.name;
     EXPECT_GE(counts.clear, kRays / 40) << named.name;
     // Not only conservative, but right.
@@ -147,7 +147,7 @@ TEST(SphereTrace, MatchesClosedForms) {
     const auto expect = [&](const DistanceField& field, std::optional<double> t, double clearance) {
       if (field.value(o) <= 0) return;
       const Hit hit = march_sphere_trace(field, ray);
-      // Rays that pass nearer than the tolerance may be told either way.
+      // Rays that pass closer than the tolerance may be reported either way.
       if (t) {
         ++hits;
         ASSERT_TRUE(hit || clearance < 1e-4) << "lost the hit at " << *t;
@@ -158,7 +158,7 @@ TEST(SphereTrace, MatchesClosedForms) {
         ASSERT_EQ(hit.status, HitStatus::miss);
       }
     };
-    // How near to a graze: of the ball's discriminant, of the box's slabs, of the plane's slope.
+    // Closeness to a graze: of the ball's discriminant, of the box's slabs, of the plane's slope.
     const double a = dot(d, d), b = dot(o, d);
     const double nearest = length(o - d * (b / a));
     expect(ball, enter_quadratic(a, b, dot(o, o) - 4), std::abs(nearest - 2));
@@ -172,7 +172,7 @@ TEST(SphereTrace, MatchesClosedForms) {
     const dvec3 n = dvec3(0, 1, 2) / std::sqrt(5.0);
     const double down = dot(d, n), t = (1 - dot(o, n)) / down;
     expect(floor, down < 0 && t >= 0 ? std::optional(t) : std::nullopt, std::abs(down));
-    // Of an upright cylinder that is met from its side.
+    // An upright cylinder that is hit from its side.
     const double ha = d.x * d.x + d.y * d.y, hb = o.x * d.x + o.y * d.y, hc = o.x * o.x + o.y * o.y - 1;
     const auto side = enter_quadratic(ha, hb, hc);
     if (side && hc > 0 && std::abs(o.z + *side * d.z) < 3.9) {
@@ -199,7 +199,7 @@ TEST(SphereTrace, MeasuresTInLengthsOfTheDirection) {
   ray.t_min = 2.5;  // inside
   ray.t_max = 9;
   EXPECT_EQ(march_sphere_trace(ball, ray).status, HitStatus::below);
-  // From far away and without an end.
+  // From far away, with an infinite range.
   EXPECT_NEAR(march_sphere_trace(ball, {{1e7, 0, 0}, {-1, 0, 0}}).t, 1e7 - 1, 1e-8);
   EXPECT_EQ(march_sphere_trace(ball, {{1e7, 0, 0}, {1, 0, 0}}).status, HitStatus::miss);
   EXPECT_EQ(march_sphere_trace(ball, {{0, 0, 5}, {0, 1, 0}}).status, HitStatus::miss);
@@ -229,7 +229,7 @@ TEST(SphereTrace, RaysFromInsideContinueThroughSeams) {
     const Hit hit = march_sphere_trace(field, down);
     ASSERT_EQ(hit.status, HitStatus::hit) << gap;
     EXPECT_TRUE(occluded_sphere_trace(field, down)) << gap;
-    // At the lower block; or, where there is a gap and it is seen, behind it.
+    // At the lower block, or behind it if there is a visible gap.
     const double seam = 0.5, lower = 3.5;
     const bool in_gap = gap > 0 && std::abs(hit.t - seam) <= gap + kTolerance * seam;
     EXPECT_TRUE(in_gap || std::abs(hit.t - lower) <= kTolerance * lower) << gap << ": " << hit.t;
@@ -244,7 +244,7 @@ TEST(SphereTrace, RaysFromInsideContinueThroughSeams) {
   }
 }
 
-// A ray that a hit sends on: its origin is where the hit was told to be.
+// A ray from a hit: its origin is the reported position.
 Ray sent_on(const Ray& ray, const Hit& hit, const dvec3& direction) {
   Ray on;
   on.origin = ray.at(hit.t);
@@ -254,7 +254,8 @@ Ray sent_on(const Ray& ray, const Hit& hit, const dvec3& direction) {
   return on;
 }
 
-// Steps aside and along the ray have another normal: from an edge a ray may go into the solid and out again at once.
+// Steps sideways and along the ray have a different normal: from an edge a ray may enter the solid and leave it again
+// at once.
 bool is_on_edge(const DistanceField& field, const dvec3& p, const dvec3& direction) {
   const dvec3 n = field.normal(p);
   for (const dvec3& side : {cross(n, direction), direction - n * dot(n, direction)}) {
@@ -265,7 +266,7 @@ bool is_on_edge(const DistanceField& field, const dvec3& p, const dvec3& directi
   return false;
 }
 
-// Whether a ray from the surface goes into the solid, and comes out again, before t.
+// Whether a ray from the surface enters the solid, and leaves it again, before t.
 bool dips(const DistanceField& field, const Ray& ray, double t) {
   for (double at = t; at > 1e-9; at *= 0.98) {
     if (field.value(ray.at(at)) < -4 * field.rounding(30)) return true;
@@ -357,7 +358,7 @@ TEST(SphereTrace, ShadowsMatchTheJudge) {
       Ray on = sent_on(ray, hit, normalize(anywhere(random, 1)));
       const Hit next = march_sphere_trace(field, on);
       ASSERT_EQ(occluded_sphere_trace(field, on), bool(next)) << named.name;
-      // A millimetre on, the ray is either free, and judged from there, or it has gone into the solid.
+      // A millimetre further, the ray is either free, and judged from there, or it has entered the solid.
       Ray later = on;
       later.start = RayStart::free;
       later.t_min = 1e-3;

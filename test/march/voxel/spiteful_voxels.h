@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxel grids and rays chosen to hurt.
+// Adversarial voxel grids and rays.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ struct VoxelRayKind {
 const std::vector<VoxelGridKind>& spiteful_voxel_grids();
 const std::vector<VoxelRayKind>& spiteful_voxel_rays();
 
-/// A grid's orientation: a signed permutation, the identity as often as not.
+/// A grid's orientation: a signed permutation, the identity in half of the cases.
 glm::dmat3 random_orientation(Random& random);
 
 /// Fills, clears or paints a random box, ball or voxel; returns the dirty box.

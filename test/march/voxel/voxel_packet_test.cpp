@@ -55,13 +55,13 @@ TEST_P(VoxelPacketOf, MatchesSingleRays) {
         }
         stand.ties = VoxelTies(stand.grid_from_world);
         stand.room = round % 2 ? 0 : 1e-9;
-        // As the scene asks them: some rays are left out.
+        // As in calls by a scene: some rays are masked out.
         VoxelPacket packet;
         std::vector<VoxelRay> rays(round % 4 == 0 ? 1 + random() % VoxelPacket::kRays : VoxelPacket::kRays);
         std::vector<Ray> in_world;
         for (VoxelRay& ray : rays) {
           ray = kind.make(grid, random);
-          // Signed permutations keep the ray at the grid.
+          // Signed permutations keep the ray near the grid.
           if (round % 3 != 2) {
             ray.origin = transpose(stand.grid_from_world) * ray.origin;
             ray.direction = transpose(stand.grid_from_world) * ray.direction;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Voxel marches on a Vulkan device: spiteful grids and rays have the answers of the CPU, to the bit, with 64-bit
-// integers and with words; edits arrive; and validation has nothing to say.
+// Voxel marches on a Vulkan device: adversarial grids and rays have the answers of the CPU, to the bit, with 64-bit
+// integers and with words; edits arrive; and validation is silent.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ struct Model {
   }
 };
 
-// Rays with what the CPU says about them.
+// Rays with the answers of the CPU.
 struct Asked {
   std::vector<Ray> rays;
   std::vector<Hit> starts;
@@ -168,7 +168,7 @@ TEST_F(VoxelsOnDevice, ApplyEdits) {
   Random random(8);
   for (const char* name : {"voxel-spheres", "voxel-octants", "voxel-bricks"}) {
     const VoxelMarchEntry& march = find_voxel_march(name);
-    // The second stands beside it, and stays as it is.
+    // The second is next to it, and does not change.
     Model model(VoxelGrid({70, 40, 90}, 8), true), other(VoxelGrid({9, 9, 9}, 8), true);
     other.edit(random);
     other.grid.fill({ivec3(1), ivec3(3)}, 9);

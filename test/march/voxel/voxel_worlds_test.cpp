@@ -35,8 +35,8 @@ VoxelGrid needle(int axis, Random& random) {
   return grid;
 }
 
-// Towards a lattice point at the far end, from a lattice point or one beside it: crossings coincide there, or differ by
-// as little as directions can tell.
+// Towards a lattice point at the far end, from a lattice point or one beside it: crossings coincide there, or differ as
+// little as directions can represent.
 VoxelRay long_ray(const VoxelGrid& grid, int axis, Random& random) {
   const ivec3& size = grid.size();
   dvec3 from, to;
@@ -144,7 +144,7 @@ TEST(VoxelWorlds, SimdMatchesSingleLongRays) {
   EXPECT_GT(hits, cases(50, 50, 10));
 }
 
-// A cube of 2^42 voxels: what is solid takes memory, and rays across all of it take few steps.
+// A cube of 2^42 voxels: only solid voxels take memory, and rays across all of it take few steps.
 TEST(VoxelWorlds, AtTheLargestSizeAreSparse) {
   VoxelGrid grid(ivec3(kSide), 8);
   const ivec3 corner(kSide - 1), middle(kSide / 2 + 1, kSide / 2 - 7, 12'345);
