@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// render() of scarp.h: the pictures of its parts, and what it refuses.
+// render() of scarp.h: the pictures of its parts, and errors.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -33,7 +33,7 @@ struct Canvas {
     width = drawn.width, height = drawn.height;
     rgb = std::move(drawn.rgb);
   }
-  // The box around the pixels that are not of the colour.
+  // The box around the pixels that differ from the colour.
   std::array<int, 4> box_of_others(Colour colour, int x0 = 0, int y0 = 0, int x1 = 1 << 20, int y1 = 1 << 20) const {
     std::array<int, 4> box{width, height, -1, -1};
     for (int y = y0; y < std::min(y1, height); ++y) {
@@ -140,7 +140,7 @@ TEST(Figure, LegendShowsItsColours) {
   EXPECT_LT(first[0], first[1]);
   EXPECT_LT(first[1], first[2]);
   EXPECT_GT(counts[1], 100);
-  EXPECT_NEAR(counts[0], counts[2], 0.2 * counts[1]);  // but for the outline
+  EXPECT_NEAR(counts[0], counts[2], 0.2 * counts[1]);  // except for the outline
   EXPECT_GT(first[0], canvas.width / 3);               // on the right
 }
 
@@ -174,7 +174,7 @@ TEST(Figure, BesideLayoutKeepsThePicture) {
   while (canvas.at(left, top) != kGround) ++top;
   EXPECT_EQ(canvas.box_of_others(kGround, left, top, left + 640, top + 480)[2], -1);
   EXPECT_NE(canvas.at(left - 1, top), kGround);
-  // Title above, the rest below, and none of it cut off.
+  // Title above, the rest below, nothing cut off.
   EXPECT_LT(canvas.box_of_others(kPaper, 0, 0, 1 << 20, top - 3)[3], top);
   EXPECT_GT(canvas.box_of_others(kPaper, 0, top + 484)[2], canvas.width / 2);
   const auto all = canvas.box_of_others(kPaper);

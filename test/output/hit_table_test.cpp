@@ -79,7 +79,7 @@ TEST_F(HitTables, WritesCsv) {
             ",,2,exhausted,12.5,,,,,,,,,,,\n");
 }
 
-// What a kind of field does not have is empty.
+// Columns that a kind of field does not have are empty.
 TEST_F(HitTables, WritesSceneCsv) {
   std::vector<HitRow> rows(4, a_hit());
   for (HitRow& row : rows) row.position = {1, 2, 3}, row.hit.object = 5;

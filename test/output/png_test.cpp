@@ -30,7 +30,7 @@ class Png : public testing::Test {
   fs::path folder_;
 };
 
-// Bytes that no compressor makes small.
+// Incompressible bytes.
 std::vector<std::uint8_t> noise(int width, int height) {
   std::mt19937 random(1);
   std::vector<std::uint8_t> bytes(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -139,7 +139,7 @@ TEST(BoxTree, HandlesManyCoincidentBoxes) {
   BoxTree().traverse(ray, [&](std::uint32_t) { return ADD_FAILURE(), 0.0; });
 }
 
-// What is nearest to a point, from anywhere, in worlds of any size.
+// The nearest box to a point, from any position, in worlds of any size.
 TEST(BoxTree, SearchFindsEveryBox) {
   Random random(5);
   std::size_t visits = 0, possible = 0;
@@ -217,7 +217,7 @@ TEST(BoxTree, BeamsFindEveryBox) {
   EXPECT_LT(visits, possible / 3);
 }
 
-// Where rays end, so does the beam: at the one that ends last.
+// The beam ends with its rays: at the one that ends last.
 TEST(BoxTree, BeamsEndWithTheirRays) {
   std::vector<WorldBox> row;
   for (int i = 0; i < 1000; ++i) row.push_back({dvec3(10.0 * i, 0, 0), dvec3(10.0 * i + 1, 1, 1)});

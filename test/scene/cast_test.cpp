@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cast() and occluded() of scarp.h: what the scene answers, rays from surfaces, and the rays that they refuse.
+// cast() and occluded() of scarp.h: answers of the scene, rays from surfaces, and rejected rays.
 #include "scarp/scene/cast.h"
 
 #include <gtest/gtest.h>

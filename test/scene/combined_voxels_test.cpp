@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Unions, intersections and differences of placed voxels, against a look at every voxel.
+// Unions, intersections and differences of placed voxels, against every single voxel.
 #include "scarp/scene/combined_voxels.h"
 
 #include <gtest/gtest.h>
@@ -41,14 +41,14 @@ PlacedVoxels one(VoxelGrid grid, const glm::dmat3& world_from_grid, const dvec3&
   return {{model}, {{0, world_from_grid, origin}}, {}};
 }
 
-// A cube of so many voxels a side.
+// A cube of this many voxels a side.
 PlacedVoxels cube(int side, const glm::dmat3& world_from_grid = glm::dmat3(1.0), const dvec3& origin = dvec3(0.0)) {
   VoxelGrid grid(ivec3(side), 8);
   grid.fill(grid.box(), 1);
   return one(std::move(grid), world_from_grid, origin, {{}, {200, 100, 50}});
 }
 
-// The colour at a point; nothing where it is empty.
+// The colour at a point; nullopt if it is empty.
 std::optional<VoxelColour> colour_at(const PlacedVoxels& voxels, const dvec3& point) {
   for (const VoxelPlace& place : voxels.places) {
     const VoxelModel& model = *voxels.models[place.model];
@@ -59,7 +59,7 @@ std::optional<VoxelColour> colour_at(const PlacedVoxels& voxels, const dvec3& po
   return {};
 }
 
-// Two models with two places of one of them each, at random on one lattice, which is turned, scaled and moved.
+// Two objects, each with two random placements of a model on one lattice, which is rotated, scaled and moved.
 TEST(CombinedVoxels, MatchPerVoxelCombination) {
   std::mt19937 random(7);
   const auto rotations = lattice_rotations();

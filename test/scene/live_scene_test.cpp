@@ -86,7 +86,7 @@ void expect_same_answers(const Scene& scene, const Scene& fresh, const std::vect
   }
 }
 
-// What is not asked by rays.
+// Queries other than rays.
 void expect_same_facts(const Scene& scene, const Scene& fresh) {
   ASSERT_EQ(scene.box().low, fresh.box().low);
   ASSERT_EQ(scene.box().high, fresh.box().high);
@@ -99,7 +99,7 @@ void expect_same_facts(const Scene& scene, const Scene& fresh) {
   ASSERT_EQ(scene.height(3, 3), fresh.height(3, 3));
 }
 
-// A new scene of the objects that are left, and their numbers.
+// A new scene of the remaining objects, and their numbers.
 Scene without_removed(const Scene& scene, std::vector<std::uint32_t>& numbers) {
   std::vector<SceneObject> objects;
   for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
@@ -215,12 +215,12 @@ TEST(LiveScene, KeepsItsHierarchyEfficient) {
     });
   }
   expect_good_tree(live, random, 9);
-  // To other places, far from their neighbours, a few at a time.
+  // To other positions, far from their neighbours, a few at a time.
   for (std::uint32_t i = 0; i < kBalls; ++i) {
     live.edit([&](auto& editor) { editor.move(i * 7 % kBalls, {.origin = random.inside(20)}); });
     if (i % 250 == 100) expect_good_tree(live, random, 20);
   }
-  // All to one place, one far away and back, and in a row of a million metres.
+  // All to one position, one far away and back, and in a row of a million metres.
   live.edit([&](auto& editor) {
     for (std::uint32_t i = 0; i < kBalls; ++i) editor.move(i, {.origin = {1, 2, 3}});
   });
@@ -262,7 +262,7 @@ TEST(LiveScene, KeepsObjectNumbers) {
   EXPECT_EQ(added, 1u);
   EXPECT_EQ(object_at(30), 1);
   EXPECT_EQ(live.read().scene().objects()[1].material, 5u);
-  // The place of the removed field serves the new one.
+  // The slot of the removed field is reused by the new one.
   EXPECT_EQ(live.read().scene().fields().size(), 4u);
 }
 

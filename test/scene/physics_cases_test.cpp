@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the tests of the physics engine Jolt ask of its HeightFieldShape: planes, a plane near 0, random ground with
-// holes, ground of holes alone, edits of parts, materials. Rays through every node and every cell's middle must find
-// the surface where there is ground, and nothing where there is none.
+// Cases from the tests of the physics engine Jolt for its HeightFieldShape: planes, a plane near 0, random ground with
+// holes, ground consisting of holes only, edits of parts, materials. Rays through every node and the centre of every
+// cell must find the surface where there is ground, and nothing elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
     return samples;
   }
 
-  // All queries at one place.
+  // All queries at one position.
   void check_place(const Terrain& terrain, const Scene& judge, double x, double y) {
     const auto height = terrain.height(x, y);
     const Ray down{{x, y, 1000}, {0, 0, -1}}, up{{x, y, -1000}, {0, 0, 1}};
@@ -45,7 +45,7 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
     ASSERT_EQ(judge.closest_hit(slanted).status == HitStatus::hit, occluded(terrain, slanted));
     if (!height) return;
     ASSERT_NEAR(1000 - hit.t, *height, 1e-9);
-    // It can be stood on: a ball that falls touches no lower than its radius above the place.
+    // It supports objects: a falling ball touches no lower than its radius above the position.
     const auto contact = scene.query({}).sweep({{x, y, 100}, {x, y, 100}, 0.25}, {0, 0, -200});
     ASSERT_TRUE(contact);
     ASSERT_GE(100 - 200 * contact->t, *height + 0.25 - 1e-5);
@@ -104,7 +104,7 @@ TEST_P(HeightFieldShape, MatchesAfterPartialEdits) {
     }
   }
   check(terrain);
-  // The same as built anew.
+  // The same as after a rebuild.
   const Terrain anew = Terrain::own(std::move(samples), kSide, kSide, settings(0.5));
   for (int i = 0; i < 1000; ++i) {
     const Ray ray{{random(0, 16), random(0, 16), 12}, {random(-1, 1), random(-1, 1), -0.5}};

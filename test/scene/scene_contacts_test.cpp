@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Contacts of scenes with many objects: bit for bit those of each object alone, after any edits, and found without
-// asking most objects.
+// querying most objects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +60,7 @@ SceneFieldPtr crowd(Random& random) {
   return scene_voxels(std::move(voxels));
 }
 
-// What contacts and closest points are asked of.
+// Arguments of queries for contacts and closest points.
 struct Asked {
   Capsule capsule;
   dvec3 motion;
@@ -76,7 +76,7 @@ Asked somewhere(Random& random, double side) {
           random.below(2) ? random.in(0, 3) : std::numeric_limits<double>::infinity()};
 }
 
-// Every object that the mask selects, asked alone.
+// Every object that the mask selects, queried alone.
 template <class Answer, class Ask, class Key>
 std::optional<std::pair<Answer, std::uint32_t>> first_of(const Scene& scene, std::uint32_t mask, const Ask& ask,
                                                          const Key& key) {
@@ -191,13 +191,13 @@ TEST(SceneContacts, MatchPerObjectContacts) {
       if (HasFatalFailure()) return;
     }
   }
-  // The rest of the questions have no answer, which tests less.
+  // The other queries have no answer, which tests less.
   EXPECT_GT(count.touched, cases(2000, 100, 20));
   EXPECT_GT(count.met, cases(1000, 50, 10));
   EXPECT_GT(count.close, cases(2000, 100, 20));
 }
 
-// Upright in whole metres and in pairs, asked in halves of metres: many points of an object are equally close.
+// Upright, at whole metres and in pairs, queried at half metres: many points of an object are equally close.
 TEST(SceneContacts, MatchPerObjectContactsOnALattice) {
   Random random(9);
   const auto whole = [&](int side) { return dvec3(random.below(side), random.below(side), random.below(side)); };
@@ -315,7 +315,7 @@ TEST(SceneContacts, MatchPerPlaceContactsOfVoxels) {
   EXPECT_GT(touched, 50);
 }
 
-// A unit cube at the origin that counts what it is asked.
+// A unit cube at the origin that counts its queries.
 class CountedCube final : public SceneField {
  public:
   std::string_view kind() const override { return "cube"; }

@@ -108,7 +108,7 @@ TEST_F(TowerOnGround, PassesRoundedVoxelsRejectedByTheFilter) {
   }
 }
 
-// The way through the voxels is the same whatever counts: what is rejected is empty.
+// The path through the voxels does not depend on the filter: rejected voxels count as empty.
 TEST_F(TowerOnGround, TreatsRejectedVoxelsAsEmpty) {
   const auto counts = [](const ivec3& v) { return (v.x * 5 + v.y * 3 + v.z * 7) % 4 == 0; };
   const Scene expected(scene_voxels({.models = {model("voxel-planes", counts)}, .places = {{}}}));
@@ -216,7 +216,7 @@ TEST(CellMaterials, BelongToHitsAndSurviveEdits) {
   const float high = 2;
   terrain.set_samples({1, 1, 1, 1}, &high);
   EXPECT_EQ(material(terrain, 3, 2), 211u);
-  // A filter by material: a pond that rays pass.
+  // A filter by material: a pond that rays pass through.
   const Scene& scene = terrain.scene();
   const SceneQuery dry =
       scene.query({.accept = [&](const Ray& ray, const Hit& hit) { return scene.material(ray, hit) != 211; }});
@@ -279,7 +279,7 @@ TEST_F(TowerOnGround, IsFoundByBoxesAndClosestPoints) {
   EXPECT_EQ(all.closest_point({8.3, 8.4, 2})->distance, 0);
 }
 
-// Contacts do not depend on where the whole scene stands.
+// Contacts do not depend on the position of the whole scene.
 TEST(Contacts, MoveWithTheScene) {
   const HeightField hills =
       HeightField::own(std::vector<float>{0, 1, 0, 2, 3, 1, 0, 0, 1}, 3, 3, {.surface = Surface::triangles});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes of many fields on a Vulkan device: what the CPU tells of rays a little higher and lower, the device tells of
-// those between.
+// Scenes of many fields on a Vulkan device: the device's answers are between those of the CPU for slightly higher and
+// lower rays.
 #include "scarp/scene/scene_vk.h"
 
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST_F(ScenesOnDevice, FindTheNearestHit) {
   EXPECT_GT(met[0], 100u);
   EXPECT_GT(met[1], 500u);
   EXPECT_GT(met[2], 20u);
-  // To the sun, from the surface: the function's shadow has another octave less, and begins on its own surface.
+  // To the sun, from the surface: the function's shadow has one octave less, and starts on its own surface.
   std::vector<std::uint8_t> shaded(suns.size()), on_cpu(suns.size());
   on_device.occluded(suns, shaded, from);
   cpu.occluded(suns, on_cpu, from);

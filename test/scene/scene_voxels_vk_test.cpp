@@ -41,7 +41,7 @@ std::shared_ptr<const VoxelModel> noise_model(int size, double share, const std:
   return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
 }
 
-// Objects of many marches or one, turned, mirrored, overlapping, some of them twice in the same place.
+// Objects of many marches or one, rotated, mirrored, overlapping, some of them twice at the same position.
 PlacedVoxels crowd_of(CrowdRandom& random, int count, const std::string& march) {
   const auto of = [&](const char* own) { return march.empty() ? own : march; };
   PlacedVoxels placed;
@@ -123,7 +123,7 @@ class SceneVoxelsOnDevice : public OnDevice {
   void expect_same(const Scene& cpu, const Scene& there, std::span<const Ray> rays, std::span<const Hit* const> from) {
     std::vector<Hit> expected(rays.size()), hits(rays.size());
     std::vector<std::uint8_t> dark(rays.size()), blocked(rays.size());
-    // One by one, because batches have their own tests.
+    // One by one; batches have their own tests.
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit* begin = from.empty() ? nullptr : from[i];
       const SceneField& field = *cpu.fields()[0];
@@ -147,7 +147,7 @@ TEST_F(SceneVoxelsOnDevice, MatchTheCpu) {
   expect_same(Scene(scene_voxels(crowd_of(random, 40, "voxel-octants"))));
 }
 
-// Turned and mirrored objects that touch, as one field and as a field each.
+// Rotated and mirrored objects that touch, as one field and as separate fields.
 TEST_F(SceneVoxelsOnDevice, MatchOneGridWhereObjectsMeet) {
   constexpr std::array<const char*, 5> kMarches = {"voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants",
                                                    "voxel-bricks"};

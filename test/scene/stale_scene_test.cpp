@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fields edited under a scene: the scene throws instead of answering for the field as it was.
+// Fields edited under a scene: the scene throws instead of returning answers for the former field.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -24,7 +24,7 @@ void raise_hill(Terrain& terrain) {
   terrain.set_samples({7, 7, 3, 3}, hill.data());
 }
 
-// Enough grounds that some of them are found by the hierarchy alone.
+// Enough fields that some of them are found only by the hierarchy.
 std::vector<ScenePart> with_grounds_around(const Scene& part) {
   std::vector<ScenePart> parts{{part}};
   for (int i = 1; i < 6; ++i) parts.push_back({flat(), {.scale = 2, .origin = {100.0 * i, 0, 0}}});

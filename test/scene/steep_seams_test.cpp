@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nearly vertical rays where fields meet: tiles, combined fields, turned and earth-centred placements.
+// Nearly vertical rays where fields meet: tiles, combined fields, rotated and earth-centred placements.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,8 @@ namespace {
 
 constexpr int kTileCells = 16, kAcross = 8;
 const double kCosineOf90 = std::cos(std::numbers::pi / 2);
-// Of a hit on level ground: 16 roundings (numerics.md, "Rounding error of a clearance") of heights of up to 1,000 m.
+// Error of a hit on level ground: 16 roundings (numerics.md, "Rounding error of a clearance") of heights of up to 1,000
+// m.
 constexpr double kOff = 16 * 0x1p-53 * 1000;
 
 TerrainTiles flat_tiles(double cell, int cols, int rows, int cells) {
@@ -105,11 +106,11 @@ TEST(SteepSeams, BetweenCombinedFieldsAreHitUnderAnyPlacement) {
       const int cells = 24;
       const Scene scene = pair_of(cell, cells, outer);
       const double width = cells * cell;
-      // Where the seam of a scene puts two fields apart, and 16 roundings of world coordinates below 2^23 m.
+      // The gap between two fields at the seam of a scene, and 16 roundings of world coordinates below 2^23 m.
       const double off = 0x1p-26 * cell + 16 * 0x1p-53 * 0x1p23;
       std::vector<Ray> rays;
       for (int i = 0; i < 400; ++i) {
-        // On the seam, or beside it by the rounding of world coordinates.
+        // On the seam, or off it by the rounding of world coordinates.
         const double beside = i % 3 == 0 ? 0 : uniform(random, -1e-9, 1e-9) * cell;
         const dvec3 aim(width + beside, uniform(random, 0.1, 0.9) * width, 0);
         const double lean = i % 2 == 0 ? 0 : std::ldexp(uniform(random, -1, 1), -whole(random, 30, 200));
@@ -200,7 +201,7 @@ TEST(SteepSeams, ClosestPointRejectsNonFinitePoints) {
   EXPECT_NE(refusal([&] { query.closest_point({0, 0, 0}, nan); }), "");
 }
 
-// A query refers to its scene: none of a temporary one.
+// A query refers to its scene, so the scene must not be a temporary.
 template <class S>
 concept HasQuery = requires(S&& scene) {
   std::forward<S>(scene).query(SceneRules{});

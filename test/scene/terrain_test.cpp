@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain of scarp.h: the same answers as its field and pyramid give, edits, and what it refuses.
+// Terrain of scarp.h: the same answers as its field and pyramid, edits, and errors.
 #include "scarp/scene/terrain.h"
 
 #include <gtest/gtest.h>

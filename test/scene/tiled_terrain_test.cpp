@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tiles that answer as one field: against one large field, over seams of levels, while tiles come and go; and what is
-// refused. Run under the thread sanitizer, too.
+// Tiles that act as one field: against one large field, over seams of levels, while tiles are loaded and unloaded; and
+// errors. Run under the thread sanitizer, too.
 #include "scarp/scene/tiled_terrain.h"
 
 #include <gtest/gtest.h>
@@ -68,11 +68,11 @@ Ray ray_through(Random& random, const dvec3& box, const std::vector<float>& all,
   return ray;
 }
 
-// Distance in metres that is far more than rounding and seams, and far less than a cell.
+// A distance in metres far larger than rounding and seams, and far smaller than a cell.
 constexpr double kFar = 0x1p-20;
 
-// Whether rays beside this one, on all sides, have the same answer: then no engine may have another. Others touch the
-// ground, or a rim, within rounding.
+// Whether neighbouring rays on all sides have the same answer: then every engine must have it. Others touch the ground,
+// or a rim, within rounding.
 bool is_certain(const HeightField& field, const Ray& ray, const Hit& answer) {
   for (const dvec3 shift :
        {dvec3(1, 0, 0), dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, -1, 0), dvec3(0, 0, 1), dvec3(0, 0, -1)}) {

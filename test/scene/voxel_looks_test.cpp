@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What becomes of voxels beside being hit: normals, corners, coarser ones, and scenes made voxels.
+// Voxels apart from their hits: normals, corners, coarser models, and voxelised scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace scarp {
 namespace {
 
-// Of normals: sums of some two hundred terms, each rounded to 2^-53 of itself, a hundredfold.
+// Rounding of normals: sums of some two hundred terms, each rounded to 2^-53 of itself, a hundredfold.
 constexpr double kRounding = 2e4 * 0x1p-53;
 
 template <class Solid>
@@ -43,8 +43,8 @@ TEST(SmoothNormal, MatchesPlanes) {
   EXPECT_EQ(smooth_normal(level, {8, 8, 14}, 3), dvec3(0.0));
 }
 
-// In the middle of a row of voxels that touch at edges as much is on both sides: the face's own normal, and no jump on
-// the way there.
+// In the middle of a row of voxels that touch at edges both sides are equal: the normal is the face's own, without a
+// jump on the way there.
 TEST(SmoothNormal, FallsBackToTheFaceNormal) {
   const VoxelGrid row = grid_where(ivec3(16), [](const ivec3& v) { return v.x == v.z; });
   const dvec3 face(0, 0, 1);
@@ -98,7 +98,7 @@ TEST(CoarseVoxels, PreserveCoverage) {
     const VoxelGrid wall = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21; });
     EXPECT_EQ(solid_after(wall, 1), 32 * 32);
     EXPECT_EQ(solid_after(wall, 3), 8 * 8);
-    // A thread has half the width of what is left of it: of 32 blocks each second.
+    // Every second of a thread's 32 blocks remains.
     const VoxelGrid thread = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21 && v[other] == 33; });
     EXPECT_EQ(solid_after(thread, 1), 16);
   }
@@ -110,14 +110,14 @@ TEST(CoarseVoxels, PreserveCoverage) {
   EXPECT_NEAR(static_cast<double>(solid_after(dust, 1)), 1024, 5 * std::sqrt(4096 * 0.25 * 0.75));
 }
 
-// What is hidden does not colour what is seen; means are those of light.
+// Hidden voxels do not affect the colour of visible ones; means are in linear light.
 TEST(CoarseVoxels, HaveTheMeanColourOfVisibleVoxels) {
   VoxelGrid grid(ivec3(4), 24);
   grid.fill(grid.box(), 0xffffff);
   grid.fill({{0, 0, 0}, {4, 4, 1}}, 0x000000);
   grid.fill({{1, 1, 1}, {3, 3, 3}}, 0x0000ff);  // buried
   const auto coarse = coarse_voxels(model_of(grid), 1);
-  // Of a block's 8 voxels 7 are seen: 4 of them black, 3 white at the bottom; all 7 white at the top.
+  // 7 of a block's 8 voxels are visible: 4 of them black, 3 white at the bottom; all 7 white at the top.
   EXPECT_EQ(coarse->colour(coarse->grid().entry({0, 0, 1})), (VoxelColour{255, 255, 255}));
   // 3/7 of white light: 255 * (1.055 * (3/7)^(1/2.4) - 0.055).
   const auto grey = static_cast<std::uint8_t>(std::lround(255 * (1.055 * std::pow(3.0 / 7, 1 / 2.4) - 0.055)));
@@ -160,12 +160,12 @@ TEST(SmoothVoxels, AreNotShadowedByTheirOwnSteps) {
   };
   EXPECT_GT(blocked(VoxelNormals::flat, 1), 30);
   EXPECT_EQ(blocked(VoxelNormals::smooth, 1), 0);
-  // Into the stairs it stays dark.
+  // Inside the stairs it stays dark.
   EXPECT_EQ(blocked(VoxelNormals::smooth, -1), 100);
 }
 
-// Symmetry gives the answers: a voxel that stands out of a slope which rises along x, seen from up the slope, and a
-// sheet before a thick wall, seen from between them.
+// Symmetry gives the answers: a voxel that protrudes from a slope rising along x, seen from up the slope, and a sheet
+// in front of a thick wall, seen from between them.
 TEST(SmoothVoxels, LightFacesOfOppositeOrientation) {
   const auto seen = [](const VoxelGrid& grid, const dvec3& from, const dvec3& direction) {
     const SceneFieldPtr field = scene_voxels({{model_of(grid)}, {VoxelPlace{}}}, {.normals = VoxelNormals::smooth});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxels of scarp.h: volumes in memory, sizes, colours, edits, and what they refuse.
+// Voxels of scarp.h: volumes in memory, sizes, colours, edits, and errors.
 #include "scarp/scene/voxels.h"
 
 #include <gtest/gtest.h>

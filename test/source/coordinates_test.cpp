@@ -15,7 +15,7 @@ using test::expect_says;
 
 constexpr int kCols = 301, kRows = 201;
 
-// Places of rasters: outer edges and CRS.
+// Georeferences of rasters: outer edges and CRS.
 struct Place {
   const char* crs;
   double west, south, cell_x, cell_y;
@@ -33,7 +33,7 @@ const Place kPlaces[] = {
 
 class CoordinatesOfFiles : public test::Files {
  protected:
-  // A file at the place, read as any other.
+  // A file with this georeference, read like any other.
   Georeference at(const Place& place) {
     const std::string file = write_tiff(
         "place.tif", GDT_Int16, kCols, kRows, std::vector<double>(static_cast<std::size_t>(kCols * kRows), 7),
@@ -69,7 +69,7 @@ TEST_F(CoordinatesOfFiles, RoundTrip) {
       std::vector<dvec3> points = local;
       ASSERT_FALSE(frame.from_local(points)) << place.crs;
       ASSERT_FALSE(frame.to_local(points)) << place.crs;
-      // PROJ promises inverses to some 1e-10 of a radian only where it iterates: 1e-6 of a cell of 30 m and more.
+      // PROJ guarantees inverses to some 1e-10 of a radian only where it iterates: 1e-6 of a cell of 30 m and more.
       const double bound = coordinates == Coordinates::lonlat ? 1e-6 : 1e-9;
       for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_NEAR(points[i].x / geo.cell_x_m, local[i].x / geo.cell_x_m, bound) << place.crs << " " << i;
@@ -98,7 +98,7 @@ TEST_F(CoordinatesOfFiles, MapNodesAreFieldNodes) {
 }
 
 TEST_F(CoordinatesOfFiles, LonlatMatchesProj) {
-  // By Krueger's series to the fourth order of n (1912), which is good to some micrometres, for UTM zone 16N.
+  // By Krueger's series to the fourth order of n (1912), accurate to some micrometres, for UTM zone 16N.
   const Georeference geo = at(kPlaces[1]);
   const CoordinateFrame map(geo, kCols, kRows, Coordinates::map), lonlat(geo, kCols, kRows, Coordinates::lonlat);
   std::vector<dvec3> point = {{725000, 4033000, 12}};
@@ -118,7 +118,7 @@ TEST_F(CoordinatesOfFiles, LongitudesWrapToTheRaster) {
     for (const dvec3& p : points) EXPECT_NEAR(p.x / geo.cell_x_m, 150, 1e-8) << place.west;
     ASSERT_FALSE(frame.from_local(points));
     EXPECT_LE(std::abs(points[0].x), 180);
-    // The map's own longitudes are as good.
+    // The map's own longitudes are as accurate.
     const CoordinateFrame map(geo, kCols, kRows, Coordinates::map);
     points = {{lon - 360, lat, 0}, {lon, lat, 0}};
     ASSERT_FALSE(map.to_local(points));
@@ -144,7 +144,7 @@ TEST_F(CoordinatesOfFiles, LonlatDirectionsAreTrueMetres) {
   for (const Place& place : kPlaces) {
     const Georeference geo = at(place);
     const CoordinateFrame frame(geo, kCols, kRows, Coordinates::lonlat);
-    // A short way north from the centre, in degrees, is that way in metres.
+    // A short step north from the centre, in degrees, has the same length in metres.
     std::vector<dvec3> centre = {{(kCols - 1) / 2.0 * geo.cell_x_m, (kRows - 1) / 2.0 * geo.cell_y_m, 0}};
     const dvec3 begin = centre[0];
     ASSERT_FALSE(frame.from_local(centre));

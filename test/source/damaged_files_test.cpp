@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files that are no rasters of heights: one line each, and nothing on stderr.
+// Files that are not rasters of heights: one line each, and nothing on stderr.
 #include <cmath>
 
 #include "source/files.h"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-// Fails when anything is printed while a test runs: GDAL and PROJ like to talk.
+// Fails if anything is printed during a test: GDAL and PROJ tend to print.
 class DamagedFiles : public Files {
  protected:
   void SetUp() override { ::testing::internal::CaptureStderr(); }
@@ -20,7 +20,7 @@ class DamagedFiles : public Files {
     options.push_back(nullptr);
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
     if (!driver) return {};
-    std::filesystem::remove(path(name));  // GDAL would look into what it replaces, and talk about it
+    std::filesystem::remove(path(name));  // GDAL would inspect the replaced file, and print messages
     const GDALDatasetUniquePtr source(GDALDataset::Open(tiff.c_str()));
     const GDALDatasetUniquePtr copy(driver->CreateCopy(path(name).c_str(), source.get(), FALSE,
                                                        const_cast<char**>(options.data()), nullptr, nullptr));
@@ -62,7 +62,7 @@ TEST_F(DamagedFiles, RejectsOtherFiles) {
   expect_says(read_error(write_bytes("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
 }
 
-// What would be right, and nothing that only GDAL's developers understand.
+// The advice that is right, and nothing that only GDAL's developers understand.
 void expect_advice(const std::string& text) {
   expect_says(text, "fetch or copy it again");
   for (const char* riddle : {"4294967295", "0x", "No such file", "Success"})
@@ -110,7 +110,7 @@ TEST_F(DamagedFiles, ReportsTruncatedArchives) {
   const std::string tiff = bytes_of(slope());
   const std::string whole = write_zip("a.zip", {{"dem/slope.tif", tiff}, {"b", "1"}, {"c", "2"}, {"d", "3"}});
   EXPECT_NO_THROW(read_raster("/vsizip/" + whole + "/dem/slope.tif", {}));
-  // Sound, but not named to its end, or wrongly: what is in it is told.
+  // Valid, but the path is incomplete or wrong: the message lists the content.
   expect_says(read_error(whole), "is a .zip archive (name a raster in it: /vsizip/" + whole + "/dem/slope.tif, ");
   expect_says(read_error(whole), "/c or 1 more");
   expect_says(read_error("/vsizip/" + whole + "/slope.tif"), "does not exist in '" + whole + "' (name a raster in it");

@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-// Adds everything in pieces of odd sizes, in bands of rows.
+// Adds all samples in pieces of odd sizes, in bands of rows.
 template <class T>
 std::vector<T> decimated(const std::vector<T>& samples, int cols, int rows, int out_cols, int out_rows,
                          std::optional<T> nodata, int piece_cols, int piece_rows, const SampleEnds& known = {}) {
@@ -90,7 +90,7 @@ TEST(Decimate, KeepsBothExtremesOfOneBlock) {
 
 TEST(Decimate, KnownExtremesReplaceMeasuredOnes) {
   EXPECT_EQ((std::vector<float>{-10, 3, 6}), decimated<float>({1, 1, 3, 3, 5, 5}, 6, 1, 3, 1, {}, 6, 1, {-10, 6}));
-  // Statistics narrower than the samples are wrong.
+  // Statistics with a narrower range than the samples are wrong.
   EXPECT_EQ((std::vector<float>{1, 3, 5}), decimated<float>({1, 1, 3, 3, 5, 5}, 6, 1, 3, 1, {}, 6, 1, {2, 4}));
 }
 

@@ -14,7 +14,7 @@ class EncodedRaster : public Files {
  protected:
   using Pixel = std::array<std::uint8_t, 4>;
 
-  // A PNG, or a file of another driver's, of the given pixels; without alpha their last byte is left out.
+  // A PNG, or a file of another driver, of the given pixels; without alpha their last byte is omitted.
   std::string write_image(const std::string& name, int cols, int rows, const std::vector<Pixel>& pixels, bool alpha,
                           const char* driver = "PNG") {
     GDALDatasetUniquePtr memory(
@@ -147,7 +147,7 @@ TEST_F(EncodedRaster, RejectsATruncatedImage) {
   }
 }
 
-// The heights of a real elevation model, encoded by Mapbox's formula, come back to half a step of it.
+// The heights of a real elevation model, encoded by Mapbox's formula, are decoded to within half a step.
 TEST_F(EncodedRaster, RoundTripsARealModel) {
   const std::filesystem::path dem =
       std::filesystem::path(SCARP_SOURCE_DIR) / ".." / "shared" / "data" / "dem" / "rgbify_elev.tif";

@@ -25,7 +25,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class ExrRaster : public Files {
  protected:
-  // An EXR whose channels all hold `values`, whose data window begins at (-5, 7).
+  // An EXR whose channels all hold `values`, whose data window starts at (-5, 7).
   std::string write_exr(const std::string& name, const std::vector<std::string>& channels, Imf::PixelType type,
                         int cols, int rows, const std::vector<float>& values,
                         Imf::Compression packing = Imf::ZIP_COMPRESSION) {
@@ -213,7 +213,7 @@ TEST_F(ExrRaster, DamagedImagesAreRejectedOrReadCompletely) {
       write_bytes("cut.exr", whole.substr(0, 1 + static_cast<std::size_t>(static_cast<double>(whole.size()) * share)));
       read_error(path("cut.exr"));
     }
-    // A byte of the header or of the table behind it changed: an Error or samples, nothing else.
+    // With a changed byte of the header or of the table behind it: an Error or samples, nothing else.
     const std::string small =
         bytes_of(write_exr("b.exr", {"Y"}, Imf::FLOAT, 20, 15, {values.begin(), values.begin() + 300}, packing));
     for (std::size_t at = 4; at < 600; at += 3) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Samples, holes, heights: what comes out of sound files.
+// Samples, holes, heights: the content of valid files.
 #include <cmath>
 #include <limits>
 
@@ -41,7 +41,7 @@ TEST_F(GdalRaster, WidensBytesWithANote) {
 }
 
 TEST_F(GdalRaster, ReadsSignedBytesWithTheirSign) {
-  // -128 and 5 as bytes, with GDAL's remark that they are signed.
+  // -128 and 5 as bytes, with GDAL's metadata that they are signed.
   const std::string file = write_tiff(
       "a.tif", GDT_Byte, 2, 2, {128, 5, 255, 0},
       [](GDALDataset& d) { d.GetRasterBand(1)->SetMetadataItem("PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE"); }, 1,
@@ -149,7 +149,7 @@ TEST_F(GdalRaster, RejectsARasterOfOnlyNodata) {
   expect_says(read_error(write_tiff("b.tif", GDT_Float32, 2, 1, {kNan, kNan})), "nodata");
 }
 
-// Heights of 100 to 140 m and `mark`. What the note tells to say is said, and the mark is a hole.
+// Heights of 100 to 140 m and `mark`. With the option that the note recommends, the mark is a hole.
 class SuspectedNodata : public GdalRaster {
  protected:
   std::string marked(GDALDataType type, double mark, double scale = 1) const {
@@ -214,7 +214,7 @@ TEST_F(SuspectedNodata, ValuesBeyondAllHeightsAreHoles) {
       EXPECT_EQ(static_cast<float>(mark), doubles(read_raster(file, options))[3]);
     }
   }
-  // Several, though the file declares another one.
+  // Several marks, although the file declares another one.
   const Raster raster =
       read_raster(write_tiff("b.tif", GDT_Float32, 3, 2, {1e38, 1, 2, -1e38, -9999, 3}, nodata(-9999)), {});
   EXPECT_TRUE(has_note(raster, "2 samples from -1e+38 to 1e+38 are taken as holes"))
@@ -225,7 +225,7 @@ TEST_F(SuspectedNodata, ValuesBeyondAllHeightsAreHoles) {
 
 class PictureScale : public GdalRaster {
  protected:
-  // A picture of 5 x 3 samples that all but one are 0.
+  // An image of 5 x 3 samples that are 0 except for one.
   std::string picture(const std::string& name, GDALDataType type, double most) const {
     GDALDatasetUniquePtr memory(GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 5, 3, 1, type, nullptr));
     EXPECT_EQ(CE_None,
@@ -248,7 +248,7 @@ TEST_F(PictureScale, ScalesPicturesThatAreTooSteep) {
     RasterOptions options;
     options.window = {1, 1, 3, 2};
     EXPECT_EQ(raster.scale, read_raster(file, options).scale);
-    // Whoever states heights is not corrected.
+    // Explicitly stated heights are not corrected.
     options = {};
     options.scale = 1;
     EXPECT_EQ(1, read_raster(file, options).scale);
@@ -284,7 +284,7 @@ TEST_F(SuspectedNodata, PlausibleHeightsGetNoNote) {
     const Raster raster = read_raster(file, {});
     EXPECT_FALSE(has_note(raster, "often marks holes")) << ::testing::PrintToString(doubles(raster));
   };
-  // Peaks, trenches and towers; the far ends only where the unit makes them far.
+  // Peaks, trenches and towers; the extremes only with a unit that makes them extreme.
   for (const double height : {0.0, -11000.0, 8849.0, 19000.0}) quiet(marked(GDT_Float32, height));
   quiet(marked(GDT_UInt32, 4000000, 0.001));
   expect_advice_that_works(marked(GDT_UInt32, 4000000, 0.01), "decimal centimetres");
@@ -293,9 +293,9 @@ TEST_F(SuspectedNodata, PlausibleHeightsGetNoNote) {
   quiet(write_tiff("b.tif", GDT_Byte, 3, 1, {0, 128, 255}));
   quiet(write_tiff("b.tif", GDT_UInt16, 4, 1, {0, 20000, 40000, 65535}));
   quiet(write_tiff("b.tif", GDT_Float64, 3, 1, {0, 4e9, 8e9}));
-  // One value lies apart from nothing.
+  // A single value is not an outlier.
   quiet(write_tiff("b.tif", GDT_UInt16, 2, 1, {65535, 65535}));
-  // What a mask or the file's own nodata value hides is no sample.
+  // Pixels hidden by a mask or the file's own nodata value do not count as samples.
   quiet(write_tiff("b.tif", GDT_Int16, 3, 1, {1, -9999, 2}, nodata(-9999)));
   const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
   quiet(write_tiff("c.tif", GDT_Int16, 3, 1, {1, -9999, 2}, [](GDALDataset& d) {

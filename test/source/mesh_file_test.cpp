@@ -31,7 +31,7 @@ class MeshFiles : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return (folder_ / name).string();
   }
-  // What is said of it after its name.
+  // The message about it, without its name.
   std::string refusal(const std::string& name, const std::string& bytes) const {
     const std::string path = write(name, bytes);
     try {
@@ -138,10 +138,10 @@ TEST_F(MeshFiles, ReadsGltfColoursStripsAndFans) {
     primitive["mode"] = mode;
     write("corners.bin", bytes_of(kTriangle, order));
     const TriangleMesh mesh = read_mesh(write("strip.gltf", document.dump()));
-    // Of the strip 0 1 2, 1 0 2; of the fan 0 1 2 and what has no area.
+    // The strip has 0 1 2 and 1 0 2; the fan has 0 1 2 and a degenerate triangle.
     EXPECT_EQ(mesh.corners.size(), mode == 5 ? 6u : 3u);
     EXPECT_EQ(mesh.corners[0].colour, vec3(0.5, 1, 0.25));
-    // In a strip every second triangle is turned, so that all face one way; this one is folded back.
+    // In a strip every second triangle is flipped, so that all face one way; this one is folded back.
     EXPECT_EQ(mesh.corners[0].normal, vec3(0, -1, 0));
     EXPECT_EQ(mesh.corners.back().normal, vec3(0, mode == 5 ? 1 : -1, 0));
   }

@@ -15,7 +15,7 @@ std::string word(std::uint32_t value) {
   return bytes;
 }
 
-// Two dimensions, y and x, and one variable of 16-bit samples that begins at byte 1000.
+// Two dimensions, y and x, and one variable of 16-bit samples that starts at byte 1000.
 std::string header(std::uint32_t rows, std::uint32_t cols, std::uint32_t records = 0) {
   return std::string("CDF\1") + word(records) + word(10) + word(2) + word(1) + std::string("y\0\0\0", 4) + word(rows) +
          word(1) + std::string("x\0\0\0", 4) + word(cols) + word(0) + word(0) + word(11) + word(1) + word(1) +
@@ -25,7 +25,7 @@ std::string header(std::uint32_t rows, std::uint32_t cols, std::uint32_t records
 
 TEST(NetcdfSize, EqualsTheEndOfTheLastVariable) {
   EXPECT_EQ(1000 + 2 * 30 * 20, netcdf_classic_bytes(header(30, 20)));
-  // Rows as records: the first, and 9 more whose padding is not relied on.
+  // Rows as records: the first, and 9 more; their padding is not assumed.
   EXPECT_EQ(1000 + 40 + 9 * (40 - 3), netcdf_classic_bytes(header(0, 20, 10)));
   EXPECT_EQ(0, netcdf_classic_bytes(header(0, 20, 0xffffffff)));
 }

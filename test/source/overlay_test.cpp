@@ -59,7 +59,7 @@ std::vector<std::uint8_t> pattern(int cols, int rows) {
   return rgba;
 }
 
-// As a map from the first sample to the last has it, whose pixels need not be square.
+// Like a map from the first sample to the last, whose pixels need not be square.
 TEST_F(OverlayTest, MapOfTheRasterKeepsItsPixels) {
   const std::vector<std::uint8_t> rgba = pattern(128, 90);
   const Overlay overlay =

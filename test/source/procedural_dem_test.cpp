@@ -44,7 +44,7 @@ double mean_slope_deg(const std::vector<float>& h, int side, double cell_m) {
   return sum / (side - 1.0) / (side - 1.0);
 }
 
-// Frozen: a change here changes every published number that names a seed.
+// Frozen: a change would change every published result that names a seed.
 TEST(ProceduralDemHeights, AreBitIdenticalEverywhere) {
   EXPECT_EQ(13571564658466880114u, hash_of(generate_dem(terrain(333, 257, 1, TerrainKind::fbm))));
   EXPECT_EQ(14448054023744193116u, hash_of(generate_dem(terrain(333, 257, 1, TerrainKind::ridged))));

@@ -60,7 +60,7 @@ TEST_F(RasterPlaceTest, NotesAssumedHeightUnitsOnMapsInFeet) {
   const std::string note = "map units are feet, but heights are assumed to be metres (override with --unit ";
   EXPECT_TRUE(has_note(read(map("EPSG:2227")), note + "us-ft"));
   EXPECT_TRUE(has_note(read(placed({700000, 30, 0, 1000000, 0, -30}, "EPSG:2222")), note + "ft"));
-  // Whoever says what heights are is not asked: the caller, the band, the vertical CRS, a map in metres.
+  // No note if the unit of heights is known: from the caller, the band, the vertical CRS, or a map in metres.
   RasterOptions options;
   options.unit = "us-ft";
   const auto in_metres = [&](GDALDataset& d) {
@@ -126,7 +126,7 @@ TEST_F(RasterPlaceTest, RejectsLongitudesBeyondTheEarth) {
 TEST_F(RasterPlaceTest, NotesThatAHemisphereIsNotPlanar) {
   EXPECT_TRUE(has_note(read(placed({0, 1, 0, 80, 0, -20}, "EPSG:4326")),
                        "true cell widths are 68.4 to 128.6 % of the width at the centre"));
-  // Percentages of nothing say nothing: samples at a pole, and at both.
+  // Percentages of zero are meaningless: samples at a pole, and at both.
   for (const double step : {90.0, 180.0}) {
     const Raster globe = read(placed({-180, 120, 0, 90 + step / 2, 0, -step}, "EPSG:4326"));
     EXPECT_TRUE(has_note(globe, "the latitudes reach a pole"));
@@ -164,7 +164,7 @@ TEST_F(RasterPlaceTest, MapUnitsAreMetresWithoutCrs) {
   EXPECT_TRUE(raster.georeference.present);
   EXPECT_EQ(30, raster.georeference.cell_x_m);
   EXPECT_TRUE(has_note(raster, "assuming map units of metres"));
-  // Metres from a corner of the site, in cells that elevation models have.
+  // Metres from a corner of the site, with typical cell sizes of elevation models.
   const Raster site = read(placed({0, 0.5, 0, 1, 0, -0.5}));
   EXPECT_EQ(0.5, site.georeference.cell_x_m);
   EXPECT_TRUE(has_note(site, "a corner is at 0,0, but the bounds fit degrees (override with --crs EPSG:4326)"));

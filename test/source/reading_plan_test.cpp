@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Large rasters read with fewer samples, whatever the file.
+// Large rasters read with fewer samples, from any file.
 #include <cmath>
 #include <numeric>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files as people have them: those of ../shared/data/dem beside the checkout and of Debian's python-matplotlib-data.
+// Real-world files: those of ../shared/data/dem beside the checkout and of Debian's python-matplotlib-data.
 #include <algorithm>
 #include <cmath>
 

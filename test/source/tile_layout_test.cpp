@@ -25,7 +25,7 @@ TEST(TileLayout, JoinsTilesAcrossTheAntimeridian) {
   EXPECT_EQ(turns({{-180, -179}, {179, 180}, {-179, -170}}), (Turns{1, 0, 1}));
   EXPECT_EQ(turns({{-180, -170}, {170, 180}, {160, 170.000001}, {-180.000001, -170}}), (Turns{1, 0, 0, 1}));
   EXPECT_EQ(turns({{359, 360}, {0, 1}}), (Turns{0, 1}));
-  // Two conventions for one place.
+  // Two conventions for one position.
   EXPECT_EQ(turns({{200, 210}, {-150, -140}}), (Turns{0, 1}));
   // Nothing to gain: side by side already, far apart, the whole globe, more than the globe.
   EXPECT_EQ(turns({{5, 6}, {6, 7}}), (Turns{0, 0}));

@@ -55,7 +55,7 @@ class TileSet : public Files {
     }
   }
 
-  // One line that names the file, and says `part`.
+  // One line that names the file, and contains `part`.
   static void expect_refused(const std::vector<std::string>& files, const std::string& file, const std::string& part,
                              const RasterOptions& options = {}) {
     const std::string text = error_of([&] { read_tiles(files, options); });
@@ -99,7 +99,7 @@ TEST_F(TileSet, JoinsTilesAcrossTheAntimeridian) {
     EXPECT_TRUE(has_note(raster, "moved 1 of 2 tiles by a full circle of longitude"));
     EXPECT_FALSE(has_note(raster, "gaps"));
   }
-  // Metres are no circle, whatever the bounds.
+  // Maps in metres do not wrap around, for any bounds.
   RasterOptions metres;
   metres.crs = "none";
   EXPECT_EQ(720, read_tiles({path("w.tif"), path("e.tif")}, metres).cols);
@@ -142,7 +142,7 @@ TEST_F(TileSet, SkipsPicturesInAFolder) {
   EXPECT_TRUE(
       has_note(read_raster(path("tiles"), {}), "skipped pictures without a georeference: " + colours + " and 2 more"));
 
-  // Those who say that colours are heights, or name a picture, mean it.
+  // If the caller says that colours are heights, or names an image, it is read.
   RasterOptions options;
   options.band = 1;
   expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif: no georeference");
@@ -151,7 +151,7 @@ TEST_F(TileSet, SkipsPicturesInAFolder) {
   expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif: no georeference");
   expect_refused({colours, path("tiles/a.tif")}, colours, "colour photograph");
 
-  // A picture with a place is no finished figure, but a mistake to be told.
+  // A georeferenced image is not a finished figure, but an error to be reported.
   tile("tiles/d.tif", 4, 0, {1, 2, 3, 4}, GDT_Byte, {}, 3, {"PHOTOMETRIC=RGB"});
   expect_says(error_of([&] { read_raster(path("tiles"), {}); }), "d.tif: colour photograph");
 
@@ -231,7 +231,7 @@ TEST_F(TileSet, CallersNodataResolvesConflicts) {
   const Raster raster = read_tiles({a, b}, options);
   EXPECT_EQ(4, raster.nodata);
   expect_samples(raster, {1, 2, kHole, kHole, 3, kHole, kHole, kHole, kHole, kHole, 5, 6, kHole, kHole, 7, 8});
-  // A value that the samples cannot have marks no gap.
+  // A value that the samples cannot have does not mark gaps.
   options.nodata = 40000;
   EXPECT_TRUE(std::isnan(doubles(read_tiles({a, b}, options))[2]));
 }

@@ -24,7 +24,7 @@ VoxFile cube_file() {
   return file;
 }
 
-// A root transform, a group, and under it so many transforms with a shape each.
+// A root transform, a group, and below it this many transforms with a shape each.
 VoxFile scene_file(const std::vector<VoxAttributes>& frames) {
   VoxFile file = cube_file();
   VoxGroup group;
@@ -86,7 +86,7 @@ TEST(VoxFile, RejectsOtherFiles) {
   std::string version = good;
   version[4] = 77;
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "unsupported version 77", parse_message(version));
-  // Whatever is missing: an error, in one line.
+  // A one-line error for any missing part.
   for (std::size_t length = 0; length < good.size(); ++length) {
     const std::string message = parse_message(good.substr(0, length));
     EXPECT_NE(message, "") << length;
@@ -138,7 +138,7 @@ TEST(VoxFile, RejectsInvalidScenes) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "(limited to ", scene_message(scene_file({{{"_t", "1 2 99999999"}}})));
 }
 
-// Made where it stays: of one that is moved there, g++ 12 warns that some kind of its content is not initialised.
+// Constructed in place: for a moved one, g++ 12 warns about uninitialised content.
 template <class Content>
 void add_node(VoxFile& file, int id, const Content& content) {
   VoxNode& node = file.nodes.emplace_back();
@@ -257,7 +257,7 @@ TEST(VoxFile, WritesAtomically) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "cannot be", refusal([&] { read_vox(testing::TempDir()); }));
 }
 
-// Files as people have them: those of ../shared/data/vox beside the checkout. The bytes come back as they were.
+// Real-world files: those of ../shared/data/vox beside the checkout. Writing restores the same bytes.
 TEST(VoxFile, ReadsRealFiles) {
   const auto folder = std::filesystem::path(SCARP_SOURCE_DIR) / ".." / "shared" / "data" / "vox";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the checkout (../shared/data/vox)";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Qubicle and Voxlap files, byte by byte after the descriptions of their formats.
+// Qubicle and Voxlap files, byte by byte from the descriptions of their formats.
 #include "scarp/source/voxel_parts.h"
 
 #include <gtest/gtest.h>

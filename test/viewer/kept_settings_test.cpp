@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the window remembers is read as written; what is wrong in the file has no effect.
+// Saved settings of the window are read as written; errors in the file have no effect.
 #include "app/viewer/kept_settings.h"
 
 #include <gtest/gtest.h>

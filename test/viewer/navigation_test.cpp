@@ -85,7 +85,7 @@ TEST_F(Navigation, MapZoomsTowardsTheCursor) {
   const dvec3 after = under();
   EXPECT_NEAR(after.x, before.x, 1e-6);
   EXPECT_NEAR(after.y, before.y, 1e-6);
-  // A drag takes the ground along.
+  // A drag moves the ground along.
   navigator.shift({30, -40}, kSize);
   const dvec3 moved = navigator.camera(800, 600).ray(cursor.x + 30, cursor.y - 40).origin;
   EXPECT_NEAR(moved.x, after.x, 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The thread that renders a window's pictures: stages, what newer requests end, errors, and its own end.
+// The thread that renders a window's pictures: stages, interruption by newer requests, errors, and shutdown.
 #include "app/viewer/picture_worker.h"
 
 #include <gtest/gtest.h>
@@ -128,7 +128,7 @@ TEST_F(Worker, SkipsIdenticalStages) {
   EXPECT_EQ(asked_.size(), 2u);
 }
 
-// Rays of a picture: each sample has one, and as many to the sun and to the sky as are asked for.
+// Rays of a picture: each sample has one, plus the requested numbers to the sun and to the sky.
 double cost_of(const PictureSettings& settings) { return settings.aa * settings.aa * (1 + 2.0 * settings.samples); }
 
 TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
@@ -144,7 +144,7 @@ TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
       before_the_last += cost_of(stages[i]);
       EXPECT_GT(cost_of(stages[i + 1]), 3 * cost_of(stages[i]));
     }
-    // Of 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
+    // For 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
     EXPECT_LE(before_the_last, cost_of(stages.back()) / 3 + 3) << aa << ' ' << samples;
   }
   PictureSettings counted;
@@ -189,7 +189,7 @@ TEST_F(Worker, JudgesTheCompletePicture) {
   ASSERT_TRUE(verdict->sides.at(0));
   EXPECT_EQ(verdict->sides[0]->mean_steps, 400);
   EXPECT_FALSE(worker->take_verdict());
-  // Nothing is judged while the view moves.
+  // No verdicts while the view moves.
   judged.moving = true;
   worker->request(judged);
   ASSERT_TRUE(next(*worker));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One scene for two threads, as in the window: the worker renders it, with coarser voxels, and the window's thread asks
-// it for what is under the cursor. For the thread sanitizer.
+// One scene for two threads, as in the window: the worker renders it, with coarser voxels, and the window's thread
+// queries the point under the cursor. For the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -73,7 +73,7 @@ TEST(SharedScene, CanBeQueriedWhileRendering) {
     const PictureRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
     const Camera camera = request.camera(96, 64);
     worker.request(request);
-    // As many readings as it takes until there is a picture, so that the threads meet.
+    // Reads until there is a picture, so that the threads run concurrently.
     for (int k = 0; k < 1000; ++k) {
       const Ray ray = camera.ray((17 * k) % 96, (29 * k) % 64);
       const Hit hit = scene.closest_hit(ray);
@@ -93,7 +93,7 @@ TEST(SharedScene, CanBeQueriedWhileRendering) {
   }
   EXPECT_GT(pictures, 0);
   EXPECT_GT(read, 0);
-  // The last picture is the one that is rendered alone.
+  // The last picture equals that of a separate rendering.
   const PictureRequest last = request_from(scene, 1, false);
   const std::uint64_t generation = worker.request(last);
   std::optional<WorkedPicture> worked;

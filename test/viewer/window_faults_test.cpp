@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The window when something fails: surface, device, driver, disk and files. It goes on with its last picture, or ends
-// with one line and status 1.
+// Failures in the window: surface, device, driver, disk and files. It continues with its last picture, or exits with
+// one line and status 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class WindowFaults : public Window {
  protected:
-  // Plays a drag while Vulkan calls fail, as lost_surface.cpp says.
+  // Plays a drag while Vulkan calls fail, as described in lost_surface.cpp.
   int lose(const std::string& plan, const std::string& screenshot) {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n0.1 key 258 1 0\n0.1 key 258 0 0\n0.2 move 200 120\n"
                                          "0.2 button 0 1 0\n0.25 move 260 125\n0.3 button 0 0 0\n";
@@ -84,7 +84,7 @@ TEST_F(WindowFaults, ReportsMissingOrInvalidInputInOneLine) {
 }
 
 TEST_F(WindowFaults, FullDiskLeavesNoPartialPicture) {
-  // A limit on the size of files, in KiB, stands for the full disk: writing fails in the same way.
+  // A limit on the size of files, in KiB, simulates a full disk: writing fails in the same way.
   std::ofstream(folder_ / "scarp-path.csv") << "x,y,z,tx,ty,tz\n" << std::string(1020, '#');
   const std::string before = bytes_of("scarp-path.csv");
   ASSERT_EQ(use("dem.tif --size 320x240",
@@ -95,7 +95,7 @@ TEST_F(WindowFaults, FullDiskLeavesNoPartialPicture) {
             0)
       << output_;
   EXPECT_TRUE(bytes_of("scarp-path.csv") == before);
-  // The first picture that could be saved has the first name, and nothing else was left.
+  // The first picture that could be saved has the first name, and no other file is left.
   EXPECT_EQ(files_like("scarp-view"), 1);
   EXPECT_EQ(files_like(".png"), 1);
   EXPECT_EQ(files_like("scarp-path"), 1);
@@ -145,7 +145,7 @@ TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
 }
 
 TEST_F(WindowFaults, CtrlCEndsItWhileConverging) {
-  // A picture that takes minutes. Shells start what is in the background without this signal.
+  // A picture that takes minutes. Shells start background jobs with this signal ignored.
   std::ofstream(folder_ / "end.sh") << "env --default-signal=INT '" SCARP_VIEW
                                        "' dem.tif --size 320x240 --samples 1024 --aa 16 --timings times.csv &\n"
                                        "pid=$!\n"

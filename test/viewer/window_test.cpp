@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The window on a display without a screen: recordings are played, the picture of the window is looked at, and that
-// which P saves is, byte for byte, what `scarp render` makes of the command that it prints.
+// The window on a display without a screen: recordings are played, the picture of the window is compared, and the
+// picture saved by P is, byte for byte, that of the printed `scarp render` command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ TEST_F(Window, SavesThePictureOfRender) {
 }
 
 TEST_F(Window, SavesThePictureOfRenderWithItsSettings) {
-  // Water, fog and colours; ground that is opened again; a look with its scale; a part of a map; the sun, dragged.
+  // Water, fog and colours; reopened ground; a look with its scale; a part of a map; a dragged sun.
   const std::string kSettings[] = {
       "0.7 option --water 300\n0.7 option --fog height\n0.7 option --visibility 9000\n0.7 option --ramp viridis\n",
       "0.7 option --exaggeration 3\n0.7 option --no-plinth true\n0.7 option --haze 0.3\n",
@@ -118,7 +118,7 @@ bool same_beside_line(const Rgb& a, const Rgb& b) {
 }
 
 TEST_F(Window, SplitLineCanBeDragged) {
-  // To the edges of the window, so that one side alone is seen.
+  // To the edges of the window, so that only one side is visible.
   for (const int side : {1, 2}) {
     ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look height\n0.8 move 160 30\n0.9 button 0 1 0\n1.0 move " +
                        (side == 1 ? "500" : "-50") + " 30\n1.1 button 0 0 0\n1.2 key 80 1 0\n",
@@ -217,7 +217,7 @@ TEST_F(Window, SurvivesResizing) {
 }
 
 TEST_F(Window, ReportsFilesThatCannotBeSaved) {
-  // A folder that is gone takes no files. K writes at once, P when the picture is complete.
+  // No files can be written to a deleted folder. K writes at once, P when the picture is complete.
   const std::string where = folder_.string();
   for (const char* key : {"75", "80"}) {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n1 key " << key << " 1 0\n1.1 key " << key << " 0 0\n";

@@ -130,7 +130,7 @@ TEST_F(Compute, RejectsRangesOutOfBounds) {
   for (const auto& range : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
            {0, 404}, {400, 4}, {2, 4}, {0, 3}, {404, 0}, {~3ull, 8}, {8, ~3ull}}) {
     const std::uint64_t offset = range.first, bytes = range.second;
-    // Nothing has its place anywhere.
+    // An empty write is valid anywhere.
     EXPECT_EQ(refusal([&] { upload(buffer, offset, words, bytes); }).empty(), bytes == 0);
     EXPECT_NE(refusal([&] { download(buffer, offset, words, bytes); }), "");
   }

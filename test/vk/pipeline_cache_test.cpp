@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled pipelines in the user's cache folder: files that are damaged or another device's are ignored, and so are
+// Compiled pipelines in the user's cache folder: damaged files and those of other devices are ignored, and so are
 // folders that cannot be written.
 #include "scarp/vk/pipeline_cache.h"
 
@@ -30,7 +30,7 @@ constexpr std::uint32_t kTwiceOfAll[] = {
 #include "test/vk/twice.comp.inc"
 };
 
-// A folder of its own, which is where the user's caches are until the end of a test.
+// A temporary folder for the user's caches until the end of a test.
 class PipelineFiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -69,7 +69,7 @@ PipelineCacheKey some_key() {
   return key;
 }
 
-// As a driver's: with the header of Vulkan's first version.
+// Like a driver's: with the header of Vulkan's first version.
 std::vector<std::byte> some_data(const PipelineCacheKey& key, std::size_t more = 1000) {
   const std::uint32_t head[] = {32, 1, key.vendor, key.device};
   std::vector<std::byte> data(32 + more, std::byte{5});
@@ -117,7 +117,7 @@ TEST_F(PipelineFiles, FromOtherDevicesAreIgnored) {
   other = key;
   other.uuid[15] += 1;
   EXPECT_TRUE(read_pipeline_cache(path, other).empty());
-  // The driver's version is in the name alone: Vulkan's header does not have it.
+  // The driver's version is only in the name: Vulkan's header does not have it.
   other = key;
   other.driver += 1;
   EXPECT_NE(pipeline_cache_name(other), pipeline_cache_name(key));
@@ -195,7 +195,7 @@ TEST_F(DevicePipelines, AreCached) {
   ASSERT_EQ(fs::path(path).parent_path(), caches_ / "scarp");
   const std::string first = content(path);
   EXPECT_GE(first.size(), 48u) << "the driver's header at least: lavapipe keeps no more";
-  // What has not changed is not written again.
+  // Unchanged caches are not written again.
   fs::last_write_time(path, fs::last_write_time(path) - std::chrono::hours(1));
   const fs::file_time_type earlier = fs::last_write_time(path);
   EXPECT_EQ(compute(), path);

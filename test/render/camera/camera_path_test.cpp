@@ -18,7 +18,7 @@ TEST(CameraPath, PassesThroughItsPoints) {
   EXPECT_EQ(path.at(0).eye, stations.front().eye);
   EXPECT_LT(length(path.at(1).target - stations.back().target), 1e-12);
   for (const CameraStation& station : stations) {
-    // Nearest of many places on the way: one of them lies at most half of the largest step away.
+    // The nearest of many positions on the path: one of them is at most half of the largest step away.
     double nearest = 1e9, step = 0;
     constexpr int kPlaces = 20000;
     for (int i = 0; i <= kPlaces; ++i) {

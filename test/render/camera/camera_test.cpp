@@ -79,7 +79,7 @@ TEST(Camera, FramingFitsAllCornersTightly) {
         for (const double elevation : {0.0, 10.0, 35.0, 89.0, 90.0}) {
           const Camera camera =
               Camera::framed(box, {.azimuth_deg = azimuth, .elevation_deg = elevation}, 0.1, width, height);
-          double left = 1, right = 1, above = 1, below = 1;  // free shares of the picture
+          double left = 1, right = 1, above = 1, below = 1;  // free fractions of the picture
           double nearest = std::numeric_limits<double>::infinity();
           for (int i = 0; i < 8; ++i) {
             const auto pixel = camera.pixel(box.corner(i));
@@ -93,7 +93,7 @@ TEST(Camera, FramingFitsAllCornersTightly) {
           // The margin is 3 % at least; in one direction it is just that on both sides.
           constexpr double kMargin = 0.03, kRounding = 1e-6;
           EXPECT_GE(std::min({left, right, above, below}), kMargin - kRounding);
-          // Unless the camera would come too near: never within 5 % of the diagonal.
+          // Unless the camera would be too close: never within 5 % of the diagonal.
           const double least_distance = 0.05 * length(box.high - box.low);
           EXPECT_GE(nearest, least_distance * (1 - kRounding));
           if (nearest < least_distance * (1 + kRounding)) continue;
@@ -125,9 +125,10 @@ TEST(Camera, DistanceIsRelativeToTheFramedView) {
   EXPECT_NEAR(dot(kBox.middle() - b, forward) / dot(kBox.middle() - a, forward), 3, 1e-9);
 }
 
-// The focus stays where it is in the picture, and the eye ends there.
+// The focus stays at its position in the picture, and the eye ends there.
 TEST(Camera, NearerViewsApproachTheirFocus) {
-  // Of metres and pixels: some dozen roundings of coordinates below 2^17 m are 2^-53 * 2^17 * 2^6 or less than 2^-30.
+  // Rounding of metres and pixels: some dozen roundings of coordinates below 2^17 m are 2^-53 * 2^17 * 2^6 or less than
+  // 2^-30.
   constexpr double kRounding = 0x1p-30;
   const dvec3 other(12000, 20000, 1200);
   for (const std::optional<dvec3>& given : {std::optional<dvec3>(), std::optional(other)}) {

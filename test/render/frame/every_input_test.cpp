@@ -84,7 +84,7 @@ class EveryInput : public testing::TestWithParam<Kind> {
   }
 };
 
-// Pixels that have another colour than most.
+// Pixels whose colour differs from that of most.
 int varied(const Image& image) {
   int count = 0;
   for (int i = 0; i < image.width * image.height; ++i)
@@ -116,7 +116,7 @@ TEST_P(EveryInput, HasNoErrorsWithExactMarches) {
   EXPECT_EQ(errors.contradictions, 0);
 }
 
-// What lies below the level is under water, seen at the level; what rises above it is as it was.
+// Ground below the level is under water, whose surface is seen; ground above it does not change.
 TEST_P(EveryInput, SupportsWater) {
   constexpr double kWater = 3.25;  // between two faces of voxels
   const Scene scene = GetParam().make();
@@ -135,7 +135,7 @@ TEST_P(EveryInput, SupportsWater) {
       EXPECT_NE(before.colour[i], after.colour[i]);
     } else if (hit && before.position[i].z > kWater + 0.1) {
       ++above;
-      // Marches that close in on a surface stop elsewhere when a ray ends at the water, by their tolerance.
+      // Marches that converge to a surface stop elsewhere if a ray ends at the water, by their tolerance.
       EXPECT_LT(length(before.colour[i] - after.colour[i]), 1e-3);
     }
   }
@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryInput,
                                          Kind{"shape", shape}, Kind{"terrain_with_a_ball", terrain_with_a_ball}),
                          [](const auto& kind) { return kind.param.name; });
 
-// A plinth is seen, and that is all.
+// Only a plinth is seen.
 TEST(PlinthInScene, CastsNoShadowAndIsNotGround) {
   const Scene bare = heights(), scene = with_plinth(bare);
   EXPECT_LT(scene.box().low.z, bare.box().low.z);

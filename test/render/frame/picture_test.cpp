@@ -46,7 +46,7 @@ Picture map_of(const HeightField& field, PictureSettings settings, double grid_n
   return render_picture(scene, Camera::top(picture_box(scene), settings.width, settings.height), settings);
 }
 
-// Of that map the two rows of pixels next to its middle. Row 1 lies where row 100 of 200 does, the lower of the two.
+// The two rows of pixels next to the middle of that map. Row 1 is row 100 of 200, the lower of the two.
 Image middle_of(const HeightField& field, PictureSettings settings, double grid_north = 0) {
   constexpr int kRows = 2;
   const Scene scene = test::terrain(field);
@@ -67,7 +67,7 @@ HeightField wall() {
   });
 }
 
-// How bright level ground at x is, on the map of the wall with the sun in the west at 45 degrees.
+// Brightness of level ground at x, on the map of the wall with the sun in the west at 45 degrees.
 int brightness_at(double x, double grid_north, bool shadows) {
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
@@ -138,8 +138,8 @@ TEST(Picture, SamplesDependOnlyOnPixelAndSeed) {
 }
 
 TEST(Picture, SamplesOfAPixelUseDifferentPoints) {
-  // Where half of a wide sun is seen, one ray to it finds it or not. With the same ray for all four samples of a pixel
-  // half of the pixels would be dark; with rays of their own, spread as well as four can be, none is.
+  // Where half of a wide sun is visible, a single ray finds it or not. With the same ray for all four samples of a
+  // pixel, half of the pixels would be dark; with separate, well distributed rays, none is.
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
   settings.ramp = "viridis";
@@ -188,7 +188,7 @@ TEST(Picture, HolesShowTheSky) {
   EXPECT_EQ(red(image, 40, 40), red(beside, 1, 40));
 }
 
-// The ramp grey is linear in height, wherever the ground turns to, in the shadow of the wall as in the sun.
+// The ramp grey is linear in height, for any slope, in the shadow of the wall as in the sun.
 TEST(Picture, UnlitGroundKeepsItsColours) {
   const HeightField field = wall();
   for (const Look look : {Look::shaded, Look::comanche}) {
@@ -288,7 +288,7 @@ TEST(Picture, StepsCountWhatTheMarchReports) {
   EXPECT_EQ(picture.steps->most, most);
   EXPECT_EQ(picture.steps->least, 0u) << "rays beside the field";
   EXPECT_NEAR(picture.steps->mean, sum / (40 * 30), 1e-9);
-  // On a scale of its own a number of steps has one colour in all pictures.
+  // On a fixed scale a number of steps has the same colour in all pictures.
   settings.step_scale = StepScale{0, 2.0 * most};
   const Picture scaled = render_picture(scene, camera, settings);
   EXPECT_EQ(scaled.steps->most, most);
@@ -321,7 +321,7 @@ MarchSettings coarse_naive() {
   return coarse;
 }
 
-// In the colours of the ramp grey the ground is grey, and the sky is blue.
+// With the ramp grey the ground is grey, and the sky is blue.
 TEST(Picture, SkyShowsWhereNaiveLosesTheGround) {
   const Image right = spike(Look::shaded, "max-mip").image, naive = spike(Look::shaded, "naive", coarse_naive()).image;
   const ErrorCounts counts = spike(Look::error, "naive", coarse_naive()).errors.value();

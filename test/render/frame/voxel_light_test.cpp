@@ -76,7 +76,7 @@ TEST(VoxelLight, ReflectionsTakeTheSurfaceTint) {
       EXPECT_EQ(mirrored.colour[i], plain.colour[i]);
       continue;
     }
-    // What the mirrored ray meets is known by a ray of its own.
+    // A separate ray finds the hit of the mirrored ray.
     const dvec3 p = dvec3(plain.position[i]);
     const dvec3 d = normalize(p - camera().eye());
     const dvec3 to(d.x, d.y, -d.z);
@@ -86,7 +86,7 @@ TEST(VoxelLight, ReflectionsTakeTheSurfaceTint) {
     const Hit hit = metal.closest_hit(ray);
     const vec3 other = (mirrored.colour[i] - 0.25f * plain.colour[i]) / 0.75f;
     if (hit) {
-      // The wall: red, whatever its light.
+      // The wall: red in any light.
       EXPECT_GT(other.x, 4 * other.y);
       ++of_wall;
     } else {

@@ -11,7 +11,7 @@ vec3 light_on(double openness, int samples, std::uint8_t sky_blocked) {
   settings.samples = samples;
   settings.shadows = false;
   const Lighting lighting(settings, kUnlimited);
-  // Its back to the sun: what is left is the sky's.
+  // Facing away from the sun: only skylight remains.
   const LightPoint ground{{0, 0, 0}, -lighting.to_sun(), -lighting.to_sun(), openness};
   std::vector<Ray> rays;
   const LightRays asked = lighting.ask(ground, {0.5, 0.5, 0, 0, 0}, rays);

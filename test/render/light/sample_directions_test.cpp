@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-// A mean over the middles of side x side squares is off by about 1 / side where what is averaged has an edge.
+// A mean over the middles of side x side squares is off by about 1 / side if the integrand has an edge.
 constexpr int kSide = 400;
 
 template <class F>
@@ -26,7 +26,7 @@ TEST(SampleDirections, DiscIsUniform) {
     const double share = mean_over_square([&](dvec2 s) { return length(on_disc(s)) < radius ? 1.0 : 0.0; });
     EXPECT_NEAR(share, radius * radius, 1.0 / kSide) << radius;
   }
-  // Each quarter between the diagonals, and each half of one, has its share.
+  // Each quarter between the diagonals, and each half of one, has its fraction.
   for (int part = 0; part < 8; ++part) {
     const double share = mean_over_square([&](dvec2 s) {
       const dvec2 p = on_disc(s);
@@ -54,7 +54,7 @@ TEST(SampleDirections, FrameIsOrthonormalAndRightHanded) {
 }
 
 TEST(SampleDirections, HemisphereIsCosineWeighted) {
-  // Below the angle z > c from the horizon there is the share 1 - c^2.
+  // The fraction 1 - c^2 is below the angle z > c from the horizon.
   for (const double c : {0.1, 0.5, 0.9}) {
     const double share = mean_over_square([&](dvec2 s) { return cosine_weighted(s).z > c ? 1.0 : 0.0; });
     EXPECT_NEAR(share, 1 - c * c, 1.0 / kSide) << c;

@@ -41,7 +41,7 @@ TEST(Sky, HasNoEdgeAtTheHorizon) {
     EXPECT_LT(length(sky.colour(normalize(dvec3(1, 0, 1e-6))) - sky.colour(normalize(dvec3(1, 0, -1e-6)))), 1e-3f);
 }
 
-// Worked out from the paper's formulas by another program: turbidity 3, the sun 45 degrees high.
+// Computed from the paper's formulas by a separate program: turbidity 3, the sun 45 degrees high.
 TEST(Sky, HasPreethamsLuminanceAndChromaticityAtTheZenith) {
   const Sky sky = scattering(45);
   const vec3 zenith = sky.colour({0, 0, 1});
@@ -108,7 +108,7 @@ TEST(Sky, IsFiniteAndNonNegativeEverywhere) {
   }
 }
 
-// Straight down directions of all azimuths meet: their colours must, too.
+// Straight down, directions of all azimuths meet, and so must their colours.
 TEST(Sky, HasOneColourTowardsTheNadir) {
   const glsl::ScarpSky sky = scattering(5).numbers();
   const vec3 down = glsl::scarp_sky_beyond(sky, {0, 0, -1});
@@ -124,7 +124,7 @@ TEST(Sky, RejectsValuesOutOfRange) {
     EXPECT_THROW(validate(SkySettings{SkyKind::scattering, turbidity}), Error);
 }
 
-// Water that reflects all light loses none of the sun's: what all eyes above it see is what came in.
+// Water that reflects all light loses no sunlight: the sum over all eyes above it equals the incoming light.
 TEST(Glitter, ConservesSunlight) {
   for (const double altitude : {40.0, 70.0}) {
     glsl::ScarpSky sky = scattering(altitude).numbers();

@@ -63,7 +63,7 @@ double mean_of_pixels(int pixels, std::uint32_t count, F&& f) {
   return sum / pixels;
 }
 
-// Four standard errors of the mean of n shares whose values are 0 or 1: what stratification gains is not counted on.
+// Four standard errors of the mean of n values of 0 or 1; the gain from stratification is ignored.
 double four_sigma(int pixels, int count) { return 4 * 0.5 / std::sqrt(double{1} * pixels * count); }
 
 TEST(SkyOcclusion, IsZeroOnAPlane) {
@@ -82,12 +82,13 @@ TEST(SkyOcclusion, IsZeroOnAPlane) {
 }
 
 TEST(SkyOcclusion, MatchesTheHorizonAtTheFootOfAWall) {
-  // A wall along the grid's north, its crest at x = 33, seen from level ground at the distance d. Of the sky over level
-  // ground, cosine-weighted, a horizon at the angle a on one side hides (1 - cos a) / 2: half of it for a = 90 degrees.
+  // A wall along the grid's north, its crest at x = 33, seen from level ground at the distance d. A horizon at the
+  // angle a on one side hides (1 - cos a) / 2 of the cosine-weighted sky over level ground: half of it for a = 90
+  // degrees.
   constexpr int kLength = 4000, kPixels = 64, kCount = 256;
   for (const auto& [height, d] : {std::pair(2000.0, 1.25), {2.0, 1.5}, {8.0, 5.0}, {8.0, 20.0}}) {
     const Scene scene = scene_of(35, kLength + 1, [h = height](int col, int) { return col >= 33 ? h : 0; });
-    // The wall's base begins one cell before its crest.
+    // The wall's base starts one cell before its crest.
     const LightPoint point = point_at(scene, 33 - d, kLength / 2);
     const double hidden = mean_of_pixels(
         kPixels, kCount, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); });
@@ -137,7 +138,7 @@ class Cliff : public testing::Test {
 
 TEST_F(Cliff, PenumbraMatchesTheSunDisc) {
   const double radius = glm::radians(0.533 / 2);
-  // The edge stands at the angle atan(height / distance). A disc that it covers up to the share s of its radius from
+  // The edge stands at the angle atan(height / distance). A disc that it covers up to the fraction s of its radius from
   // the middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: flat, which is off by radius^2 for a cap.
   for (const double s : {-0.95, -0.6, -0.3, 0.0, 0.4, 0.7, 0.95}) {
     const double shown = 0.5 + (std::asin(s) + s * std::sqrt(1 - s * s)) / std::numbers::pi;
@@ -145,7 +146,7 @@ TEST_F(Cliff, PenumbraMatchesTheSunDisc) {
     // Over the disc the cosine differs by its radius.
     EXPECT_NEAR(sun_at(distance, radius), shown * std::sin(altitude_), four_sigma(kPixels, kCount) + radius) << s;
   }
-  // Beyond its two ends there is nothing of the sun, and all of it.
+  // Beyond its two ends the sun is completely hidden or completely visible.
   EXPECT_EQ(sun_at(height_ / std::tan(altitude_ + 1.01 * radius), radius), 0.0);
   EXPECT_NEAR(sun_at(height_ / std::tan(altitude_ - 1.01 * radius), radius), std::sin(altitude_),
               radius * radius + 1e-5)

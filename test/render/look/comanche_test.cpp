@@ -67,7 +67,7 @@ TEST(Comanche, WrappedGroundMatchesTheTiledField) {
       settings.fog.kind = FogKind::distance;
       settings.fog.visibility = 60;
       const Scene wrapped = test::terrain(endless(), march), laid_out = test::terrain(tiled(), march);
-      // Six periods from the border of the tiled field, 40 cells of sight and 40 of mirrored sight: no ray comes to it.
+      // Six periods from the border of the tiled field, 40 cells of sight and 40 of mirrored sight: no ray reaches it.
       constexpr double kOffset = 6 * kPeriod;
       const dvec3 eye(7.25, 4.5, 6), ahead(0.5, 0.75, -0.25), offset(kOffset, kOffset, 0);
       Camera near = Camera::look_at(eye, eye + ahead, 60, 96, 72);
@@ -89,7 +89,7 @@ TEST(Comanche, WrappedGroundMatchesTheTiledField) {
 }
 
 TEST(Comanche, StepsLieOnPlanesOrShells) {
-  // Level ground: a sample on or below it is one past where the ray meets it.
+  // Level ground: a sample on or below it is past the ray's intersection.
   HeightFieldSettings field_settings;
   field_settings.wrap = Wrap::periodic;
   const HeightField flat = HeightField::own(std::vector<float>(16, 0.0f), 4, 4, field_settings);

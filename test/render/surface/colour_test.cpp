@@ -124,7 +124,7 @@ TEST(Light, RejectsASunBelowTheHorizon) {
   EXPECT_THROW(validate(SunSettings{.azimuth_deg = nan}), Error);
 }
 
-// Shades of a white hill-shade stay apart, hues stay, and dark colours do not change.
+// Shades of a white hill-shade stay distinct, hues are kept, and dark colours do not change.
 TEST(ToneCurve, CompressesOnlyBrightColours) {
   for (const vec3 dark : {vec3(0.0f), vec3(0.1f, 0.7f, 0.3f)}) EXPECT_EQ(toned(dark), dark);
   float before = toned(vec3(0.7f)).x;

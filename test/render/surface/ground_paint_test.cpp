@@ -14,7 +14,7 @@ namespace {
 
 const dvec3 kSun = normalize(dvec3(-1, 0, 1));
 
-// Of ground of 10 x 10 cells of 10 m, from 0 to 100 m.
+// Paint of ground of 10 x 10 cells of 10 m, from 0 to 100 m.
 class Paint {
  public:
   explicit Paint(const GroundPaintSettings& settings)
@@ -44,7 +44,7 @@ TEST(GroundPaint, ContoursHaveTheRightHeightAndWidth) {
     if (std::abs(off - reach) < 1e-6) continue;
     EXPECT_EQ(inked, off < reach) << height;
   }
-  // Lines closer than three pixels are no lines.
+  // Lines closer than three pixels are not drawn.
   EXPECT_EQ(with({20, 50, 20}, 20, normal, 8), without({20, 50, 20}, 20, normal, 8));
 }
 

@@ -147,7 +147,7 @@ TEST(Water, AbsorbsByTracedDepth) {
       const double sine = std::sqrt(1 - ray.direction.z * ray.direction.z) / 1.333;
       const double way = depth / std::sqrt(1 - sine * sine), mirror = schlick(-ray.direction.z);
       for (int c = 0; c < 3; ++c) {
-        // The sun, overhead, comes down through the depth; then there is the way back to the eye.
+        // Sunlight from overhead passes down through the depth, then back to the eye.
         const double bottom = dry.colour[0][c] * std::exp(-absorbed[c] * depth);
         const double left = std::exp(-absorbed[c] * way);
         const double body = bottom * left + deep[c] * (1 - left);
@@ -231,7 +231,7 @@ TEST(Water, FlatSeaAtTheLevelIsWater) {
   }
 }
 
-// Rounding does not decide between water and what lies in its plane.
+// Rounding does not decide between water and ground in its plane.
 TEST(Water, VoxelTopsAtTheLevelAreDeepWater) {
   VoxelGrid grid({64, 64, 8}, 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hits on voxels by their coordinates in the file, from every reader: grids are cropped, and axes turned.
+// Hits on voxels by their coordinates in the file, from every reader: grids are cropped, and axes are permuted.
 #include <gtest/gtest.h>
 
 #include <array>

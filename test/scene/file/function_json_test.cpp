@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions from JSON: every type, and what is told of those that are wrong.
+// Terrain functions from JSON: every type, and the messages of invalid ones.
 #include "scarp/scene/file/function_json.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(FunctionJson, ReadsEveryType) {
   same(R"({"type": "mask", "centre": [300, -100], "inner": 10, "outer": 200})", RadialMask{{300, -100}, 10, 200});
   same(R"({"type": "sum", "of": [)" + f + R"(, 10], "factors": [2, -1], "offset": 5})", Sum{fbm, ten, 2, -1, 5});
   same(R"({"type": "smooth-minimum", "of": [)" + f + R"(, 10], "radius": 40})", SmoothMinimum{fbm, ten, 40});
-  // Of three operands the first two are one.
+  // The first two of three operands are combined first.
   EXPECT_EQ(value(R"({"type": "product", "of": [2, 3, 4]})", 0, 0), 24);
   EXPECT_EQ(value(R"({"type": "minimum", "of": [2, 1, 4]})", 0, 0), 1);
   EXPECT_EQ(value(R"({"type": "maximum", "of": [2, 1, 4]})", 0, 0), 4);

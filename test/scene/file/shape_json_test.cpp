@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shapes from JSON: what they say is what is built; what is wrong is told with its place.
+// Shapes from JSON: shapes are built as described; errors are reported with their position.
 #include "scarp/scene/file/shape_json.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ const ShapeNames kNames{
 DistanceField field_of(const char* text) { return distance_field_from_json(Json::parse(text), "/shape", kNames); }
 
 TEST(ShapeJson, ReadsEverySolid) {
-  // A position just outside of each, and how far.
+  // A position just outside of each, and its distance.
   const struct {
     const char* text;
     dvec3 position;
@@ -59,7 +59,7 @@ TEST(ShapeJson, ReadsEverySolid) {
   for (const auto& [text, position, distance] : solids) {
     EXPECT_NEAR(field_of(text).value(position), distance, 1e-12) << text;
   }
-  // Smooth by a quarter of the radius where both are as far.
+  // Smooth by a quarter of the radius where both are equally far.
   const DistanceField smooth = field_of(
       R"({"union": [{"sphere": {"radius": 1, "at": [-2, 0, 0]}}, {"sphere": {"radius": 1, "at": [2, 0, 0]}}], "smooth": 0.4})");
   EXPECT_NEAR(smooth.value({0, 0, 0}), 1 - 0.1, 1e-12);

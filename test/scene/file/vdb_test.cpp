@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenVDB and NanoVDB files: what is solid, where it stands, what is refused. Files are made with OpenVDB itself.
+// OpenVDB and NanoVDB files: solid voxels, their positions, and errors. Files are made with OpenVDB itself.
 #include <gtest/gtest.h>
 #define NANOVDB_USE_OPENVDB
 // NanoVDB's headers need it and do not include it.
@@ -178,7 +178,7 @@ TEST_F(VdbFiles, RejectsOversizedOrSkewedGrids) {
 
 TEST_F(VdbFiles, RejectsTruncatedFiles) {
 #ifndef NDEBUG
-  // OpenVDB asks for as much memory as the rest of such a file says. The address sanitizer ends the program there.
+  // OpenVDB allocates as much memory as the rest of such a file states. The address sanitizer stops the program there.
   GTEST_SKIP() << "OpenVDB under the address sanitizer";
 #endif
   nanovdb::io::writeGrid(path("ball.nvdb"), nanovdb::openToNanoVDB(*ball()));

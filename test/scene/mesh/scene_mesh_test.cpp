@@ -95,7 +95,7 @@ TEST(SceneMesh, HitsATriangleFromBothSides) {
   EXPECT_EQ(field->box()->low, dvec3(0, 0, 1));
   EXPECT_EQ(field->box()->high, dvec3(4, 4, 1));
   for (const double side : {1.0, -1.0}) {
-    // t counts in the direction's length.
+    // t is in units of the direction's length.
     const Ray ray = ray_at({1, 2, 1 + 8 * side}, {0, 0, -4 * side});
     MarchStats stats;
     const Hit hit = field->closest_hit(ray, nullptr, &stats);
@@ -200,7 +200,7 @@ TEST(SceneMesh, SharedEdgesAndCornersLeaveNoGap) {
   }
 }
 
-// From a convex solid a ray outward meets nothing, and a ray inward the other side.
+// From a convex solid a ray outwards hits nothing, and a ray inwards hits the other side.
 TEST(SceneMesh, RayFromATriangleHitsOnlyOthers) {
   for (const dvec3& middle : {dvec3(0), dvec3(5e5, 4e6, 1e3)}) {
     const SceneFieldPtr field = scene_mesh(ball(middle, 5));
@@ -221,7 +221,7 @@ TEST(SceneMesh, RayFromATriangleHitsOnlyOthers) {
         ASSERT_TRUE(other) << i;
         EXPECT_NE(other.cell, hit.cell);
         EXPECT_GT(other.t, 5 * kMeshRounding);
-        // The same where the ray itself says on which triangle it begins.
+        // The same if the ray itself names the triangle on which it starts.
         EXPECT_EQ(field->closest_hit(field->started(next, &hit), nullptr, nullptr), other);
       }
     }
@@ -268,7 +268,7 @@ TEST(SceneMesh, IsAccurateAtAnyDistance) {
   for (int i = 0; i < 2000; ++i) {
     const dvec3 back = random.direction(), target = 4.0 * random.direction();
     const Hit near_hit = near_field->closest_hit(ray_at(target + 20.0 * back, -back), nullptr, nullptr);
-    // From a thousand kilometres away, where doubles lie 2^-31 m apart.
+    // From a thousand kilometres away, where doubles are 2^-31 m apart.
     const Ray ray = ray_at(far + target + 1e6 * back, -back);
     const Hit hit = far_field->closest_hit(ray, nullptr, nullptr);
     ASSERT_TRUE(near_hit && hit);
