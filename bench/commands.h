@@ -187,7 +187,7 @@ struct ExtentsOptions {
 };
 void run_extents(const ExtentsOptions& options, const ReportOptions& report);
 
-/// `voxels`: the tables of the original post for the marches of voxel grids.
+/// `voxels`: the tables of the founding post for the marches of voxel grids.
 struct VoxelsOptions {
   std::vector<std::string> sets{"standard", "degenerate", "empty", "far-wall"};
   std::vector<int> thousands{1, 2, 4, 8, 16};  ///< of objects, 1..16

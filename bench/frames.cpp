@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench render`: the cost of a frame of the look `comanche`, stepped as in the original text and exact, and the
+// `scarp-bench render`: the cost of a frame of the look `comanche`, stepped as in the founding text and exact, and the
 // fraction of wrong pixels.
 #include <fmt/format.h>
 

@@ -37,7 +37,8 @@ constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
 constexpr std::int64_t kMoreJudged = 16;
 constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
-// Of cards: runs of a group, groups that are no faster than the best one before it counts, and the limit of time.
+// For cards: runs per group, consecutive groups without improvement after which the best one counts, and the time
+// limit.
 constexpr int kRunsInARow = 9, kGroups = 20;
 constexpr double kFaster = 0.99;
 constexpr std::chrono::seconds kMostInARow{3};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench pixel-match`: the requirement of the original post that every technique matches its quads pixel by
+// `scarp-bench pixel-match`: the requirement of the founding post that every technique matches its quads pixel by
 // pixel. With a device, both of its drawing methods must also match triangles drawn by the same device.
 #include "bench/pixel_match.h"
 

@@ -168,8 +168,8 @@ TEST(SimtBlocks, MatchTheShaders) {
   }
   if (compilers != kept.compilers) GTEST_SKIP() << "the table is of other compilers: " << kept.compilers;
   constexpr const char* kRewrite = "scarp-bench simt --recount --update bench/simt_blocks.csv";
-  // The rows of voxel shaders are older than their rule of ties (VoxelTies), so their basic blocks have to be assigned
-  // anew; until then `scarp-bench simt --voxels` counts the former shaders. Rows of height fields are checked.
+  // The rows of voxel shaders are older than their rule of ties (VoxelTies), so their basic blocks must be reassigned;
+  // until then `scarp-bench simt --voxels` counts the former shaders. Rows of height fields are checked.
   SimtShaders checked = kept;
   std::erase_if(checked.shaders, [](const auto& shader) { return shader.name.starts_with("voxel"); });
   const SimtShaders found = recount(checked);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours of voxels by a perfect spatial hash, the 3-D hash that the original post proposes: compared with the rank of
+// Colours of voxels by a perfect spatial hash, the 3-D hash that the founding post proposes: compared with the rank of
 // VoxelGrid.
 //
 //   place(p) = (p + offset[p mod r]) mod m     m^3 places for n voxels, r^3 offsets, no two voxels in one place

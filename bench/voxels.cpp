@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxels`: the tables of the original post for the marches of voxel grids: time per frame, memory, steps
+// `scarp-bench voxels`: the tables of the founding post for the marches of voxel grids: time per frame, memory, steps
 // and boxes per ray, build times; compared with Embree, NanoVDB and a hash for colours.
 #include <fmt/format.h>
 

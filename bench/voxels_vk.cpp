@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxels --device NAME`: the pictures of the original post on a Vulkan device, by both drawing methods and
+// `scarp-bench voxels --device NAME`: the pictures of the founding post on a Vulkan device, by both drawing methods and
 // every march, compared with their quads drawn by the same device as triangles. Times are those of the device's clock.
 //
 // Boxes are around grids, as in the post, or tight, around solid voxels. All objects share a grid; a column shows the
@@ -119,7 +119,7 @@ class DeviceTables {
     add(std::move(row));
   }
 
-  // Of compute, on the CPU, which takes the same steps in the same boxes.
+  // Costs of compute, counted on the CPU, which takes the same steps in the same boxes.
   static std::pair<double, double> costs(const Scene& scene, const std::vector<Ray>& rays) {
     MarchStats sum;
     std::size_t asked = 0;

@@ -84,7 +84,7 @@ class RaySlices {
   std::uint32_t slice_;
   Commands commands_;
   std::vector<PassTime> passes_;
-  // Of one slice, by ray.
+  // The current slice, by ray.
   std::vector<Prepared> prepared_;
   std::vector<Hit> found_;
 

@@ -29,7 +29,7 @@ class MeshOption : public testing::Test {
 
   Result render(const std::vector<std::string>& more, bool device = true) const {
     std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "64x64", "--top"};
-    // Of the look shaded.
+    // Pictures of the look shaded.
     if (std::find(more.begin(), more.end(), "--look") == more.end()) arguments.insert(arguments.end(), {"--aa", "1"});
     if (device) arguments.insert(arguments.end(), {"--device", "auto"});
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -198,7 +198,7 @@ TEST_F(OpenDevice, ReportsExhaustedMemoryAndContinues) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto use_up = [] {
     const Device limited({.choice = "cpu"});
-    // A resource that was created once remains available.
+    // The memory of the first upload stays allocated.
     const std::uint32_t word = 7;
     upload(DeviceBuffer(limited, 4096, "the first"), 0, &word, 4);
     std::uint64_t pages = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz-local`: bounds a terrain function anew on every segment of the ray, so that steps grow where the ground is
-// smooth or far below.
+// `lipschitz-local`: bounds a terrain function separately on every segment of the ray, so that steps grow where the
+// ground is smooth or far below.
 //
 //     o-------------------+----------o      the ground is below the line mid + slope s + rest on this segment:
 //      \ segment of the ray                 free as far as the ray is above that line, or above `high`;

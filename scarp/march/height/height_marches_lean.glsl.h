@@ -2,7 +2,7 @@
 // The first pass of `naive`, `fixed-step`, `relaxed` and `lipschitz` on devices: the rules of naive.glsl.h and so on in
 // few instructions, for rays that are above the ground.
 //
-//   stretch: the ray begins anew at time s0; up to kScarpStretch later its points are plain floats
+//   stretch: the ray restarts at time s0; up to kScarpStretch later its points are plain floats
 //     turn:  o + d t ──▶ four samples ──▶ clearance ──▶ a hit, or the t of the next point
 //
 // Left to the second pass (height_marches.glsl.h), by the status kScarpDoubtful: rays that start or enter below the

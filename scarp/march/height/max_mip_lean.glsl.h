@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The first pass of `max-mip` on devices: the traversal of max_mip.h in plain floats, with a margin for their error.
 //
-//   frame: the ray begins anew at time s0, mirrored so that it goes towards +x and +y
+//   frame: the ray restarts at time s0, mirrored so that it goes towards +x and +y
 //     walk, a block per turn:  one load: the maxima of its 2 x 2 children (GroundQuads)
 //       the ray is above every child on its way by more than the margin   leave the block, go up a level
 //       else                                                              on to the first child that it may meet

@@ -2,7 +2,7 @@
 // A ray over a height field in single precision: the field and the ray in the form of shaders, and the frame of
 // reference in which floats are exact enough.
 //
-//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray begins anew:
+//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray restarts:
 //   at |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o comes
 //   from |        __-+-          |     the ray's own numbers in twice a float's precision, never from the frame before,
 //   so |    _--    |           |     nothing accumulates; and s0 is a float, whatever it was computed from: it has no
