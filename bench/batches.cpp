@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench batches`: the library's batch calls, closest_hits() and occluded(), from ten rays to ten million. A
-// batch of a thousand is what a script asks, ten million what a film frame asks. Rays come in the order of their class,
-// and shuffled: what putting them in order saves is seen there.
+// script typically sends a thousand rays, a film frame ten million. Rays are in the order of their class, and shuffled:
+// the difference shows what sorting them saves.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,9 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t kRaysPerPass = 2'000'000;  // at least: small batches are asked again and again
+constexpr std::int64_t kRaysPerPass = 2'000'000;  // at least: small batches are repeated
 
-// Wall-clock seconds of a pass over `rays` in batches, the median.
+// Median wall-clock seconds of a pass over `rays` in batches.
 double seconds(const HeightTarget& target, bool any_hit, const std::vector<Ray>& rays, std::size_t batch, int repeats) {
   std::vector<Hit> hits(batch);
   std::vector<std::uint8_t> blocked(batch);
@@ -43,7 +43,7 @@ double seconds(const HeightTarget& target, bool any_hit, const std::vector<Ray>&
   return median(passes);
 }
 
-// The rays again and again, up to `count`.
+// Repeats the rays up to `count`.
 std::vector<Ray> repeated(const std::vector<Ray>& rays, std::size_t count) {
   std::vector<Ray> more;
   more.reserve(count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// scarp-bench runs from end to end and writes what README.md promises. No time is judged here.
+// scarp-bench runs from end to end and writes what README.md promises. Times are not tested here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -78,7 +78,7 @@ TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
   }
 }
 
-TEST(ScarpBench, BatchesOfAllSizes) {
+TEST(ScarpBench, BatchesRunsAllSizes) {
   const json all = output_of("batches --size 129 --rays small --repeats 1 --batches 10,5000");
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 2u * 2u * 2u);  // classes, orders, sizes
@@ -88,7 +88,7 @@ TEST(ScarpBench, BatchesOfAllSizes) {
   }
 }
 
-TEST(ScarpBench, ExtentsAnswerAsWindowsDo) {
+TEST(ScarpBench, ExtentsMatchWindows) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
   expect_head(all);
   for (const json& row : all["rows"]) {
@@ -153,7 +153,7 @@ TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
     expect_fields(row, {"side", "type", "colours", "build_s", "plain_read_s", "ratio"});
 }
 
-TEST(ScarpBench, LeaksFindsNoneAndIsTheSameEachTime) {
+TEST(ScarpBench, LeaksFindsNoneAndIsReproducible) {
   const json all = output_of("leaks --rays 200000 --large 129 --seed 5 --judge-every 64 --dump /nowhere/none");
   expect_head(all);
   for (const json& row : all["rows"]) {
@@ -297,7 +297,7 @@ TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
 }
 
 #ifdef SCARP_BENCH_VULKAN
-TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
+TEST(ScarpBench, RenderReportsDeviceAndCpuRows) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -314,7 +314,7 @@ TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
   }
 }
 
-TEST(ScarpBench, VoxelsOnADeviceAreThoseOfTheCpu) {
+TEST(ScarpBench, VoxelsOnDeviceMatchCpu) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -337,7 +337,7 @@ TEST(ScarpBench, VoxelsOnADeviceAreThoseOfTheCpu) {
 }
 
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
-  // Who asks for a device that is not there is told which there are, or that there is none.
+  // If no device has the given name, the error lists those available, or says that there are none.
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -372,7 +372,7 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
     EXPECT_GT(row["mrays_per_s"], 0.0);
     EXPECT_GE(row["fetches_per_ray"], row["steps_per_ray"]);
     if (mode == "max-mip") {
-      // Of 2000 rays none comes as near to the surface as single precision errs.
+      // None of the 2000 rays passes within single-precision error of the surface.
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_EQ(row["fetch_ratio"], 1.0);
     }
@@ -394,7 +394,7 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
     EXPECT_TRUE(modes.contains(mode)) << mode;
 }
 
-TEST(ScarpBench, GpuComparesAtEqualErrorOfPosition) {
+TEST(ScarpBench, GpuComparesAtEqualPositionError) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -436,9 +436,8 @@ TEST(ScarpBench, DevicesMarksTheChosenOne) {
 #endif
 
 #ifdef SCARP_BENCH_VULKAN
-// Corners are rounded to a part of a pixel, so pixels beside edges may show what is on the other side, and nothing
-// else.
-TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
+// Corners are rounded to a fraction of a pixel, so pixels next to an edge may show its other side, and nothing else.
+TEST(ScarpBench, DrawnGridDepthsMatchRays) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -534,7 +533,7 @@ TEST(ScarpBench, SeamsLoseNoRay) {
   }
 }
 
-TEST(ScarpBench, SweepsAgreeWithBulletAndNoneTunnels) {
+TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
   const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
   expect_head(all);
   int judged = 0;
@@ -547,13 +546,13 @@ TEST(ScarpBench, SweepsAgreeWithBulletAndNoneTunnels) {
       continue;
     }
     expect_fields(row, {"class", "sweeps", "scarp_us", "bullet_us", "ratio", "contacts", "bullet_contacts", "differ"});
-    // Bullet computes in float: it may see a touch otherwise.
+    // Bullet computes in float: it may decide grazing rays differently.
     EXPECT_LE(row["differ"].get<int>(), row["sweeps"].get<int>() / 50 + 1) << row;
   }
   EXPECT_EQ(judged, 2);
 }
 
-TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
+TEST(ScarpBench, ReportsErrorsInOneLine) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;
   };
@@ -571,7 +570,7 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
 }
 
-TEST(ScarpBench, WrongUsageIsOneLineOfTheProgram) {
+TEST(ScarpBench, ReportsUsageErrorsInOneLine) {
   for (const char* arguments : {"", "heights --sizes 5", "heights --sizes much", "heights --size 129", "hights"}) {
     const std::string file =
         (std::filesystem::temp_directory_path() / fmt::format("scarp-bench-{}.err", getpid())).string();
@@ -586,7 +585,7 @@ TEST(ScarpBench, WrongUsageIsOneLineOfTheProgram) {
   }
 }
 
-// NaN is neither too small nor too large; a check that traces NaN rays traces none, and finds nothing wrong.
+// NaN is neither too small nor too large; a run over NaN rays would trace none and find nothing wrong.
 TEST(ScarpBench, NumbersAreFinite) {
   std::map<std::string, std::vector<std::string>> options = {
       {"--rays", {"leaks", "voxel-leaks", "function-leaks"}},

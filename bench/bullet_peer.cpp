@@ -17,7 +17,7 @@ namespace {
 constexpr int kChunk = 16;  // Bullet's default
 constexpr int kUpAxis = 2;
 
-// The nearest of the triangles that Bullet offers; their two sides alike, as Embree and Scarp's peers see them.
+// The nearest of the triangles that Bullet passes, both sides alike, as for Embree and Scarp.
 struct Nearest : btTriangleRaycastCallback {
   using btTriangleRaycastCallback::btTriangleRaycastCallback;
   bool hit = false;
@@ -32,11 +32,11 @@ struct Nearest : btTriangleRaycastCallback {
 struct BulletPeer::Shape {
   std::vector<float> heights;  // Bullet's rows go north
   std::unique_ptr<btHeightfieldTerrainShape> shape;
-  btVector3 middle, low, high;  // Bullet puts the middle of the shape at its origin
+  btVector3 middle, low, high;  // Bullet centres the shape on its origin
   double build_s = 0;
   bool accelerated = false;
 
-  // Bullet takes segments: as much of a ray as is over the field.
+  // Bullet takes segments: the part of a ray over the field.
   float end_of(const BenchRay& ray) const {
     float end = ray.t_max;
     const float o[3] = {ray.ox, ray.oy, ray.oz}, d[3] = {ray.dx, ray.dy, ray.dz};

@@ -38,7 +38,7 @@ BulletSweeper::BulletSweeper(const HeightField& field) : shape_(std::make_unique
   shape_->ground->setMargin(0);
   shape_->object = std::make_unique<btCollisionObject>();
   shape_->object->setCollisionShape(shape_->ground.get());
-  // Bullet puts the middle of the shape at its origin.
+  // Bullet centres the shape on its origin.
   btTransform place = btTransform::getIdentity();
   place.setOrigin({0.5F * static_cast<float>(cols - 1), 0.5F * static_cast<float>(rows - 1), 0.5F * (low + high)});
   shape_->object->setWorldTransform(place);

@@ -24,7 +24,7 @@ struct TraceOptions {
   std::vector<int> threads{1};
   int repeats = 3;
   double pass_limit_s = 10;
-  std::int64_t judged = 20000;             ///< rays per class that the judge answers
+  std::int64_t judged = 20000;             ///< rays per class that the judge also traces
   std::string instruction_set = "native";  ///< bench/instruction_set.h (heights, survey)
 };
 
@@ -39,10 +39,10 @@ struct HeightsOptions {
 };
 void run_heights(const HeightsOptions& options, const ReportOptions& report);
 
-/// `naive`: the comparison of the max-mip article, with naive marching as fine as it takes to be right.
+/// `naive`: the comparison of the max-mip article, with naive marching fine enough to be correct.
 struct NaiveOptions {
   TraceOptions trace;
-  double miss_limit = 0.001;  ///< share of the judge's hits that naive may miss
+  double miss_limit = 0.001;  ///< fraction of the judge's hits that naive may miss
 };
 void run_naive(const NaiveOptions& options, const ReportOptions& report);
 
@@ -71,7 +71,7 @@ struct SimdOptions {
 };
 void run_simd(const SimdOptions& options, const ReportOptions& report);
 
-/// `pyramid`: how fast the pyramid of maxima is built.
+/// `pyramid`: build speed of the pyramid of maxima.
 struct PyramidOptions {
   std::vector<int> sizes{2049, 8193};
   int repeats = 5;
@@ -86,12 +86,12 @@ struct MapsOptions {
   int observer_height = 2;                   ///< metres; the observer stands in the middle
   int azimuth_deg = 135, altitude_deg = 20;  ///< of the sun
   int repeats = 3;
-  std::int64_t judged = 100'000;  ///< nodes per map that a ray answers, too
+  std::int64_t judged = 100'000;  ///< nodes per map that are also decided by a ray
   int lines = 1'000'000;          ///< of sight
   std::vector<std::string> programs{"scarp", "gdal_viewshed", "r.viewshed", "r.sunmask", "saga"};
   std::string scarp;             ///< path of the program
   int observers = 500;           ///< of a cumulative viewshed; 0: none
-  double program_limit_s = 120;  ///< programs that take longer are ended, and not run at larger sizes
+  double program_limit_s = 120;  ///< programs that take longer are stopped, and not run at larger sizes
 };
 /// Throws Error, after the report, if a node differs from its ray.
 void run_maps(const MapsOptions& options, const ReportOptions& report);
@@ -108,20 +108,20 @@ struct ViewOptions {
 struct DevicesOptions {
   std::string device = "auto";  ///< DeviceSettings::choice
 };
-/// Throws Error if there is no device, or none that the choice takes.
+/// Throws Error if there is no device, or none matches the choice.
 void run_devices(const DevicesOptions& options);
 
 /// `gpu`: the marches on a Vulkan device, and the article's comparison there.
 struct GpuOptions {
   FieldOptions field;
   std::string device = "auto";    ///< DeviceSettings::choice
-  std::vector<int> sizes;         ///< samples per side; empty: 1025, 4097 and, but for CPU devices, 16385
-  std::optional<RayCounts> rays;  ///< nothing: those of RayCounts, for CPU devices a sixteenth
-  std::int64_t judged = 0;        ///< rays per class that the oracle answers, too; 0: 20,000, for CPU devices 4096
+  std::vector<int> sizes;         ///< samples per side; empty: 1025, 4097 and, except on CPU devices, 16385
+  std::optional<RayCounts> rays;  ///< nullopt: those of RayCounts, for CPU devices a sixteenth
+  std::int64_t judged = 0;        ///< rays per class that the oracle also traces; 0: 20,000, for CPU devices 4096
   std::uint64_t ray_seed = 1;
   std::vector<std::string> classes{"chunk", "primary", "shadow", "grazing", "ao"};
   std::vector<double> exaggerations{1};
-  double miss_limit = 0.001;  ///< share of the hits that naive-missed may miss
+  double miss_limit = 0.001;  ///< fraction of the hits that naive-missed may miss
   int repeats = 5;
   double pass_limit_s = 10;
   bool raster = false;
@@ -131,16 +131,16 @@ struct GpuOptions {
 void run_gpu_raster(const GpuOptions& options, const ReportOptions& report);
 void run_gpu(const GpuOptions& options, const ReportOptions& report);
 
-/// `shaders`: what RADV's compiler makes of each shader, for cards that need not be there.
+/// `shaders`: RADV's statistics of each shader, for cards that need not be installed.
 struct ShadersOptions {
   std::vector<std::string> families{"polaris10", "vega10", "navi10", "navi21", "gfx1100"};  ///< of AMD cards
-  std::string shader{};  ///< only shaders whose path contains it
+  std::string shader{};  ///< only shaders whose path contains this
   std::string update{};  ///< a table of shader_table.h to write; empty: none
 };
 /// Throws Error if RADV is missing or does not know a family, or if no shader has the name.
 void run_shaders(const ShadersOptions& options, const ReportOptions& report);
 
-/// `simt`: rays in lockstep, by the shaders' text on the CPU: what bundles pay with max-mip and with naive.
+/// `simt`: rays in lockstep, by the shaders' text on the CPU: costs of bundles with max-mip and with naive.
 struct SimtOptions {
   FieldOptions field;
   std::vector<int> sizes{1025, 4097};
@@ -148,10 +148,10 @@ struct SimtOptions {
   RayCounts rays;
   std::int64_t groups = 512;  ///< of 64 successive rays, spread evenly over each class; all are judged
   std::uint64_t ray_seed = 1;
-  double wrong_limit = 0.001;  ///< share of rays that naive may get wrong
+  double wrong_limit = 0.001;  ///< fraction of rays that naive may get wrong
   std::string blocks;          ///< table of instructions by block; empty: bench/simt_blocks.csv of the sources
   bool recount = false;        ///< with Vulkan: by the blocks as this build compiles them (simt_recount.h)
-  std::string disassembly{};   ///< a folder for the disassemblies that are counted; empty: none
+  std::string disassembly{};   ///< a folder for the counted disassemblies; empty: none
   std::string update{};        ///< a file to write the recounted table to, instead of tracing rays
   bool voxels = false;         ///< instead: the marches of voxels, in pictures of the sets of voxel_sets.h
   std::vector<std::string> voxel_sets{"standard", "degenerate", "far-wall"};
@@ -160,19 +160,19 @@ struct SimtOptions {
 };
 void run_simt(const SimtOptions& options, const ReportOptions& report);
 
-/// `leaks`: rays aimed at what engines lose, each judged.
+/// `leaks`: rays of the kinds that engines lose, each judged.
 struct LeaksOptions {
   std::int64_t rays = 10'000'000;
   std::uint64_t seed = 1;
   int large = 2049;                       ///< side of the large field, in samples
-  std::int64_t judge_every = 4096;        ///< each so many-th ray over a small field is also answered by exhaustive
-  std::int64_t embree_rays = 10'000'000;  ///< at most about so many are also given to Embree; 0: none
+  std::int64_t judge_every = 4096;        ///< one in this many rays over a small field is also traced by exhaustive
+  std::int64_t embree_rays = 10'000'000;  ///< at most about this many are also traced by Embree; 0: none
   std::string dump;                       ///< file for the first failing rays; empty: leaks-SEED.txt
 };
 /// Throws Error, after the report, when a ray was lost, false or contradictory.
 void run_leaks(const LeaksOptions& options, const ReportOptions& report);
 
-/// `edits`: how soon an edit of a rectangle is visible to queries.
+/// `edits`: time until an edit of a rectangle is visible to queries.
 struct EditsOptions {
   int size = 16385;  ///< samples per side
   int rect = 256;    ///< samples per side of the rectangle
@@ -180,14 +180,14 @@ struct EditsOptions {
 };
 void run_edits(const EditsOptions& options, const ReportOptions& report);
 
-/// `extents`: the largest fields, int16, beside windows cut out of them.
+/// `extents`: the largest fields, int16, compared with windows cut out of them.
 struct ExtentsOptions {
   std::vector<std::pair<int, int>> sizes{{65536, 512}, {65536, 65536}};  ///< columns and rows
   std::int64_t windows = 256;                                            ///< each with 256 rays
 };
 void run_extents(const ExtentsOptions& options, const ReportOptions& report);
 
-/// `voxels`: the founding post's tables for the marches of voxel grids.
+/// `voxels`: the tables of the founding post for the marches of voxel grids.
 struct VoxelsOptions {
   std::vector<std::string> sets{"standard", "degenerate", "empty", "far-wall"};
   std::vector<int> thousands{1, 2, 4, 8, 16};  ///< of objects, 1..16
@@ -196,13 +196,13 @@ struct VoxelsOptions {
   int block = 8;                               ///< objects per side of the larger one of these grids
   int repeats = 3;
   double pass_limit_s = 10;  ///< a slower technique traces part of the rays
-  std::string device;        ///< instead: both ways of drawing of a Vulkan device
+  std::string device;        ///< instead: both drawing methods of a Vulkan device
   int height = 1080;         ///< of its pictures, 16 : 9
 };
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report);
 void run_device_voxels(const VoxelsOptions& options, const ReportOptions& report);  // with SCARP_VULKAN
 
-/// `voxel-edits`: how long accelerators of voxels take to follow an edit.
+/// `voxel-edits`: time that voxel accelerators take to follow an edit.
 struct VoxelEditsOptions {
   int side = 256;     ///< voxels
   double radius = 8;  ///< of the sphere that is added and removed, in voxels
@@ -220,7 +220,7 @@ struct VoxelWorldsOptions {
 };
 void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& report);
 
-/// `voxel-models`: all voxel marches over the models of files.
+/// `voxel-models`: all voxel marches over models from files.
 struct VoxelModelsOptions {
   std::vector<std::string> files;  ///< .vox and .binvox
   int width = 256;                 ///< pixels per side of the pictures, from eight sides
@@ -228,7 +228,7 @@ struct VoxelModelsOptions {
 };
 void run_voxel_models(const VoxelModelsOptions& options, const ReportOptions& report);
 
-/// `volumes`: from a file of numbers to voxels, beside reading its bytes.
+/// `volumes`: from a file of numbers to voxels, compared with reading its bytes.
 struct VolumesOptions {
   int side = 1024;  ///< voxels
   int repeats = 3;
@@ -239,19 +239,19 @@ void run_volumes(const VolumesOptions& options, const ReportOptions& report);
 struct VoxelLeaksOptions {
   std::int64_t rays = 10'000'000;
   std::uint64_t seed = 1;
-  int judge_every = 64;    ///< one in so many is also answered by voxel-exhaustive
-  std::string of = "all";  ///< "grids": single ones; "scenes": of turned objects
+  int judge_every = 64;    ///< one in this many is also traced by voxel-exhaustive
+  std::string of = "all";  ///< "grids": single ones; "scenes": of rotated objects
 };
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
 
-/// `pixel-match`: pictures of voxels beside the same drawn as quads.
+/// `pixel-match`: pictures of voxels compared with the same drawn as quads.
 struct PixelMatchOptions {
   std::vector<std::string> sets{"standard", "degenerate"};
   std::vector<int> thousands{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};  ///< of objects, the post's camera
   std::vector<std::string> marches{"voxel-bricks"};
   std::string cameras = "all";  ///< or "post"
   int width = 1920, height = 1080;
-  std::string device;  ///< both ways of drawing of a Vulkan device; empty: the CPU
+  std::string device;  ///< both drawing methods of a Vulkan device; empty: the CPU
 };
 /// Throws Error, after the report, when a pixel differs.
 void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report);
@@ -271,7 +271,7 @@ struct SeamsOptions {
 };
 /// Throws Error, after the report, if a ray is lost.
 void run_seams(const SeamsOptions& options, const ReportOptions& report);
-/// `sweeps`: spheres and capsules that move over ground, beside Bullet and before a judge.
+/// `sweeps`: spheres and capsules that move over ground, compared with Bullet and judged.
 struct SweepsOptions {
   int size = 1025;      ///< samples per side of the field, >= 1025
   int sweeps = 20'000;  ///< of each class beside Bullet; 0: none
@@ -279,7 +279,7 @@ struct SweepsOptions {
   std::int64_t judged = 100'000;  ///< random ones over small fields and voxels
   std::uint64_t seed = 1;
 };
-/// Throws Error, after the report, if a capsule tunnelled or a contact is none.
+/// Throws Error, after the report, if a capsule tunnelled or a contact is false.
 void run_sweeps(const SweepsOptions& options, const ReportOptions& report);
 /// `render`: frames of the look `comanche`.
 struct FramesOptions {
@@ -287,24 +287,24 @@ struct FramesOptions {
   int width = 320, height = 240, steps = 256;
   int threads = 2, cameras = 8, repeats = 9;
   std::uint64_t seed = 1;
-  int judge_every = 16;  ///< one pixel in so many is also answered by exhaustive
-  std::string device;    ///< a Vulkan device beside the CPU, as in `scarp render --device`; empty: none
+  int judge_every = 16;  ///< one pixel in this many is also traced by exhaustive
+  std::string device;    ///< a Vulkan device besides the CPU, as in `scarp render --device`; empty: none
 };
-/// Throws Error, after the report, when the exact march has a wrong pixel, on a device more than one in a thousand: in
+/// Throws Error, after the report, if the exact march has a wrong pixel, on a device more than one in a thousand: in
 /// single precision a ray may pass a crest on its other side.
 void run_frames(const FramesOptions& options, const ReportOptions& report);
 
-/// `functions`: the marches over terrain functions beside proofs.
+/// `functions`: the marches over terrain functions, checked by proofs.
 struct FunctionsOptions {
   int width = 480, height = 270;  ///< pixels
   int octaves = 9;                ///< of the fractals
   std::uint64_t seed = 1;
   int repeats = 3;
-  std::int64_t judged = 4000;  ///< about so many rays per function are judged
-  bool presets = false;        ///< the presets of known shaders beside lipschitz-local, instead of the marches
+  std::int64_t judged = 4000;  ///< about this many rays per function are judged
+  bool presets = false;        ///< instead of the marches: the presets of known shaders and lipschitz-local
   std::string device;          ///< a Vulkan device, as in `scarp render --device`; empty: none
 };
-/// Throws Error, after the report, when a conservative march lost a crossing.
+/// Throws Error, after the report, if a conservative march lost a crossing.
 void run_functions(const FunctionsOptions& options, const ReportOptions& report);
 
 /// `function-leaks`: the conservative marches over the example functions, every ray judged.
@@ -313,16 +313,16 @@ struct FunctionLeaksOptions {
   std::uint64_t seed = 1;
   bool all = false;  ///< the approximate marches as well
 };
-/// Throws Error, after the report, when a conservative march was wrong.
+/// Throws Error, after the report, if a conservative march was wrong.
 void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions& report);
 
-/// `shapes`: sphere-trace over distance fields beside balls alone and proofs.
+/// `shapes`: sphere-trace over distance fields, compared with plain sphere tracing and checked by proofs.
 struct ShapesOptions {
   int width = 480, height = 270;  ///< pixels
   int repeats = 3;
-  std::int64_t judged = 1000;  ///< about so many rays per shape are judged
+  std::int64_t judged = 1000;  ///< about this many rays per shape are judged
 };
-/// Throws Error, after the report, when sphere-trace lost a crossing.
+/// Throws Error, after the report, if sphere-trace lost a crossing.
 void run_shapes(const ShapesOptions& options, const ReportOptions& report);
 
 }  // namespace scarp::bench

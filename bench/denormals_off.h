@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Embree's own recommendation for each thread that calls it; undone afterwards, Scarp's arithmetic needs no such help.
+// Embree recommends this for each thread that calls it. Undone afterwards: Scarp does not need it.
 #pragma once
 
 #include <pmmintrin.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Time that passes took on a Vulkan device.
+// Time of passes on a Vulkan device.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench devices`: the Vulkan devices of this machine, and which one a choice takes.
+// `scarp-bench devices`: the Vulkan devices of this machine, and the one that a choice selects.
 #include "scarp/vk/device.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All calls by which Embree takes rays: one at a time, packets of 4, 8 and 16, and streams (rtcIntersect1M).
+// All of Embree's calls that trace rays: one at a time, packets of 4, 8 and 16, and streams (rtcIntersect1M).
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -14,7 +14,7 @@ namespace scarp::bench {
 
 struct EmbreeMode {
   std::string name;  ///< "x1", "x8-coherent", "x1m-256-incoherent" (a stream of 256 rays)
-  /// As Engine::trace; `mode` is the one that it is called through.
+  /// Like Engine::trace, through `mode`.
   void (*trace)(RTCScene scene, const EmbreeMode& mode, const RaySet& set, std::int64_t begin, std::int64_t end,
                 float* answers);
   RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;

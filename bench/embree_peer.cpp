@@ -16,7 +16,7 @@
 namespace scarp::bench {
 namespace {
 
-// What Embree allocates, as its memory monitor tells.
+// Memory that Embree allocates, as reported by its memory monitor.
 struct Memory {
   std::atomic<std::int64_t> current{0}, peak{0};
 
@@ -32,7 +32,7 @@ struct Memory {
 
 constexpr std::int64_t kRowsPerPiece = 64;
 
-// x, y, z of each sample in world space, and one float more: Embree reads the last vertex with four lanes.
+// x, y, z of each sample in world space, and one extra float: Embree reads the last vertex with four lanes.
 std::vector<float> vertices_of(const HeightField& field) {
   const std::size_t cols = static_cast<std::size_t>(field.cols());
   std::vector<float> vertices(cols * static_cast<std::size_t>(field.rows()) * 3 + 1);
@@ -70,7 +70,7 @@ std::vector<std::uint32_t> triangles_of(const HeightField& field) {
 }  // namespace
 
 struct EmbreePeer::Scene {
-  // Declared first, destroyed last: Embree counts down while its device goes.
+  // Declared first, destroyed last: Embree reports deallocations while its device is released.
   Memory memory;
   std::vector<float> vertices;
   std::vector<std::uint32_t> indices;
@@ -155,7 +155,7 @@ std::vector<Engine> EmbreePeer::engines() const {
   for (const EmbreeMode& mode : embree_modes()) {
     Engine engine = common;
     engine.mode = mode.name;
-    // The yardstick is always measured.
+    // The reference is always measured.
     engine.on_trial = s.surface == EmbreeSurface::grid || !s.robust || engines.size() > 0;
     engine.trace = [&mode, scene = s.scene](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
       mode.trace(scene, mode, set, begin, end, answers);

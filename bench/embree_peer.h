@@ -21,8 +21,8 @@ EmbreeQuality find_embree_quality(std::string_view name);
 /// A scene over a field; outlives the engines made from it.
 class EmbreePeer {
  public:
-  /// Builds the scene and takes the time, making its vertices and indices included. Throws Error with Embree's own
-  /// words. `robust`: RTC_SCENE_FLAG_ROBUST, else no flag.
+  /// Builds the scene and measures the time, including that for its vertices and indices. Throws Error with Embree's
+  /// own words. `robust`: RTC_SCENE_FLAG_ROBUST, else no flag.
   EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality, bool robust = true);
   ~EmbreePeer();
   EmbreePeer(const EmbreePeer&) = delete;

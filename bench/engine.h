@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the protocol measures: something that answers many rays.
+// What the protocol measures: an engine that traces batches of rays.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 
 namespace scarp::bench {
 
-/// The answer to a ray: t of the hit, kMiss, or kBlocked where only "is it blocked" was asked.
+/// The answer to a ray: t of the hit, kMiss, or kBlocked if the query was any-hit.
 constexpr float kMiss = std::numeric_limits<float>::infinity();
 constexpr float kBlocked = -std::numeric_limits<float>::infinity();
 
 struct Engine {
-  std::string name;  ///< "scarp", "embree-tri", "embree-grid"
-  std::string mode;  ///< the march, or one of Embree's (bench/embree_modes.h)
-  double bytes = 0;  ///< what has to stay in memory for tracing: samples or vertices, and the acceleration structure
-  double peak_bytes = 0;  ///< the most that was in use while it was built
+  std::string name;       ///< "scarp", "embree-tri", "embree-grid"
+  std::string mode;       ///< the march, or one of Embree's (bench/embree_modes.h)
+  double bytes = 0;       ///< memory that tracing needs: samples or vertices, and the acceleration structure
+  double peak_bytes = 0;  ///< peak memory during the build
   double build_s = 0;     ///< from samples to ready for tracing
-  /// One of very many: timed in full only if it is among the fastest of these in a short trial.
+  /// One of many variants: timed in full only if it is among the fastest in a short trial.
   bool on_trial = false;
   /// Answers rays [begin, end) of a set, begin a multiple of 16, into answers[0 ...]. Called from several threads.
   std::function<void(const RaySet& set, std::int64_t begin, std::int64_t end, float* answers)> trace;
 
-  // For the judge, null in peers, whose surface is another one.
+  // For the judge; null in peers, whose surface differs.
   std::function<Hit(const Ray& ray, MarchStats& stats)> closest;  ///< as the closest-hit function says
   std::function<bool(const Ray& ray)> blocked;                    ///< as the function says that trace uses for any_hit
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench extents`: fields as wide as 65,536 samples. Rays aimed at nodes, from above and within a window, are
-// also asked of a small field cut out of the large one: both have to tell the same. And what a ray costs in batches, on
-// one thread, class by class: how that grows with the field.
+// also traced in a small field cut out of the large one: the results must be equal. It also measures the cost of a ray
+// in batches, on one thread, by class: how it grows with the field.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,16 +26,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kWindow = 512;    // samples per side of the field cut out
-constexpr double kAbove = 600;  // where rays begin over the nodes that they are aimed at
-constexpr int kAside = 40;      // and how far from it, at most, along each axis
-// The ground rises by less than 4 per cell along each axis. So along a ray the clearance falls by kAbove per t, less
-// what the ground under its shadow of at most sqrt(2) kAside cells can fall with it.
+constexpr double kAbove = 600;  // height at which rays start above the nodes that they are aimed at
+constexpr int kAside = 40;      // and the largest distance from the node along each axis
+// The ground rises by less than 4 per cell along each axis. Along a ray, the clearance therefore falls by kAbove per t,
+// less the largest fall of the ground along its plan track of at most sqrt(2) kAside cells.
 constexpr double kFall = kAbove - 4 * 1.4142136 * 1.4142136 * kAside;
 
 const std::vector<RayClass> kGrowthClasses{RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao};
 constexpr RayCounts kGrowthRays{960, 544, 1 << 18, 1 << 18};
 
-// Hills of several lengths, in whole numbers, and a hash on top: a height for each sample without a table.
+// Hills of several lengths, in integers, plus a hash: a height for each sample without a table.
 std::int16_t height(int col, int row) {
   const auto wave = [](int x, int length) { return std::abs(x % (2 * length) - length); };
   auto hash = static_cast<std::uint32_t>(col) * 0x9e3779b1u ^ static_cast<std::uint32_t>(row) * 0x85ebca77u;

@@ -26,7 +26,7 @@ Surface surface_of(const FieldOptions& options) {
   return options.surface == "triangles" ? Surface::triangles : Surface::bilinear;
 }
 
-// In every row of cells, this many are asked for their slope.
+// The slope is taken at this many cells of every row.
 constexpr int kSlopesPerRow = 64;
 
 double mean_slope_deg(const HeightField& field) {

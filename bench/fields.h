@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ground that is measured: procedural or a real DEM, always in cells. One world unit is the distance of two
+// The ground of the benchmarks: procedural or a real DEM, always in cells. One world unit is the distance between two
 // columns, so that all engines see the same small numbers and an error in t is an error in cells.
 #pragma once
 
@@ -20,7 +20,7 @@ struct FieldOptions {
   std::string surface = "bilinear";  ///< of Scarp, or "triangles"
 };
 
-/// A field and what readers of a result want to know about it.
+/// A field and its description in results.
 struct BenchField {
   HeightField field;
   std::string name;           ///< "ridged, seed 1" or the file's path

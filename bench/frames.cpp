@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench render`: what a frame of the look `comanche` costs, stepped as the founding text has it and exactly, and
-// what share of its pixels is wrong.
+// `scarp-bench render`: the cost of a frame of the look `comanche`, stepped as in the founding text and exact, and the
+// fraction of wrong pixels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,10 +43,11 @@ struct Air {
 };
 constexpr Air kAirs[] = {{"dry", false, false}, {"water", true, false}, {"fog", false, true}, {"both", true, true}};
 
-// Cells along the ray by which ground may be off.
+// Tolerance of ground along the ray, in cells.
 constexpr double kTolerance = 1;
-// Of the device's pixels by max-mip, the share that may be wrong: floats move a ray by 1/768 pixel (numerics.md, "Whole
-// frames"), so of pixels that an edge goes through 2 in 768 fall on its other side; edges go through less than a third.
+// Fraction of the device's pixels by max-mip that may be wrong: floats move a ray by 1/768 pixel (numerics.md, "Whole
+// frames"), so 2 in 768 of the pixels on an edge fall on its other side; less than a third of the pixels are on an
+// edge.
 constexpr double kBesideEdges = 2.0 / 768 / 3;
 
 HeightField endless(const FramesOptions& options) {
@@ -121,7 +122,7 @@ PictureSettings settings_of(const HeightField& field, const FramesOptions& optio
   return settings;
 }
 
-// Who makes the frames: the CPU, or a device.
+// The renderer: the CPU, or a device.
 struct Maker {
   std::string name;
   Scene max_mip, fixed;
@@ -157,7 +158,7 @@ std::optional<double> device_ms(const Maker& maker, [[maybe_unused]] const Way& 
   return {};
 }
 
-// What the rays of a frame find, pixel by pixel; of those that are judged.
+// The hits of a frame's rays, for the judged pixels.
 std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Camera& camera,
                                    const PictureSettings& settings, const Water* water, int judge_every) {
   const std::int64_t pixels = std::int64_t{settings.width} * settings.height;
@@ -187,7 +188,7 @@ std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Cam
   return found;
 }
 
-// What is there, of the pixels that are judged.
+// Ground truth of the judged pixels.
 std::vector<Sighting> truth_of(const Scene& oracle, const Camera& camera, const FramesOptions& options,
                                const Water* water) {
   const std::int64_t pixels = std::int64_t{options.width} * options.height;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench function-leaks`: very many rays at terrain functions, each judged by interval bisection: the
+// `scarp-bench function-leaks`: a large number of rays at terrain functions, each judged by interval bisection: the
 // conservative marches may lose none.
 #include <fmt/format.h>
 
@@ -48,16 +48,16 @@ struct Counts {
   }
 };
 
-// `tolerance`: a share of the distance within which several crossings are one, and the ground is not told from a touch.
+// `tolerance`: the fraction of the distance within which crossings count as one, and a hit as a touch.
 void count(const FunctionJudgement& judge, const Ray& ray, const Hit& hit, double tolerance, Counts& counts) {
   counts.hits += bool(hit);
   counts.exhausted += hit.status == HitStatus::exhausted;
-  counts.below += hit.status == HitStatus::below;  // none of the rays begins there
+  counts.below += hit.status == HitStatus::below;  // no ray starts there
   if (judge.verdict == FunctionVerdict::crossing) {
     const bool passed = hit && hit.t > judge.crossed_by + tolerance * (hit.t - ray.t_min);
     counts.lost += hit.status == HitStatus::miss || passed;
   }
-  // A hit in front of the ground is no loss; where nothing is in front of it within the tolerance it is a false one.
+  // A hit in front of the ground does not lose it, but is false if the ground is beyond the tolerance.
   const double early = 2 * tolerance * (hit.t - ray.t_min);
   counts.false_hits += hit && hit.t < judge.clear_until - early;
 }
@@ -98,7 +98,7 @@ void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions
         for (std::size_t m = 0; m < marches.size(); ++m) {
           const Hit hit = marches[m]->cpu(function, ray, settings, nullptr, FunctionUse::march);
           const bool local = marches[m]->name == "lipschitz-local";
-          // The other ones say themselves how far above the ground they stop: only what they pass is wrong.
+          // The others have their own tolerance above the ground: only passing through it is wrong.
           count(judge, ray, hit, local ? settings.lipschitz_local.tolerance : 0, mine.marches[m]);
           if (!local) mine.marches[m].false_hits = 0;
         }

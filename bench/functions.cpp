@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench functions`: the marches over terrain functions, on the pixels of one picture, beside the proofs of the
-// judge.
+// `scarp-bench functions`: the marches over terrain functions, on the pixels of one picture, checked by the judge's
+// proofs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kFarthest = 20'000;  // metres that a ray is followed
+constexpr double kFarthest = 20'000;  // maximum length of a ray in metres
 constexpr double kEyeHeight = 300;    // metres above the function's ground
 constexpr int kUnlimitedSteps = 1 << 20;
 
@@ -78,7 +78,7 @@ std::vector<Ray> picture(const HeightFunction& function, const FunctionsOptions&
   return rays;
 }
 
-// Answers all rays at once, counting steps, for one function; null: the march of the CPU.
+// Traces all rays at once, counting steps, for one function; null: the march on the CPU.
 using AnswerAll = std::function<void(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps)>;
 
 struct March {
@@ -161,7 +161,7 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
       double heights = 0, bounds = 0, best_ms = std::numeric_limits<double>::infinity();
       const AnswerAll answer = march.elsewhere ? march.elsewhere(function) : AnswerAll{};
       std::vector<std::uint32_t> steps(answer ? rays.size() : 0);
-      // Shaders are made when they are first asked for.
+      // Shaders are created on first use.
       if (answer) answer(std::span(rays).first(1), std::span(hits).first(1), std::span(steps).first(1));
       for (int pass = 0; pass < options.repeats; ++pass) {
         heights = bounds = 0;
@@ -177,10 +177,10 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
         best_ms = std::min(best_ms, took.count());
       }
       for (const std::uint32_t of_ray : steps) bounds += of_ray;
-      // Bit for bit the same work as ray by ray, which was counted in the row before.
+      // The work is the same, bit for bit, as ray by ray, which the previous row counts.
       if (march.vectors) heights = counted_heights, bounds = counted_bounds;
       counted_heights = heights, counted_bounds = bounds;
-      // The others look at heights alone, and count them as steps.
+      // The others evaluate only heights, and count them as steps.
       if (march.entry->name != "lipschitz-local") std::swap(heights, bounds);
       int crossings = 0, misses = 0, clear = 0, false_hits = 0, given_up = 0;
       std::vector<double> errors;
@@ -193,7 +193,7 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
           false_hits += bool(hit);
         } else if (judge.verdict == FunctionVerdict::crossing) {
           ++crossings;
-          // Past the first crossing by more than a tolerance of the distance: it was stepped through.
+          // Beyond the first crossing by more than a tolerance of the distance: it was stepped over.
           const bool passed = hit && hit.t > judge.crossed_by * (1 + RelaxedSettings{}.tolerance);
           misses += hit.status == HitStatus::miss || passed;
           if (hit && !passed) {

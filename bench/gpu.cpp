@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench gpu`: the marches on a Vulkan device, by its own timestamps, and the max-mip article's comparison there:
-// naive made as fine as it takes for its hits to be where those of max-mip are, then how long both take and how many
-// heights they read.
+// `scarp-bench gpu`: the marches on a Vulkan device, by its own timestamps, and the comparison of the max-mip article
+// there: naive is made fine enough that its hits are those of max-mip; then the times and height reads of both are
+// compared.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,19 +30,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// 480 x 270 as far as it goes in whole tiles of 8 pixels.
+// 480 x 270, rounded down to whole tiles of 8 pixels.
 constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
 constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
-// So many times more rays are judged in the classes in which naive is made fine: what is right on a few rays need not
-// be right.
+// Factor of rays judged in the classes in which naive is tuned: a few correct rays do not show that all are.
 constexpr std::int64_t kMoreJudged = 16;
 constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
-// Of cards: runs of a group, groups that are no faster than the best one before it counts, and the limit of time.
+// For cards: runs per group, consecutive groups without improvement after which the best one counts, and the time
+// limit.
 constexpr int kRunsInARow = 9, kGroups = 20;
 constexpr double kFaster = 0.99;
 constexpr std::chrono::seconds kMostInARow{3};
-// Share of wrong rays of naive-wrong, and of hits of naive-position that are lost or off.
+// Fraction of wrong rays of naive-wrong, and of hits of naive-position that are lost or off.
 constexpr double kNearlyRight = 0.001;
 // Steps per ray beyond which the search for naive's settings ends.
 constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
@@ -57,7 +57,7 @@ bool has_positions(const Judgement& judged) {
 
 bool is_cpu(const Device& device) { return device.description().kind == DeviceKind::cpu; }
 
-// As many blocks of rays, spread evenly, as take no longer than the limit.
+// The number of blocks of rays, spread evenly, that fits the time limit.
 std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray, double limit_s) {
   const double most = limit_s / std::max(seconds_per_ray, 1e-15);
   if (static_cast<double>(rays.size()) <= most) return rays;
@@ -88,7 +88,7 @@ struct Ground {
   DeviceTarget target;
 };
 
-// A march on the device: once to be timed, on all rays of a class at once if that can be, and once to count.
+// A march on the device: one pass for timing, on all rays of a class at once if possible, and one for counting.
 struct DeviceMarch {
   DeviceMarch(const Device& device, const char* name, const RayCounts& rays, bool clip_at_top = false)
       : march(find_height_march(name)),
@@ -106,14 +106,14 @@ struct DeviceMarch {
   DeviceQueries timed, counting;
 };
 
-// What asks the rays of a set, and what came of it.
+// One contender for the rays of a set, and its results.
 struct Contender {
   std::string mode;
   DeviceMarch* march;
   MarchSettings settings;
   Judgement judged{};
   double fetches = 0;          // per ray
-  double seconds_per_ray = 0;  // of the judged pass, which counts
+  double seconds_per_ray = 0;  // of the judged pass, which has the counters
 };
 
 class Comparison {
@@ -183,7 +183,7 @@ class Comparison {
     std::fflush(stdout);
   }
 
-  // Naive whose hits are where they belong beside max-mip, the classes one below the other.
+  // Naive with hits in the right position, compared with max-mip, one class per row.
   void print_comparison() const {
     std::vector<std::vector<std::string>> lines{
         {"samples", "exagg.", "class", "max-mip", "naive Mrays/s", "max-mip is", "clipped Mrays/s", "max-mip is"}};
@@ -203,7 +203,7 @@ class Comparison {
     print_table(lines, 3);
   }
 
-  // Asks `rays`; the answers as the judge wants them.
+  // Traces `rays` and returns the answers for the judge.
   static std::vector<Judge::Answer> ask(DeviceQueries& queries, const DeviceTarget& target, bool any_hit,
                                         const std::vector<Ray>& rays, std::vector<DeviceRayCost>& costs) {
     constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
@@ -245,7 +245,7 @@ class Comparison {
     contender.judged = judge.score(answers);
   }
 
-  // Naive at the cheapest settings that are good, for each meaning of good that there are settings for.
+  // Naive at the cheapest acceptable settings, for each criterion that has such settings.
   void add_fair_ones(const Ground& ground, const RaySet& set, const Judge& judge, std::vector<Contender>& contenders) {
     const double limit = options_.miss_limit, max_mip_wrong = contenders[0].judged.wrong_rate;
     std::map<std::tuple<DeviceMarch*, double, double, double>, Contender> tried;
@@ -285,8 +285,8 @@ class Comparison {
     add("naive-wrong-equal", naive_, [&](const Judgement& judged) { return judged.wrong_rate <= max_mip_wrong; });
   }
 
-  // Time of the rays that a device has marched last: of cards the median of the fastest group of runs in a row. While
-  // the host prepares rays its clocks fall, and a run takes up to six times as long until they have come up again.
+  // Time of the last rays that a device traced; for cards the median of the fastest group of consecutive runs. While
+  // the host prepares rays the card clocks down, and a run takes up to six times as long until the clocks are up again.
   double seconds_of_last(DeviceQueries& queries) const {
     if (is_cpu(device_)) return device_seconds(device_, queries.passes());
     const auto again = [&] {
@@ -305,7 +305,7 @@ class Comparison {
     return best;
   }
 
-  // One pass of each to warm up, then passes in turn.
+  // One warm-up pass of each, then passes in turn.
   void measure_all(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays,
                    const std::vector<Contender>& contenders) {
     std::vector<std::vector<Ray>> parts;
@@ -392,7 +392,7 @@ class Comparison {
     return row;
   }
 
-  // Rows of rays and of builds have the same fields, in the same order; null what does not apply.
+  // Rows of rays and of builds have the same fields, in the same order; fields that do not apply are null.
   static Json with_all_fields(const Json& row) {
     Json all;
     for (const char* field : {"size",           "class",

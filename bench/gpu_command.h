@@ -8,7 +8,7 @@
 
 namespace scarp::bench {
 
-constexpr int kLeastSize = 33, kMostSize = 32767;  ///< samples per side; Embree's grids end there
+constexpr int kLeastSize = 33, kMostSize = 32767;  ///< samples per side; the limit of Embree's grids
 
 CLI::App* add_devices_command(CLI::App& app, DevicesOptions& options);
 /// All options but those of the report.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench gpu --raster`: what is seen through each pixel, by rays (max-mip) and by drawing the whole grid as two
-// triangles per cell, of the same samples in the device's memory, in turn. The drawing writes depths alone, the least
-// that tells what is seen.
+// `scarp-bench gpu --raster`: visibility per pixel by rays (max-mip) and by drawing the whole grid as two triangles per
+// cell, in turn, of the same samples in the device's memory. The drawing writes only depths, the minimum for
+// visibility.
 //
-// Both surfaces are the triangles, so depths are equal but for rounding. In a pixel the reciprocal of the view depth,
-// 1/z, changes by g_x, g_y per pixel, from the triangle that the ray has met; with v = 2^-24 the two may differ by
+// Both surfaces are the triangles, so depths are equal except for rounding. In a pixel the reciprocal of the view
+// depth, 1/z, changes by g_x, g_y per pixel, from the triangle that the ray has met; with v = 2^-24 the two may differ
+// by
 //
 //   s_x |g_x| + s_y |g_y|         corners are drawn s pixels beside their places: 2^-(bits + 1) by the grid of places
 //                                 that the device rounds to, and 8 v of the terms of x and w (6 roundings: the matrix,
@@ -13,8 +14,8 @@
 //   4 v (1/z + W |g_x| + H |g_y|) the plane through a triangle's depths, W x H pixels
 //   d N_z / (z |N P|)             the march: up to d = 2 rho lower or higher (doc/dev/numerics.md)
 //
-// What differs by more is counted: pixels beside an edge, where the other side of s is another slope or another ridge.
-// There rays through the corners of the square of s tell what drawing may show; what it shows besides is unexplained.
+// Larger differences are counted: pixels next to an edge, where the other side of s is another slope or another ridge.
+// There, rays through the corners of the square of s find what drawing may show; anything else is unexplained.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,7 +120,7 @@ class GridMesh {
     return depths;
   }
 
-  /// Pixels that corners at `to` from the eye may be drawn beside their places.
+  /// Pixels by which corners at `to` from the eye may be drawn off their positions.
   dvec2 beside(const dvec3& to, std::uint32_t subpixel_bits) const {
     const double z = dot(to, camera_.forward), sw = terms(to, camera_.forward, 1),
                  snap = std::ldexp(0.5, -static_cast<int>(subpixel_bits));
@@ -130,7 +131,7 @@ class GridMesh {
             along(camera_.up, camera_.half_height, camera_.height)};
   }
 
-  /// What 1/z of a hit of the ray through a pixel may differ by.
+  /// Bound of the difference of 1/z for a hit of the ray through a pixel.
   double bound(const HeightField& field, const Hit& hit, const Ray& ray, std::uint32_t subpixel_bits) const {
     const double width = camera_.width, height = camera_.height;
     const dvec3 to = ray.at(hit.t) - ray.origin, normal = field.normal(hit.cell, hit.u, hit.v);
@@ -167,7 +168,7 @@ class GridMesh {
   std::uint32_t count_ = 0, instances_ = 0;
 };
 
-// A pixel that is drawn otherwise than its ray has it.
+// A pixel whose drawn depth differs from that of its ray.
 struct Otherwise {
   double drawn;  // 1/z, 0: nothing
   Ray ray;
@@ -189,7 +190,7 @@ Otherwise otherwise(const PinholeCamera& camera, const GridMesh& mesh, const Ray
   return pixel;
 }
 
-// How many show what neither their own ray nor those through the corners would have, nor anything between.
+// Number of pixels with a depth outside the range of their own ray and those through the corners.
 std::int64_t unexplained(const std::vector<Otherwise>& pixels, DeviceQueries& queries, const DeviceTarget& target,
                          const PinholeCamera& camera, const GridMesh& mesh, std::uint32_t bits) {
   std::int64_t count = 0;
@@ -224,8 +225,8 @@ double march(const Device& device, DeviceQueries& queries, const DeviceTarget& t
   return device_seconds(device, queries.passes());
 }
 
-// `device` and `drawing` are the same device, opened twice: where something was drawn before, lavapipe (Mesa 22.3)
-// takes the timestamps round a dispatch when the dispatch is over.
+// `device` and `drawing` are the same device, opened twice: after a draw, lavapipe (Mesa 22.3) writes both timestamps
+// around a dispatch when the dispatch has finished.
 void compare(const Device& device, const Device& drawing, const GpuOptions& options, const BenchField& ground,
              const RayCounts& counts, Json& rows) {
   const HeightField triangles = as_triangles(ground);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What grid_mesh.vert and gpu_raster.cpp agree upon.
+// Shared by grid_mesh.vert and gpu_raster.cpp.
 #ifndef BENCH_GRID_MESH_GLSL_H
 #define BENCH_GRID_MESH_GLSL_H
 

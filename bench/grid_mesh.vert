@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A node of the grid, fetched from the samples that the marches read. Patches over the border shrink to lines there.
+// A node of the grid, fetched from the samples that the marches read. Patches beyond the border collapse to lines
+// there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench heights`: all marches beside Embree, several classes of rays, one run.
+// `scarp-bench heights`: all marches and Embree, several classes of rays, in one run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,8 +108,8 @@ Json row_of(const Engine& engine, const RaySet& set, const Timing& timing, const
 
 bool is_embree(const Json& row) { return row["engine"].get<std::string>().starts_with("embree"); }
 
-// By processor time: relative to single rays against Embree's triangles, and to the fastest of all modes of Embree that
-// are measured in full.
+// By processor time: relative to single rays against Embree's triangles, and to the fastest fully measured mode of
+// Embree.
 void add_ratios(std::vector<Json>& rows) {
   const Json* fastest = nullptr;
   const Json* single = nullptr;
@@ -159,7 +159,7 @@ void print(const std::vector<Json>& rows) {
   }
 }
 
-// What tracing keeps in memory, once per structure.
+// Memory that tracing needs, once per structure.
 void print_memory(const std::vector<Engine>& engines, const HeightField& field) {
   std::vector<std::string> said;
   for (const Engine& engine : engines) {

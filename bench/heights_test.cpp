@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// scarp-bench's comparisons with Embree and Bullet over one field. No time is judged here.
+// scarp-bench's comparisons with Embree and Bullet over one field. Times are not tested here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
     if (row["mode"] == "max-mip") {
       EXPECT_EQ(row["miss_rate"], 0.0);
       EXPECT_EQ(row["false_rate"], 0.0);
-      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: what is promised
+      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: the promised accuracy
       if (ray_class == "nodes") {
         EXPECT_EQ(row["lost"], 0);
       }
@@ -83,9 +83,9 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
             (std::set<std::string>{"primary", "shadow", "grazing", "ao", "nodes", "lidar", "lidar-ground", "near"}));
 }
 
-TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
-  // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine has got
-  // other rays.
+TEST(ScarpBench, EnginesAgreeOnHits) {
+  // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine was
+  // given different rays.
   std::map<std::string, double> max_mip;
   const json all = output_of("heights --sizes 129 --rays small --repeats 1");
   for (const json& row : all["rows"]) {
@@ -100,7 +100,7 @@ TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
   }
 }
 
-TEST(ScarpBench, SurveyTellsTheFastestOfEach) {
+TEST(ScarpBench, SurveyReportsTheFastestModeOfEachEngine) {
   const json all = output_of("survey --size 129 --kinds fbm --rays small --repeats 1");
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 3u * 7u);  // views and classes
@@ -113,7 +113,7 @@ TEST(ScarpBench, SurveyTellsTheFastestOfEach) {
   }
 }
 
-TEST(ScarpBench, BulletWithoutItsAcceleratorAnswersAsEmbreeDoes) {
+TEST(ScarpBench, BulletWithoutAcceleratorMatchesEmbree) {
   std::map<std::string, double> embree;
   const json all = output_of("heights --sizes 129 --rays small --repeats 1 --engines embree-tri,bullet");
   for (const json& row : all["rows"]) {
@@ -127,7 +127,7 @@ TEST(ScarpBench, BulletWithoutItsAcceleratorAnswersAsEmbreeDoes) {
   }
 }
 
-// Of how many rays the answer of a mode is not that of single rays, by each mode's name.
+// By the name of each mode: number of rays whose answer is not that of single rays.
 std::map<std::string, int> differences(const RaySet& set, const EmbreePeer& peer) {
   const auto answers_of = [&](const Engine& engine) {
     std::vector<float> answers(static_cast<std::size_t>(set.size()));
@@ -147,7 +147,7 @@ std::map<std::string, int> differences(const RaySet& set, const EmbreePeer& peer
   return differ;
 }
 
-TEST(EmbreePeer, EveryModeAnswersAsSingleRays) {
+TEST(EmbreePeer, EveryModeMatchesSingleRays) {
   FieldOptions options;
   options.size = 129;
   const BenchField ground = load_field(options);

@@ -14,7 +14,7 @@ namespace {
 std::string held_to = "native";
 std::string configuration;
 
-// A smaller bit is a better set.
+// Lower bits are better sets.
 std::int64_t best(std::int64_t targets) { return targets & -targets; }
 
 }  // namespace

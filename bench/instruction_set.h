@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The instruction set of the engines: the best that the machine has, or one that both Scarp and Embree are held to.
+// The instruction set of the engines: the best of the machine, or one to which both Scarp and Embree are restricted.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace scarp::bench {
 
-/// "avx2", "avx512", or "native" for the best that each engine finds. To be called before any ray is traced. Throws
-/// Error if the machine does not have it.
+/// "avx2", "avx512", or "native" for the best that each engine finds. Call this before any ray is traced. Throws Error
+/// if the machine does not have it.
 void hold_to_instruction_set(std::string_view name);
 
-/// The name that is held to, and Highway's name of what Scarp runs: "avx512 (AVX3_DL)".
+/// The selected name, and Highway's name of the set that Scarp runs: "avx512 (AVX3_DL)".
 std::string instruction_set();
 
 /// For rtcNewDevice.

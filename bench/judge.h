@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How right an engine is: its answers to a random sample of a set's rays beside those of `exhaustive`.
+// Accuracy of an engine: its answers to a random sample of a set's rays, compared with those of `exhaustive`.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace scarp::bench {
 
-/// Along the ray, in cells: how far off a hit may be reported and still be that hit.
+/// Tolerance of the position of a hit along the ray, in cells.
 constexpr double kNear = 1.0;
 
 struct Judgement {
@@ -23,25 +23,25 @@ struct Judgement {
   double wrong_rate = 0;  ///< share of all rays where one reports a hit and the other does not
   double late_rate =
       0;  ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
-  double early_rate = 0;  ///< the same before it
+  double early_rate = 0;  ///< the same, in front of it
   double off_rate = 0;    ///< share of all rays that are wrong, late or early
   double exhausted = 0;   ///< share of rays that the engine gave up; they count as not reported
-  double steps = 0;       ///< mean positions looked at per ray, MarchStats::steps
+  double steps = 0;       ///< mean positions evaluated per ray, MarchStats::steps
   double cell_tests = 0;  ///< mean cells intersected per ray
 };
 
 class Judge {
  public:
-  /// Asks the judge, on all threads.
+  /// Runs the judge, on all threads.
   Judge(const HeightTarget& target, const RaySet& set, std::int64_t sample_size, std::uint64_t seed);
 
-  /// For engines that have `closest` and `blocked`. Where the set only asks whether rays are blocked, the answer comes
-  /// from `blocked`, t and the cost from `closest`.
+  /// For engines that have `closest` and `blocked`. For any-hit sets, the answer comes from `blocked`, t and the cost
+  /// from `closest`.
   Judgement judge(const Engine& engine) const;
 
-  /// Indices of the sample's rays in the set, rising.
+  /// Indices of the sample's rays in the set, ascending.
   const std::vector<std::size_t>& sample() const { return sample_; }
-  /// What an engine said of a ray. A t that is not finite is not compared.
+  /// An engine's answer to a ray. A t that is not finite is not compared.
   struct Answer {
     bool hit, exhausted;
     double t;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What gpu_raster.cpp pushes lies where grid_mesh.vert reads it.
+// The push constants of gpu_raster.cpp have the layout of grid_mesh.vert.
 #include <gtest/gtest.h>
 
 #include "bench/grid_mesh.glsl.h"
@@ -12,7 +12,7 @@ constexpr std::uint32_t kShader[] = {
 #include "bench/grid_mesh.vert.inc"
 };
 
-TEST(GridMeshLayout, IsThatOfTheShader) { EXPECT_TRUE(test::is_laid_out_like<glsl::GridMeshPush>(kShader)); }
+TEST(GridMeshLayout, MatchesTheShader) { EXPECT_TRUE(test::is_laid_out_like<glsl::GridMeshPush>(kShader)); }
 
 }  // namespace
 }  // namespace scarp::bench

@@ -23,7 +23,7 @@ HeightField make(int cols, int rows, const HeightFieldSettings& settings, const 
   return HeightField::own(std::move(samples), cols, rows, settings);
 }
 
-// Nodes beside a hole: all that have a height and a cell without one.
+// Nodes next to a hole: all with a height and an adjacent hole cell.
 std::vector<Node> rim_of(const HeightField& field) {
   std::vector<Node> rim;
   if (field.nodata_count() == 0) return rim;

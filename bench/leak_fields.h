@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The grounds of `scarp-bench leaks`: every kind that engines are known to lose rays on, small enough to stay in a
-// core's cache, and one large one.
+// The grounds of `scarp-bench leaks`: every kind on which engines are known to lose rays, small enough for a core's
+// cache, and one large field.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace scarp::bench {
 
-/// How many holes are among the cells of a rectangle, in O(1).
+/// Number of holes among the cells of a rectangle, in O(1).
 class HoleCounts {
  public:
   explicit HoleCounts(const HeightField& field);

@@ -25,7 +25,7 @@ Real height_of_triangle(const CellHeights& h, bool south_east, Real u, Real v) {
   return h.h11 + (1 - u) * (static_cast<Real>(h.h01) - h.h11) + (1 - v) * (static_cast<Real>(h.h10) - h.h11);
 }
 
-// Whether doubles divide by this without rounding.
+// Whether division by this is exact in doubles.
 bool divides_exactly(double cell) {
   int exponent = 0;
   return std::frexp(cell, &exponent) == 0.5;
@@ -59,7 +59,7 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   exact_plan_ = divides_exactly(to.cell_x) && divides_exactly(to.cell_y) && is_double(oy_) &&
                 field_.rows() - 1 - oy_ == ray.origin.y / Real{to.cell_y};
   t0_ = ray.t_min, t1_ = ray.t_max;
-  // A ray that by rounding begins outside of the field, and comes in later, is on the surface where it begins.
+  // A ray that starts outside of the field by rounding, and enters later, is on the surface at its start.
   if (on_surface_) put_on_surface();
   if (!wraps_) clip();
   if (stands_on_ground()) must_hit_ = true;
@@ -100,7 +100,7 @@ void LeakJudge::clip() {
   axis(oy_, dy_, field_.cell_rows());
 }
 
-// What rounding does to a position in plan, in cells.
+// Rounding error of a position in plan, in cells.
 LeakJudge::Real LeakJudge::sideways(Real t) const {
   return kRoundings * kUnit * (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t) + field_.rows());
 }
@@ -110,10 +110,10 @@ LeakJudge::Real LeakJudge::bound(Real t) const {
   return kRoundings * kUnit * upright + sideways(t) * (high_ - low_);
 }
 
-// How far below the surface a ray is for certain seen as a hit: one from the surface has to be below by B as computed.
+// Depth below the surface at which a hit is certain: a ray from the surface has to be below by B as computed.
 LeakJudge::Real LeakJudge::under(Real t) const { return (on_surface_ ? 2 : 1) * bound(t); }
 
-// Whether a ray is so near to the border, all along, that rounding may put it outside.
+// Whether a ray is so close to the border, along its whole length, that rounding may put it outside.
 bool LeakJudge::hugs_border() const {
   if (wraps_ || exact_plan_) return false;
   const Real e = sideways(std::max(std::abs(t0_), std::abs(t1_)));
@@ -121,7 +121,7 @@ bool LeakJudge::hugs_border() const {
   return hugs(x(t0_), x(t1_), field_.cell_cols()) || hugs(y(t0_), y(t1_), field_.cell_rows());
 }
 
-// Whether there may be a hole under the ray: in the box of its ends, all cells that are touched counted.
+// Whether there may be a hole under the ray: any touched cell in the box of its ends counts.
 bool LeakJudge::holes_between(Real from, Real to) const {
   if (field_.nodata_count() == 0) return false;
   const Real e = sideways(std::max(std::abs(from), std::abs(to)));
@@ -194,8 +194,7 @@ LeakJudge::Real LeakJudge::time_in_cell(const Place& place, Real t, bool back, R
   return std::max<Real>(time, 0);
 }
 
-// How much the clearance has risen without a break in the time `length` up to t, in one cell: of a parabola that falls
-// first, the part behind its lowest point.
+// Monotone rise of the clearance in the time `length` up to t, in one cell: the part of a parabola after its minimum.
 LeakJudge::Real LeakJudge::risen(const Place& place, Real t, Real length) const {
   bool upper = false;
   if (triangles_) {
@@ -210,7 +209,7 @@ LeakJudge::Real LeakJudge::risen(const Place& place, Real t, Real length) const 
   return f.b * length - f.a * length * length;
 }
 
-// How deep the ray comes under the surface from t on, without a break, in one cell.
+// Depth of the ray below the surface that it reaches monotonically from t on, in one cell.
 LeakJudge::Real LeakJudge::deepest(const Place& place, Real t) const {
   Real length = time_in_cell(place, t, false);
   bool upper = false;
@@ -230,7 +229,7 @@ const char* LeakJudge::lost(const Hit& hit, double share) const {
   if (!hit && must_hit_) return "a ray that must hit";
   if (!hit || !(t0_ <= t1_) || !c0_) return nullptr;
   const Real from = t0_, t = from + share * (hit.t - from);
-  // It is known to be above only where it has come in for certain.
+  // It is known to be above only where it has certainly entered.
   if (!begins_above_ || t < from + late_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
   const auto c = clearance(t);
   return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
@@ -241,7 +240,7 @@ LeakJudge::Real LeakJudge::allowance(int axis) const {
   return kRoundings * kUnit * (std::abs(axis == 0 ? ox_ : oy_) + (axis == 0 ? field_.cell_cols() : field_.cell_rows()));
 }
 
-// By a quarter of the allowance, it is a vertical ray through a point of ground.
+// Within a quarter of the allowance, it counts as a vertical ray through a point of the ground.
 bool LeakJudge::stands_on_ground() const {
   if (on_surface_ || dz_ == 0) return false;
   const Real room = bound(0) + (high_ - low_) * 0x1p-20L;
@@ -267,7 +266,7 @@ bool LeakJudge::stands_on_ground() const {
   return false;
 }
 
-// What numerics.md lets a march take for a touch of the line, or of either line of a node.
+// Distance that a march may treat as a touch of the line, or of either line of a node (numerics.md).
 Real LeakJudge::bound_at_rim(const Hit& hit, const CellHeights& h, Real t, Real off) const {
   const Real relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
   constexpr Real kQuick = 0x1p10L;  // numerics.md, "Rims and seams"
@@ -296,7 +295,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const auto place = place_of(hit);
   if (!place) return "in a hole";
   const Real t = hit.t, e = sideways(t), b = bound(t);
-  // A rim may be touched from beside it, as far as rounding can tell.
+  // A rim may be touched from beside it, within rounding.
   if (std::abs(x(t) - place->col - hit.u) > e + allowance(0) ||
       std::abs(y(t) - place->row - hit.v) > e + allowance(1)) {
     return "not where the ray is";
@@ -327,7 +326,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const Real unsure = holes_between(t, t) ? e + std::max(allowance(0), allowance(1)) : 0;
   const Real before = time_in_cell(*place, t, true, unsure);
   if (risen(*place, t, before) > 2 * b + std::abs(c)) return "a way out of the ground";
-  // Above the surface where it comes into the cell, however little, and under it here: it goes in.
+  // Above the surface where it enters the cell, by any amount, and below it here: it enters the ground.
   const Real came = t - before, u_in = x(came) - place->col, v_in = y(came) - place->row;
   const Real above =
       z(came) - (triangles_ ? height_of_triangle(place->h, u_in + v_in > 1, u_in, v_in) : height(place->h, u_in, v_in));
@@ -352,7 +351,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
 
 const char* LeakJudge::false_status(const Hit& hit) const {
   if (hit || !c0_ || hugs_border()) return nullptr;
-  // Only where the first cell is sure.
+  // Only if the first cell is certain.
   if (holes_between(t0_, t0_)) return nullptr;
   const Real b = bound(t0_);
   if (hit.status == HitStatus::below && (on_surface_ || *c0_ > b)) return "began above, not below";
@@ -365,7 +364,7 @@ std::optional<double> LeakJudge::cut_behind(const Hit& hit) const {
   if (!place || hit.wall) return {};
   const Real length = time_in_cell(*place, hit.t, false) / 2;
   const double t = static_cast<double>(hit.t + length);
-  // By rounding it may be out of the field before.
+  // By rounding it may have left the field before.
   if (t > t1_ - early_) return {};
   const Piece f = piece(*place, hit.t, south_east(*place, hit.t + length / 2));
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What can be said for certain about one ray in O(1), without a march: whether it must hit, and whether a hit that is
-// told can be one.
+// Decides with certainty about one ray in O(1), without a march: whether it must hit, and whether a reported hit can be
+// one.
 //
 // All is computed in 64-bit-mantissa long double from world coordinates, so the judge's own rounding is 2^-11 of the
-// marches'. B below is what rounding may add to a clearance in a march: 16 u (abs(o_z) + abs(d_z t) + max abs(sample) +
-// (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md. What lies inside B of a
-// decision is not judged. None of the marches' own rules are used.
+// marches'. B below is the bound of rounding errors of a clearance in a march: 16 u (abs(o_z) + abs(d_z t) + max
+// abs(sample) + (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md. Decisions
+// within B are not judged. None of the marches' own rules are used.
 #pragma once
 
 #include <optional>
@@ -19,41 +19,41 @@ class LeakJudge {
  public:
   LeakJudge(const LeakField& ground, const Ray& ray);
 
-  /// Whether the ray hits for certain: above the ground by more than B where it begins (or from the surface, which is
-  /// above by definition), under it by more than B where it ends, and no hole under any cell that it can touch in
-  /// between: the clearance is continuous, so it goes through zero. Or, in solid ground, in through the border under
-  /// the surface. Or it comes from above all ground to below it, and moves so little sideways that rounding cannot tell
-  /// it from a vertical ray through a point of ground, borders and rims included.
+  /// Whether the ray certainly hits: above the ground by more than B where it starts (or from the surface, which is
+  /// above by definition), below it by more than B where it ends, and no hole among the cells that it can touch in
+  /// between: the clearance is continuous, so it goes through zero. Or, in solid ground, it enters through the border
+  /// below the surface. Or it passes from above all ground to below it, and moves so little sideways that rounding
+  /// cannot distinguish it from a vertical ray through a point of ground, borders and rims included.
   bool must_hit() const { return must_hit_; }
 
-  /// Why an answer has lost a hit, or null: it tells none, or one behind a place where a ray from above is already
-  /// under the ground by more than B, no hole being in between. The place is somewhere before the hit, by `share`
-  /// (0..1).
+  /// Why an answer has lost a hit, or null: it reports none, or one behind a position where a ray from above is already
+  /// below the ground by more than B, with no hole in between. The position is at the fraction `share` (0..1) of the
+  /// way to the hit.
   const char* lost(const Hit& hit, double share) const;
 
-  /// Why a told hit is none, or null.
-  ///  - It is not where the ray is: cell, u and v against ray.at(t), by more than the sideways part of B.
+  /// Why a reported hit is false, or null.
+  ///  - It is not on the ray: cell, u and v against ray.at(t), by more than the sideways part of B.
   ///  - It is not on the surface: there the clearance is at most 2 B, one for the signs that decided and one for the
   ///    root (a backward-stable formula: the exact root for coefficients off by some u of their size).
   ///  - It is a way out: along the piece of the cell before it, where the clearance is one parabola, the ray has risen
-  ///    without a break from more than 2 B below. Where the hit is at the entry of its cell, the cell before is asked.
+  ///    monotonically from more than 2 B below. If the hit is at the entry of its cell, the cell before counts.
   ///  - The ray is from the surface and in that cell never strictly below: by 5/16 B at least, since a hit needs a
   ///    computed clearance below -B and numerics.md counts 11 of its 16 roundings.
   ///  - A wall: not at a border or rim, or above the ground there by more than B.
   const char* false_hit(const Hit& hit) const;
 
-  /// Why the status of an answer without a hit is wrong, or null: `below` for a ray that began above by more than B,
-  /// `miss` for one that began below by more than B.
+  /// Why the status of an answer without a hit is wrong, or null: `below` for a ray that started above by more than B,
+  /// `miss` for one that started below by more than B.
   const char* false_status(const Hit& hit) const;
 
-  /// A time behind a hit at which the ray is below by more than 2 B and has been falling since, in the hit's cell: a
-  /// ray cut there still hits. And one before it, from which it has been falling from more than 2 B above: cut there it
-  /// does not hit, if nothing was hit before. Nothing where rounding leaves no room.
+  /// A time after a hit at which the ray is below by more than 2 B and has been falling since, in the hit's cell: a ray
+  /// cut there still hits. And one before the hit, from which it has been falling from more than 2 B above: cut there
+  /// it does not hit, if nothing was hit before. Nullopt if rounding leaves no room.
   std::optional<double> cut_behind(const Hit& hit) const;
   std::optional<double> cut_before(const Hit& hit) const;
 
-  /// Whether two answers may both be right: the same status and, along all of the way between the two hits, a ray
-  /// within 2 B of the surface at `kProbes` places.
+  /// Whether two answers may both be right: the same status and, between the two hits, a ray within 2 B of the surface
+  /// at `kProbes` positions.
   bool same(const Hit& a, const Hit& b) const;
   static constexpr int kProbes = 8;
 
@@ -98,7 +98,7 @@ class LeakJudge {
   Real ox_, oy_, oz_, dx_, dy_, dz_;  // in cells and sample units
   Real low_, high_, offset_;          // of the samples, in sample units
   Real t0_, t1_;                      // over the field; empty when t0_ > t1_
-  Real late_ = 0, early_ = 0;         // how much rounding may move these
+  Real late_ = 0, early_ = 0;         // bound of the rounding of these
   bool from_outside_ = false, begins_above_ = false;
   std::optional<Real> c0_;  // clearance at t0_
   bool must_hit_ = false;

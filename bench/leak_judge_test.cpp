@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The judge of `scarp-bench leaks` where it was wrong once, and where it has to speak up.
+// The judge of `scarp-bench leaks` where it was wrong once, and where it must find errors.
 #include "bench/leak_judge.h"
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ LeakField plane() {
   return {"plane", HeightField::own(std::move(samples), kCols, kRows, settings), {}};
 }
 
-// 47 * 5.1 is a little over 47 cells in binary: the ray begins north of the field by less than rounding, and comes in
-// so slowly that it falls by 5e-11 until then. It is on the surface where it begins, and hits there.
+// 47 * 5.1 is a little over 47 cells in binary: the ray starts north of the field by less than rounding, and enters so
+// slowly that it falls by 5e-11 until then. It is on the surface where it starts, and hits there.
 Ray along_the_border() {
   Ray ray;
   ray.origin = {0x1.e1ccccccccccdp+7, 0x1.df66666666666p+7, 0x1.3cccccccccccdp+2};
@@ -42,7 +42,7 @@ Hit hit_at(double t, double u, double v) {
   return hit;
 }
 
-TEST(LeakJudge, ARayThatBeginsOutsideByRoundingIsOnTheSurfaceWhereItBegins) {
+TEST(LeakJudge, RayStartingOutsideByRoundingIsOnTheSurface) {
   const LeakField ground = plane();
   const LeakJudge judge(ground, along_the_border());
   EXPECT_TRUE(judge.must_hit());
@@ -50,7 +50,7 @@ TEST(LeakJudge, ARayThatBeginsOutsideByRoundingIsOnTheSurfaceWhereItBegins) {
   EXPECT_TRUE(judge.same(hit_at(0, 0, 0), hit_at(0, 0, 0)));
 }
 
-TEST(LeakJudge, TellsAHitUnderTheSurfaceAndOneThatWasLost) {
+TEST(LeakJudge, DistinguishesFalseHitsFromLostHits) {
   const LeakField ground = plane();
   const LeakJudge judge(ground, along_the_border());
   const Ray ray = along_the_border();
@@ -60,9 +60,9 @@ TEST(LeakJudge, TellsAHitUnderTheSurfaceAndOneThatWasLost) {
   EXPECT_STREQ(judge.lost(Hit{}, 0.5), "a ray that must hit");
 }
 
-// Along the diagonal of saddles, rising by 8e-13 per cell: at each node it comes out of the ground and goes in again
-// right behind.
-TEST(LeakJudge, AWayInRightBehindAWayOutIsNoFalseHit) {
+// Along the diagonal of saddles, rising by 8e-13 per cell: at each node it leaves the ground and enters it again right
+// behind.
+TEST(LeakJudge, AcceptsReentryRightAfterExit) {
   constexpr int kSide = 40;
   std::vector<float> samples;
   for (int row = 0; row < kSide; ++row) {
@@ -79,7 +79,7 @@ TEST(LeakJudge, AWayInRightBehindAWayOutIsNoFalseHit) {
   ASSERT_EQ(hits.size(), 20u);
   const LeakJudge judge(saddles, ray);
   for (const Hit& hit : hits) EXPECT_EQ(judge.false_hit(hit), nullptr) << hit.t;
-  // The way out before is one.
+  // The exit before it is not a hit.
   Hit out = hits[10];
   out.t = 10 - 9.93e-13, out.cell = {26, 10}, out.u = out.v = 9.93e-13;
   EXPECT_STREQ(judge.false_hit(out), "a way out of the ground");

@@ -11,7 +11,7 @@ namespace scarp::bench {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kGrid = 0x1p-10;  // places on edges and leans are multiples of it: exact in float32 and in double
+constexpr double kGrid = 0x1p-10;  // positions on edges and slants are multiples of it: exact in float32 and in double
 
 double round_to_grid(double x) { return std::round(x / kGrid) * kGrid; }
 dvec3 in_floats(dvec3 p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
@@ -82,7 +82,7 @@ class Maker {
     if (r_.below(4) == 0) (by_col ? node.row : node.col) = 0;  // a corner
     const dvec3 on = at(node);
     switch (r_.below(4)) {
-      case 0: {  // begins on the border
+      case 0: {  // starts on the border
         dvec3 from = on;
         from.z += r_.uniform(-0.2, 1) * relief_;
         return along(from, anywhere() - from, 1.2);
@@ -133,7 +133,7 @@ class Maker {
     return along(from, to - from, 1 + r_.below(3));
   }
 
-  // On a plane and a hair beside it: hairs of 2^-50 to 2^-1 of a slope of 1.
+  // On a plane and slightly off it: by 2^-50 to 2^-1 of a slope of 1.
   Ray plane() {
     Ray ray = from_surface();
     tilt(ray);
@@ -157,7 +157,7 @@ class Maker {
   }
 
   // Off the vertical by the cosine of 90 degrees, the noise of quaternions, or 2^-30 to 2^-1000; at a node or an edge,
-  // half of them at a border or a rim, a quarter beside it by the rounding of the place.
+  // half of them at a border or a rim, a quarter off it by the rounding of the position.
   Ray leaning() {
     Node node = any_node();
     if (!ground_.rim.empty() && r_.below(2))
@@ -181,7 +181,7 @@ class Maker {
     const dvec3 to = r_.below(2) ? at(any_node()) : anywhere();
     const double away = std::pow(10.0, 5 + r_.below(3)), azimuth = r_.uniform(0, 2 * kPi);
     const dvec3 from = to + away * dvec3(std::cos(azimuth), std::sin(azimuth), r_.uniform(0, 0.3));
-    // Not to the ends of a field that wraps round: there is nothing but ground on the way.
+    // Not to the ends of a wrapped field: there is only ground on the way.
     const double rest = 1 + 4 * (f_.width() + f_.depth()) / away;
     Ray ray = along(from, to - from, rest);
     if (f_.wraps()) ray.t_min = std::max(0.0, 2 - rest);
@@ -211,7 +211,7 @@ class Maker {
             f_.min_height() + r_.uniform(-0.3, 1.4) * relief_};
   }
 
-  // A power of two from which all ground is below; so heights of targets stay exact when it is added.
+  // A power of two above all ground, so heights of targets stay exact when it is added.
   double height_above() const { return std::exp2(std::ceil(std::log2(1.25 * relief_ + 0.1))); }
   double lean(double high) {
     return round_to_grid(r_.uniform(-0.5, 0.5) * std::min(high, 0.25 * std::min(f_.width(), f_.depth())));
@@ -226,7 +226,7 @@ class Maker {
   }
 
   // Down at a place in a cell (or at a node, which may be of the last column or row) and on to below all ground; over
-  // the field from first to last, where there is room.
+  // the field along its whole length, if there is room.
   Ray aimed(Node node, double u, double v, bool in_float32) {
     double sample = 0;
     const Cell cell{std::min(node.col, f_.cell_cols() - 1), std::min(node.row, f_.cell_rows() - 1)};

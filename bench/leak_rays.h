@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The rays of `scarp-bench leaks`. Each is a function of seed, index, class and field alone: threads change nothing,
-// and one ray can be had again without the others.
+// and a single ray can be reproduced without the others.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ enum class LeakClass : std::uint8_t {
   diagonals,  ///< the same at points of both diagonals
   axis,       ///< parallel to an axis, most of them along a grid line
   vertical,   ///< straight up and down, over nodes, edges and anywhere
-  tangent,    ///< level, at the height of a node that they pass
+  tangent,    ///< level, at the height of a node on their way
   two_nodes,  ///< through two nodes
-  border,     ///< beginning on the border, along it, through its nodes and corners
+  border,     ///< starting on the border, along it, through its nodes and corners
   rims,       ///< at nodes beside holes, and past them
   seam,       ///< at nodes and edges of the seam, copies away
-  below,      ///< beginning below the ground
-  plane,      ///< from the surface of a plane, in it and a hair beside it
+  below,      ///< starting below the ground
+  plane,      ///< from the surface of a plane, in it and slightly off it
   saddles,    ///< from the surface of saddles
   surface,    ///< from the surface, anywhere
   leaning,    ///< nearly vertical, at nodes and edges, on borders and rims
@@ -38,12 +38,12 @@ constexpr LeakClass kLeakClasses[] = {LeakClass::nodes,    LeakClass::edges,   L
                                       LeakClass::any};
 std::string_view name_of(LeakClass leak_class);
 
-/// Whether the class is about that kind of ground at all: rims need holes, the seam a field that wraps round.
+/// Whether the class applies to that kind of ground: rims need holes, the seam a wrapped field.
 bool suits(LeakClass leak_class, const LeakField& ground);
 
-/// A ray of the class; its range is finite. Of the classes nodes, edges and diagonals, `in_float32` rays consist of
-/// float32 numbers, so that an engine in float gets the same; the others meet their point at t = 1 exactly, where the
-/// field's own numbers allow it.
+/// A ray of the class; its range is finite. In the classes nodes, edges and diagonals, `in_float32` rays consist of
+/// float32 numbers, so that an engine in float gets the same rays; the others reach their point at exactly t = 1, if
+/// the field's own numbers allow it.
 Ray make_leak_ray(LeakClass leak_class, const LeakField& ground, Random& random, bool in_float32);
 
 }  // namespace scarp::bench

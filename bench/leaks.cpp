@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench leaks`: very many rays aimed at what engines lose, each judged in O(1), some by the exhaustive march.
+// `scarp-bench leaks`: a large number of rays of the kinds that engines lose, each judged in O(1), some also by the
+// exhaustive march.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -31,7 +32,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kPiece = 1024;  // rays over one field and of one class; their answers stay in a core's cache
 constexpr std::size_t kDumped = 10;
 constexpr std::uint64_t kAskedMore =
-    4;  // one ray in so many is also asked for all hits, and cut behind and before its hit
+    4;  // one ray in this many is also traced for all hits, and cut behind and in front of its hit
 
 struct Count {
   std::int64_t rays = 0, hits = 0, must_hit = 0, lost = 0, wrong = 0, contradictions = 0, judged = 0, ties = 0;
@@ -105,8 +106,7 @@ class Leaks {
  private:
   static bool for_embree(const Job& job) { return job.ground->embree && job.leak_class <= LeakClass::diagonals; }
 
-  // Pieces are of all classes in turn, and of each class over all of its fields: any stretch of the run is a fair
-  // sample of it.
+  // Pieces take all classes in turn, and each class all of its fields: any part of the run is a fair sample of it.
   Job job_of(std::int64_t piece) const {
     constexpr auto kClasses = static_cast<std::int64_t>(std::size(kLeakClasses));
     const auto leak_class = static_cast<std::size_t>(piece % kClasses);
@@ -179,7 +179,8 @@ class Leaks {
     counts_[static_cast<std::size_t>(job.leak_class)].add(sum);
   }
 
-  // Why all hits, or the same ray cut behind or before its hit, contradict the hit, or null. `all` gets all hits.
+  // Why all hits, or the same ray cut behind or in front of its hit, contradict the hit, or null. `all` receives all
+  // hits.
   static const char* contradiction(const HeightTarget& target, const LeakJudge& judge, const Ray& ray, const Hit& hit,
                                    std::vector<Hit>& all) {
     const HitStatus status = all_hits_max_mip(target, ray, all);
@@ -202,9 +203,8 @@ class Leaks {
     return nullptr;
   }
 
-  // Two answers that cannot both be right. The march's own has passed all judgements, so what is left are hits of the
-  // exhaustive march: those it tells before are lost when they pass the same judgements and the ray is under the ground
-  // behind them.
+  // Two answers that cannot both be right. The march's own has passed all checks, so only hits of the exhaustive march
+  // remain: earlier ones are lost if they pass the same checks and the ray is below the ground behind them.
   template <class Fails>
   void judge_difference(const LeakJudge& judge, const Hit& truth, const Hit& hit, Count& sum,
                         const Fails& fails) const {
@@ -234,7 +234,7 @@ class Leaks {
   double embree_share_ = 0;
   std::mutex mutex_;
   std::array<Count, std::size(kLeakClasses)> counts_{};
-  std::map<std::int64_t, RayDump> failures_;  // the first by index, whatever the threads
+  std::map<std::int64_t, RayDump> failures_;  // the first by index, regardless of threads
 };
 
 Json row_of(std::string_view name, const Count& count) {

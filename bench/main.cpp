@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// scarp-bench: Scarp beside its peers, on the same rays in the same run. What is measured and how: bench/README.md.
+// scarp-bench: Scarp and its peers on the same rays in the same run. See bench/README.md for the method.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -71,7 +71,7 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
       ->capture_default_str();
 }
 
-// Held to one instruction set, and over which samples and surface.
+// Restricted to one instruction set, and over these samples and surface.
 void add_field_options(CLI::App& command, TraceOptions& trace) {
   const auto choice = [&](const char* name, std::string& value, const char* text, std::vector<std::string> values) {
     command.add_option(name, value, text)->check(CLI::IsMember(std::move(values)))->capture_default_str();

@@ -39,7 +39,7 @@ constexpr const char* kDem = "dem.tif";
 constexpr const char* kTiled = "TILED=YES";
 constexpr const char* kPlain = "COMPRESS=NONE";
 
-// What is asked: in numbers of the command lines.
+// The task, in the numbers of the command lines.
 struct Question {
   double x, y;  // the observer
   int height, azimuth, altitude;
@@ -127,7 +127,7 @@ std::vector<MapProgram> map_programs(const std::string& scarp, const Question& a
   };
 }
 
-// Writes the DEM; returns what all programs read: the file's surface.
+// Writes the DEM and returns the surface of the file, which all programs read.
 Raster make_dem(const std::string& path, const MapsOptions& options, int size) {
   const ProceduralDem dem{.cols = size, .rows = size, .seed = options.seed, .kind = *terrain_kind(options.kind)};
   const std::vector<float> heights = generate_dem(dem);
@@ -142,7 +142,7 @@ Raster make_dem(const std::string& path, const MapsOptions& options, int size) {
 }
 
 std::int64_t wrong_in(const std::string& path, const MapProgram& program, const MapTruth& truth) {
-  // Codes with a colour table are no heights unless a band is asked for.
+  // A band with a colour table is read as heights only if it is named.
   RasterOptions first_band;
   first_band.band = 1;
   const Raster raster = read_raster(path, first_band);
@@ -170,7 +170,7 @@ std::int64_t wrong_counts(const std::string& path, const std::vector<Viewpoint>&
   });
 }
 
-// Runs in turn; what takes long runs once.
+// Runs in turn; slow programs run once.
 std::vector<std::vector<ProgramRun>> runs_of(const std::vector<MapProgram>& programs, const std::string& folder,
                                              const MapsOptions& options) {
   constexpr double kLong_s = 15;

@@ -15,12 +15,12 @@ class MapPrograms {
   /// Notes on stderr which of options.programs are not installed, and measures the others.
   explicit MapPrograms(const MapsOptions& options);
 
-  /// Makes the DEM of this size and returns a row for each program, as README.md describes. A program that takes
-  /// longer than options.program_limit_s has no time, and no row in later calls.
+  /// Makes the DEM of this size and returns a row for each program, as README.md describes. A program that exceeds
+  /// options.program_limit_s gets no time, and no row in later calls.
   std::vector<nlohmann::ordered_json> measure(int size);
 
-  /// How many of options.observers at random places see each pixel: one run of scarp, and one run of gdal_viewshed for
-  /// each.
+  /// Number of options.observers at random positions that see each pixel: one run of scarp, and one run of
+  /// gdal_viewshed for each.
   std::vector<nlohmann::ordered_json> measure_cumulative(int size);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Right answers for maps, at all nodes or at some drawn at random.
+// Correct answers for maps, at all nodes or at random ones.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace scarp::bench {
 
-/// Nodes of a field and what is right for them: visible, or lit.
+/// Nodes of a field and their correct answers: visible, or lit.
 struct MapTruth {
   std::vector<std::size_t> nodes;  ///< row * columns + column
   std::vector<char> positive;      ///< 0 or 1 for each
@@ -21,12 +21,12 @@ struct MapTruth {
 /// Nodes drawn at random, the same for all maps of a field.
 std::vector<scarp::Node> random_nodes(const HeightField& field, std::int64_t count);
 
-/// Returns how many of these nodes are not right, on all threads. `is_right` gets the node and its index in a map.
+/// Returns the number of wrong nodes, on all threads. `is_right` gets the node and its index in a map.
 std::int64_t wrong_nodes(const HeightField& field, const std::vector<scarp::Node>& nodes,
                          const std::function<bool(scarp::Node, std::size_t)>& is_right);
 
-/// Of all nodes up to 2048 x 2048 samples: by a sweep that is compared with a ray at `judged` random nodes. Above: of
-/// that many random nodes, by rays. Throws Error if a sweep and a ray differ.
+/// Up to 2048 x 2048 samples, all nodes by a sweep that is compared with a ray at `judged` random nodes. Above that
+/// size, this many random nodes by rays. Throws Error if a sweep and a ray differ.
 MapTruth viewshed_truth(const Viewpoint& view, std::int64_t judged);
 MapTruth shadow_truth(const HeightField& field, const SunDirection& sun, std::int64_t judged);
 

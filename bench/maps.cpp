@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and what the sweeps skip, compared with one ray
-// each at random nodes; and `scarp` beside other programs that make such maps.
+// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and the fraction that sweeps skip, compared with
+// one ray each at random nodes; and `scarp` compared with other programs that make such maps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ HeightField bench_ground(const MapsOptions& options, int size) {
   return HeightField::own(generate_dem(dem), size, size, {.cell_x = dem.cell_m, .cell_y = dem.cell_m});
 }
 
-// `sweep` makes the map anew and returns its statistics.
+// `sweep` computes the map again and returns its statistics.
 template <class Sweep>
 Json measure_map(const HeightField& field, const char* map, int threads, int repeats, const Sweep& sweep) {
   const ThreadLimit limit(threads);
@@ -121,7 +121,7 @@ std::vector<LineEnds> random_lines(const HeightField& field, int count, double h
   return lines;
 }
 
-// Lines of sight near the ground and far above it, on all threads; each row with the share that is visible.
+// Lines of sight near the ground and far above it, on all threads; each row has the visible fraction.
 std::vector<Json> measure_lines(const MapsOptions& options, const HeightField& field, int threads) {
   const ThreadLimit limit(threads);
   std::vector<Json> rows;
@@ -154,7 +154,8 @@ std::vector<Json> measure_lines(const MapsOptions& options, const HeightField& f
 }
 
 #ifdef SCARP_BENCH_GDAL
-// Prints and returns a row for each program and size, the smallest first: what is too slow is not run at larger ones.
+// Prints and returns a row for each program and size, the smallest first: programs that are too slow do not run at
+// larger ones.
 std::vector<Json> measure_programs(const MapsOptions& options) {
   std::vector<std::vector<std::string>> lines{
       {"nodes", "map", "program", "s", "CPU s", "MB", "x scarp", "judged", "wrong"}};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench naive`: what the max-mip article compares, 55.066 ms without and 9.074 ms with the pyramid, asked
-// fairly: naive marching is first made as fine as it takes to be right, at the least cost that it takes
-// (naive_search.h), then timed.
+// `scarp-bench naive`: the comparison of the max-mip article, 55.066 ms without and 9.074 ms with the pyramid, made
+// fair: naive marching is first tuned to be correct at the least cost (naive_search.h), then timed.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -20,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 struct Contender {
   Engine engine;
-  std::optional<NaiveSettings> settings;  // nothing: max-mip
+  std::optional<NaiveSettings> settings;  // nullopt: max-mip
   Judgement judged;
 };
 
@@ -64,11 +63,11 @@ class Comparison {
       };
       add(cheapest(scarp, judge, "naive-fair", [&](const Judgement& j) { return j.miss_rate < limit; }));
       if (set.any_hit) {
-        // A shadow that is not there is as wrong as one that is missing.
+        // A false shadow is as wrong as a missing one.
         add(cheapest(scarp, judge, "naive-right",
                      [&](const Judgement& j) { return j.miss_rate + j.false_rate < limit; }));
       }
-      // Ground that was stepped through is a hole, even where something is hit behind it.
+      // Ground that was stepped over counts as a hole, even if something is hit behind it.
       add(cheapest(scarp, judge, "naive-no-holes",
                    [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
       for (const int threads : trace.threads) measure_all(ground, exaggeration, set, contenders, threads);

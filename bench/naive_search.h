@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How naive is made as fine as it takes: by two settings, for two things let it step through ground. One is the least
-// step, which it must take, the other the share of the vertical distance that it trusts to be free. On steep ground the
-// second alone loses hits at any least step, so both are searched.
+// Finds settings at which naive is fine enough. Two settings let it step over ground: the minimum step, and the
+// fraction of the vertical distance that it assumes to be free. On steep ground the second alone loses hits at any
+// minimum step, so both are searched.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace scarp::bench {
 /// Time of the max-mip article without the pyramid over that with it.
 constexpr double kArticleRatio = 55.066 / 9.074;
 
-/// How naive did under some settings.
+/// Results of naive at some settings.
 struct NaiveTrial {
   bool good = false;
   double steps = 0;  ///< mean per ray
@@ -23,7 +23,7 @@ struct NaiveTrial {
 
 /// The settings at which naive is good and takes the fewest steps: for each factor, halved from 0.7 on, the coarsest
 /// least step, halved from 1/64 on, at which it is good. Settings beyond the first of a factor that takes more than
-/// `most_steps` per ray are not tried. Nothing when there are none.
+/// `most_steps` per ray are not tried. Nullopt if there are none.
 std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
                                             double most_steps = std::numeric_limits<double>::infinity());
 

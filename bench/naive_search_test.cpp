@@ -6,13 +6,13 @@
 namespace scarp::bench {
 namespace {
 
-// Steps fall with each of the settings; good are those below three limits.
+// Steps fall with each of the settings; those below three limits are good.
 NaiveTrial limited(const NaiveSettings& settings) {
   return {settings.step_factor <= 0.2 && settings.min_step <= 1.0 / 1000 && settings.tolerance <= 0.01,
           100 / settings.step_factor + 0.1 / settings.min_step + 1 / (settings.tolerance + 0.001)};
 }
 
-TEST(NaiveSearch, LowersTheFactorUntilNaiveIsGood) {
+TEST(NaiveSearch, LowersTheFactorUntilNaiveIsAccurate) {
   const auto found = cheapest_naive(limited);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->step_factor, 0.7 / 4);
@@ -20,7 +20,7 @@ TEST(NaiveSearch, LowersTheFactorUntilNaiveIsGood) {
   EXPECT_FALSE(cheapest_naive([](const NaiveSettings&) { return NaiveTrial{false, 1}; }));
 }
 
-TEST(NaiveSearch, CoarsensAllSettingsWhileTheyAreGoodAndCheaper) {
+TEST(NaiveSearch, CoarsensSettingsWhileAccurateAndCheaper) {
   const NaiveSettings found = *cheapest_naive(limited), coarser = coarsened_naive(found, limited);
   EXPECT_TRUE(limited(coarser).good);
   EXPECT_LT(limited(coarser).steps, limited(found).steps);

@@ -21,8 +21,8 @@ class NanovdbPeer {
   NanovdbPeer(NanovdbPeer&&) noexcept;
   ~NanovdbPeer();
 
-  /// Rays in the space of the grid. Modes: how far the point that tells the next voxel is pushed behind a border, by
-  /// NanoVDB's own 1.0001 voxels or by a ten-thousandth. The peer outlives its engines.
+  /// Rays in the space of the grid. Modes: the distance by which the point that selects the next voxel is pushed across
+  /// a border, NanoVDB's own 1.0001 voxels or a ten-thousandth. The peer outlives its engines.
   std::vector<VoxelEngine> engines() const;
 
  private:

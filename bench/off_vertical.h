@@ -9,7 +9,7 @@
 
 namespace scarp::bench {
 
-/// By how much a direction is off the vertical: the cosine of 90 degrees, the noise of quaternions, 2^-30 to 2^-1000.
+/// Deviation of a direction from the vertical: the cosine of 90 degrees, the noise of quaternions, 2^-30 to 2^-1000.
 inline double off_vertical(Random& random) {
   const double sign = random.below(2) ? 1 : -1;
   switch (random.below(4)) {

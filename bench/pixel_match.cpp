@@ -153,7 +153,7 @@ std::vector<NamedFrame> pixel_match_frames(int width, int height) {
     frames.push_back({name, looking(eye, eye + forward, top)});
     frames.push_back({name + " parallel", frame_along(eye, forward, top, 39.0625, width, height)});
   }
-  // In the empty corner of an object, where eight of them meet.
+  // In the empty corner of an object, where eight objects meet.
   const dvec3 eye = dvec3(128, -8, 128) + 0.25 * dvec3(3.125, 2.875, 3.375);
   frames.push_back({"inside", looking(eye, eye + dvec3(-1, -0.25, 0.375), {0, 1, 0})});
   return frames;

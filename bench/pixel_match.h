@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A picture of voxels, ray by ray, beside the same picture drawn as quads.
+// A picture of voxels, ray by ray, compared with the same picture drawn as quads.
 //
-// How far a ray may be off, and so how wide the margin about edges has to be: quantised where it comes into an object
-// of L voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel/voxel_ray.h),
+// The error of a ray, which is also the width of the margin about edges: quantised where it enters an object of L
+// voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel/voxel_ray.h),
 // sqrt(3) e in space. In the picture, at the depth W, that is at most
 //
 //   sqrt(3) e side sqrt(1 + x^2 + y^2) / (W pixel)     x, y: tangents of the angles at the picture's corner
 //
 // for L = 32: 1e-3 pixel at a depth of 1.6 voxels in the post's picture, 2e-5 from where its camera stands. A
-// difference beyond the margin of 1e-3 pixel is none of rounding. Along the axis of the face that was hit, t is off by
-// e.
+// difference beyond the margin of 1e-3 pixel is not due to rounding. Along the axis of the face that was hit, t is off
+// by e.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,16 @@ struct PixelMatch {
   std::int64_t near_edges = 0;  ///< pixels closer to an edge than the margin
   std::int64_t differ = 0;  ///< of the others: another object, voxel or face than the quads, or t off by more than e
   std::int64_t near_edge_wrong = 0;  ///< near an edge, and none of the faces that meet there
-  double ray_pixels = 0;             ///< how far a ray may be off at the least depth of the picture, derived
-  double t_error = 0;                ///< the largest of all t, in shares of e
+  double ray_pixels = 0;             ///< derived bound of the error of a ray at the least depth of the picture
+  double t_error = 0;                ///< the largest of all t, in multiples of e
   std::string first;                 ///< pixel that differs
 };
 
-/// The rays of all pixels, row by row, and what they hit.
+/// The rays of all pixels, row by row, and their hits.
 std::vector<Ray> rays_of(const PictureFrame& frame);
 std::vector<Hit> hits_of(const Scene& scene, const PictureFrame& frame);
 
-/// `hits`: of rays_of(frame) in the same objects. Throws Error when rays may be off by more than the margin.
+/// `hits`: of rays_of(frame) in the same objects. Throws Error if rays may be off by more than the margin.
 PixelMatch compare_with_quads(const RasterPicture& quads, std::span<const Hit> hits, const VoxelGrid& grid, double side,
                               const PictureFrame& frame);
 
@@ -47,8 +47,8 @@ struct NamedFrame {
   PictureFrame frame;
 };
 
-/// The post's; from eight octants; along the axes, with and without perspective; out of an object. Of 32 x 4 x 32
-/// objects, but for the first.
+/// That of the post; from eight octants; along the axes, with and without perspective; out of an object. All except the
+/// first show 32 x 4 x 32 objects.
 std::vector<NamedFrame> pixel_match_frames(int width, int height);
 
 }  // namespace scarp::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench pixel-match`: the founding post's demand, that every technique matches its quads pixel by pixel. With a
-// device, also that both of its ways of drawing match triangles that the same device has drawn.
+// `scarp-bench pixel-match`: the requirement of the founding post that every technique matches its quads pixel by
+// pixel. With a device, both of its drawing methods must also match triangles drawn by the same device.
 #include "bench/pixel_match.h"
 
 #include <fmt/format.h>
@@ -21,9 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kOtherThousands = 4;  // of objects, for all cameras but the post's
+constexpr int kOtherThousands = 4;  // of objects, for all cameras except that of the post
 
-// A picture's hits, in one way.
+// A picture's hits, by one method.
 struct Look {
   std::string way;
   std::vector<Hit> hits;
@@ -53,7 +53,7 @@ class Matches {
     }
   }
 
-  // Throws Error when a pixel differs.
+  // Throws Error if a pixel differs.
   void report(const ReportOptions& report) {
     print_table(lines_, 5);
     write_json(report, rows_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of voxels beside the same drawn as quads, and the rasteriser where it has to speak up.
+// Pictures of voxels compared with the same drawn as quads, and the rasteriser where it must find errors.
 #include "bench/pixel_match.h"
 
 #include <gtest/gtest.h>
@@ -29,18 +29,18 @@ PixelMatch expect_match(std::string_view set, int thousands, const NamedFrame& v
   return match;
 }
 
-TEST(PixelMatch, ThePostsPictures) {
+TEST(PixelMatch, MatchesTheReferencePictures) {
   for (const char* set : {"standard", "degenerate"}) {
     for (const int thousands : {1, 4}) {
       const PixelMatch match = expect_match(set, thousands, pixel_match_frames(480, 270)[0]);
-      // Else the comparison would be one of edges.
+      // Otherwise mostly edges would be compared.
       EXPECT_LT(match.near_edges, match.pixels / 100) << set << ' ' << thousands;
     }
   }
 }
 
-// The degenerate set has no more than a quad or three per object to draw: all cameras are quick.
-TEST(PixelMatch, FromEverywhere) {
+// The degenerate set has one to three quads per object to draw: all cameras are quick.
+TEST(PixelMatch, MatchesFromEveryCamera) {
   for (const NamedFrame& view : pixel_match_frames(480, 270)) expect_match("degenerate", 4, view);
   expect_match("standard", 4, pixel_match_frames(160, 90).back());
 }
@@ -73,8 +73,8 @@ TEST_F(OneVoxel, CoversItsPixels) {
   }
 }
 
-// The eye is moved by what takes the left edge over the middles of a column, up to half a margin.
-TEST_F(OneVoxel, TellsPixelsNearEdges) {
+// The eye is moved until the left edge is within half a margin of the centres of a column.
+TEST_F(OneVoxel, FlagsPixelsNearEdges) {
   const double metres_per_pixel = 0.1;
   frame_.eye -= (0.5 + 0.5 * kPixelMargin) * metres_per_pixel * frame_.right;
   const RasterPicture quads = rasterise(grid_, places_, frame_, kPixelMargin);
@@ -83,8 +83,8 @@ TEST_F(OneVoxel, TellsPixelsNearEdges) {
   for (const NearEdge& near : quads.near_edges) EXPECT_EQ(near.face.face, VoxelFace::low_x);
 }
 
-// What the post could not see by eye: rays that find the neighbour of the right voxel, or nothing.
-TEST(PixelMatch, TellsAVoxelThatIsNotThere) {
+// Errors that the post could not see by eye: rays that hit the neighbour of the right voxel, or nothing.
+TEST(PixelMatch, DetectsMissingVoxels) {
   VoxelGrid grid = voxel_object("standard");
   const std::vector<VoxelPlace> places = object_places(1);
   const PictureFrame frame = pixel_match_frames(160, 90)[0].frame;
@@ -93,7 +93,7 @@ TEST(PixelMatch, TellsAVoxelThatIsNotThere) {
   EXPECT_GT(compare_with_quads(quads, hits_of(scene_of(grid, places), frame), grid, 0.25, frame).differ, 0);
 }
 
-TEST(PixelMatch, RefusesACameraThatIsTooClose) {
+TEST(PixelMatch, RejectsCamerasThatAreTooClose) {
   VoxelGrid grid(ivec3(32));
   grid.fill(grid.box(), 1);
   const std::vector<VoxelPlace> places{VoxelPlace{}};

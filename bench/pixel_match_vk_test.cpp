@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of voxels that a Vulkan device draws, in both ways, beside the rasteriser of quads and beside triangles of
-// the same device.
+// Pictures of voxels that a Vulkan device draws, by both methods, compared with the rasteriser of quads and with
+// triangles of the same device.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -43,18 +43,18 @@ class PixelMatchOnDevice : public test::OnDevice {
       EXPECT_EQ(beside.differ, 0) << way.name << ": " << beside.first;
       hits.assign(hits.size(), Hit{});
       EXPECT_GT(compare_with_triangles(snapped, drawn, hits, view.frame).differ, 0);
-      // Else the comparison would be one of edges.
+      // Otherwise mostly edges would be compared.
       EXPECT_LT(beside.near_edges, beside.pixels / 20);
     }
   }
 };
 
-TEST_F(PixelMatchOnDevice, ThePostsPicture) {
+TEST_F(PixelMatchOnDevice, MatchesTheReferencePicture) {
   expect_match("standard", 1, pixel_match_frames(320, 180)[0], "voxel-octants");
 }
 
 // Every object has a quad or three.
-TEST_F(PixelMatchOnDevice, FromInside) {
+TEST_F(PixelMatchOnDevice, MatchesFromInside) {
   expect_match("degenerate", 4, pixel_match_frames(320, 180).back(), "voxel-bricks");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What scarp-bench writes, for tests that run it from end to end.
+// Output of scarp-bench, for tests that run it from end to end.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 
 namespace scarp::bench {
 
-/// The JSON that a command writes.
+/// The JSON output of a command.
 inline nlohmann::json output_of(const std::string& arguments) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("scarp-bench-test-{}.json", getpid());

@@ -31,7 +31,7 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / kMicroseconds;
 }
 
-// Starts a program as the leader of a process group of its own: all of it can be ended.
+// Starts a program as the leader of its own process group, so that it can be stopped with its children.
 pid_t start(const std::vector<std::string>& words, const std::string& folder) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -57,8 +57,8 @@ pid_t start(const std::vector<std::string>& words, const std::string& folder) {
 }  // namespace
 
 std::optional<ProgramRun> run_program(std::vector<std::string> words, const std::string& folder, double limit_s) {
-  // A program's peak as wait4() has it counts from that of the process that starts it, which is large here: GNU time
-  // starts it again.
+  // The peak that wait4() reports starts from that of the parent process, which is large here; GNU time therefore
+  // starts the program.
   const std::string peak_file = (fs::path(folder) / "peak").string();
   const bool has_peak = is_installed("time");
   if (has_peak) words.insert(words.begin(), {"time", "-f", "%M", "-o", peak_file});

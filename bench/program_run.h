@@ -11,12 +11,12 @@ namespace scarp::bench {
 struct ProgramRun {
   double wall_s = 0;
   double cpu_s = 0;  ///< of the program and all that it started
-  /// Resident memory of the largest of these processes, 10^6 bytes; nullopt without GNU time.
+  /// Peak resident memory of the largest of these processes in MB; nullopt without GNU time.
   std::optional<double> peak_mb = std::nullopt;
 };
 
-/// Runs a program in a folder, without input and output. Returns nullopt if it takes longer than `limit_s`; it and what
-/// it started are then ended. Throws Error if it cannot be started or fails.
+/// Runs a program in a folder, without input and output. Returns nullopt if it takes longer than `limit_s`; it is then
+/// stopped with its children. Throws Error if it cannot be started or fails.
 std::optional<ProgramRun> run_program(std::vector<std::string> words, const std::string& folder, double limit_s);
 
 /// Whether a program of this name is on PATH.

@@ -73,7 +73,7 @@ std::vector<Timing> measure(const std::vector<Engine>& engines, const RaySet& se
   std::vector<Timing> timings(engines.size());
   std::vector<Selection> selections(engines.size(), whole);
 
-  // A few blocks tell how long a pass would take; then the warm-up, whose answers are counted.
+  // A few blocks show how long a pass would take; then the warm-up, whose answers are counted.
   for (std::size_t e = 0; e < engines.size(); ++e) {
     Selection probe = whole;
     probe.blocks = std::min(whole.blocks, kProbedBlocks);

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Building takes maxima without branches, so what the samples are does not matter: noise will do.
+// The build takes maxima without branches, so the samples do not matter: noise will do.
 template <class T>
 HeightField noise_field(int size) {
   std::vector<T> samples(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));

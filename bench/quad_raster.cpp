@@ -33,7 +33,7 @@ Projection projection(const PictureFrame& frame, const VoxelPlace& place) {
   return to;
 }
 
-// Where a convex thing is in the picture, in pixels; all of it where it reaches to the eye's plane.
+// Extent of a convex object in the picture, in pixels; the whole picture if it reaches the eye's plane.
 struct Extent {
   double x_low = kInfinity, x_high = -kInfinity, y_low = kInfinity, y_high = -kInfinity;
   bool behind = true;  // wholly
@@ -44,7 +44,7 @@ struct Extent {
     x_low = std::min(x_low, corner.x / corner.z), x_high = std::max(x_high, corner.x / corner.z);
     y_low = std::min(y_low, corner.y / corner.z), y_high = std::max(y_high, corner.y / corner.z);
   }
-  // Corners in their order round it, so that what is cut off at the eye's plane is cut along edges.
+  // Corners in order around it, so that clipping at the eye's plane cuts edges.
   void add_ring(std::span<const dvec3> ring, double least_w) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const dvec3 &a = ring[i], &b = ring[(i + 1) % ring.size()];
@@ -57,7 +57,7 @@ struct Extent {
   }
 };
 
-// Nothing that is seen is closer to the eye's plane, in sides of a voxel: what is would fill the picture.
+// Nothing visible is closer to the eye's plane, in voxel sides: it would fill the picture.
 constexpr double kLeastDepth = 1e-9;
 
 double distance_to_segment(const dvec2& p, const dvec3& a, const dvec3& b) {
@@ -101,7 +101,7 @@ class Strip {
     extent.add_ring(ring, frame_.perspective ? kLeastDepth * place.world_from_grid[0][0] : 0);
     if (extent.behind) return;
     const double middle_x = 0.5 * frame_.width, middle_y = 0.5 * frame_.height;
-    // Pixels whose middles are in the extent and the margin.
+    // Pixels whose centres are in the extent plus the margin.
     const auto first = [&](double low) { return static_cast<int>(std::ceil(std::max(low - margin_ - 0.5, 0.0))); };
     const auto last = [&](double high, int count) {
       return static_cast<int>(std::floor(std::min(high + margin_ - 0.5, count - 1.0)));
@@ -136,7 +136,7 @@ class Strip {
     }
   }
 
-  // Beyond a sharp corner the lines are near and the edges are not.
+  // Beyond a sharp corner the lines are close although the edges are not.
   bool near_edge(const dvec2& p, const std::array<dvec3, 4>& ring, double inside) const {
     if (inside > 0) return true;
     double distance = kInfinity;
@@ -171,7 +171,7 @@ class Strip {
   std::vector<NearEdge> near_edges_;
 };
 
-// The rows of a picture that an object may reach; all of them where it reaches to the eye's plane.
+// The rows of a picture that an object may reach; all of them if it reaches the eye's plane.
 std::pair<int, int> rows_of(const PictureFrame& frame, const Projection& to, const VoxelBox& box, double margin) {
   Extent extent;
   bool all_in_front = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A rasteriser of voxel faces: the judge of `scarp-bench pixel-match`. It knows of no ray: each face between a solid
-// and an empty voxel is a quad, projected to the picture; a pixel shows the nearest quad that covers its middle.
+// A rasteriser of voxel faces: the judge of `scarp-bench pixel-match`. It uses no rays: each face between a solid and
+// an empty voxel is a quad, projected to the picture; a pixel shows the nearest quad that covers its middle.
 //
 //   corner  (X, Y, W) = (right, up, forward) . (corner - eye), X and Y in pixels; W = 1 without perspective
 //   edge    e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign tells the side, e / |(e_x, e_y)| pixels away
@@ -13,9 +13,9 @@
 // Exactness, all in double, for eyes within 2^9 m and pictures up to 2^11 pixels: a corner 2^-2 m or more away is off
 // by less than 2^-29 pixel (three products of 2^19 pixels), an edge of length L by that and 2^-29 / L (a product of two
 // coordinates, 2^22 pixels, divided by L). That is below 2^-20 pixel for L above 2^-9; faces with a shorter edge are
-// narrower than two margins of 1e-3 and cover nothing. So a pixel that is farther than the margin from all edges is
-// decided. Two faces that cover it meet at edges, if they meet: at the pixel they are a margin's width apart, 2^-20
-// voxel or more, and depths are known to 2^-40.
+// narrower than two margins of 1e-3 and cover nothing. A pixel that is farther than the margin from all edges is
+// therefore decided. Two faces that cover it meet at edges, if at all: at the pixel they are a margin's width apart,
+// 2^-20 voxel or more, and depths are known to 2^-40.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +26,14 @@
 
 namespace scarp::bench {
 
-/// Which rays a picture has; right, up and forward are unit vectors, orthogonal.
+/// The rays of a picture; right, up and forward are orthogonal unit vectors.
 struct PictureFrame {
   dvec3 eye{0.0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   bool perspective = true;
   double pixel = 1e-3;  ///< its side, at the distance 1; without perspective anywhere
   int width = 1, height = 1;
 
-  /// Of the middle of a pixel, from the picture's middle: pixels to the right and upwards.
+  /// The centre of a pixel, from the picture's centre: pixels to the right and upwards.
   dvec2 place(int col, int row) const { return {col + 0.5 - 0.5 * width, 0.5 * height - row - 0.5}; }
   /// Its direction has the component 1 along `forward`.
   Ray ray(int col, int row) const;
@@ -65,7 +65,7 @@ struct SeenFace {
   FaceOf face;
 };
 
-/// A face whose edge is closer to a pixel's middle than the margin, whether it covers it or not.
+/// A face whose edge is closer to a pixel's centre than the margin, whether it covers the pixel or not.
 struct NearEdge {
   std::uint32_t pixel = 0;  ///< row * width + column
   FaceOf face;
@@ -73,13 +73,12 @@ struct NearEdge {
 };
 
 struct RasterPicture {
-  std::vector<SeenFace> seen;        ///< of each pixel the nearest that covers it by more than the margin
-  std::vector<NearEdge> near_edges;  ///< by pixel, only what may be seen: in part nearer than `seen`
-  double least_depth = std::numeric_limits<double>::infinity();  ///< along `forward`, of what is seen
+  std::vector<SeenFace> seen;        ///< the nearest per pixel that covers it by more than the margin
+  std::vector<NearEdge> near_edges;  ///< by pixel, only visible ones: in part nearer than `seen`
+  double least_depth = std::numeric_limits<double>::infinity();  ///< along `forward`, of visible faces
 };
 
-/// Objects that are grids, all of the same one, unturned: place.world_from_grid is a number times the identity.
-/// margin: pixels.
+/// Objects are instances of one grid, not rotated: place.world_from_grid is a multiple of the identity. margin: pixels.
 RasterPicture rasterise(const VoxelGrid& grid, std::span<const VoxelPlace> places, const PictureFrame& frame,
                         double margin);
 

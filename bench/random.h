@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Random numbers by number: the n-th ray of a class is the same on every machine and for every number of threads.
+// Indexed random numbers: the n-th ray of a class is the same on every machine and for every number of threads.
 #pragma once
 
 #include <cstdint>
 
 namespace scarp::bench {
 
-/// The numbers that belong to one index of one seed. SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast splittable
-/// pseudorandom number generators", OOPSLA 2014), started from a mix of both.
+/// The random sequence of one index and seed. SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom
+/// number generators", OOPSLA 2014), started from a mix of both.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t index) : state_(mix(seed) ^ mix(~index)) {}

@@ -43,9 +43,9 @@ dvec3 direction_to(double azimuth, double altitude) {
   return {std::sin(azimuth) * std::cos(altitude), std::cos(azimuth) * std::cos(altitude), std::sin(altitude)};
 }
 
-// The beginning of a ray from the surface near (x, y): in float numbers, kLift above both surfaces there.
+// The origin of a ray from the surface near (x, y), in float32 numbers, kLift above both surfaces.
 dvec3 lifted(const HeightField& field, double x, double y) {
-  // Rounding to float may leave the field by a hair.
+  // Rounding to float may leave the field slightly.
   const double fx = std::min(as_float(x), field.width());
   const double fy = std::min(as_float(y), field.depth());
   const double z = std::max(field.height(fx, fy).value(), triangle_height(field, fx, fy).value()) + kLift;
@@ -160,7 +160,7 @@ std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, st
       const dvec3 origin(target.x + snap(random.uniform(-lean, lean)), target.y + snap(random.uniform(-lean, lean)),
                          static_cast<float>(std::max(target.z + above, field.max_height() + 1)));
       const dvec3 direction = target - origin;
-      // On to below the lowest sample. Only a ray that is over the field from first to last must hit.
+      // Continues to below the lowest sample. Only a ray that is over the field along its whole length must hit.
       const float t_max = static_cast<float>((origin.z - field.min_height() + 1) / -direction.z);
       const dvec3 end = origin + direction * static_cast<double>(t_max);
       const auto over_field = [&](dvec3 p) { return p.x > 0 && p.x < field.width() && p.y > 0 && p.y < field.depth(); };
@@ -172,7 +172,7 @@ std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, st
   return rays;
 }
 
-// Above both surfaces, and inside the field, under the point at which the camera looks.
+// Above both surfaces, inside the field, below the point at which the camera looks.
 constexpr double kScannerHeight = 2, kNearHeight = 3;  // cells
 constexpr double kNearPitch = -5 * kPi / 180;
 constexpr double kLowestElevation = -25 * kPi / 180, kHighestElevation = 15 * kPi / 180;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rays that are measured. Origins and directions are float32 numbers, so that an engine in double and one in float
+// The rays of the benchmarks. Origins and directions are float32 numbers, so that an engine in double and one in float
 // trace bit-identical rays.
 //
 //   primary   a pinhole camera over the southern border; pixels in tiles of 8 x 8
@@ -12,8 +12,8 @@
 //   near      the pixels of primary by a camera 3 cells above the ground that looks along it
 //   chunk     from points spread evenly over the field to the same sun, as for a shadow map of it; in tiles of 8 x 8
 //
-// Rays from the surface begin a little above both surfaces, the bilinear one and the two triangles (kLift), so that no
-// engine profits from a rule of its own about rays that begin on its surface.
+// Rays from the surface start slightly above both surfaces, the bilinear one and the two triangles (kLift), so that no
+// engine benefits from special rules for rays that start on its surface.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace scarp::bench {
 
-/// Height above the higher of the two surfaces at which rays from the surface begin, in cells.
+/// Height above the higher of the two surfaces at which rays from the surface start, in cells.
 constexpr double kLift = 0.01;
 
 enum class RayClass { primary, shadow, grazing, ao, nodes, chunk, lidar, lidar_ground, near };
@@ -33,7 +33,7 @@ constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow,       R
                                     RayClass::ao,      RayClass::nodes,        RayClass::chunk,
                                     RayClass::lidar,   RayClass::lidar_ground, RayClass::near};
 std::string_view name_of(RayClass ray_class);
-/// Throws Error listing the classes when there is no such one.
+/// Throws Error listing the classes if the name is unknown.
 RayClass find_ray_class(std::string_view name);
 
 /// A ray with t in [0, t_max].
@@ -43,8 +43,8 @@ struct BenchRay {
   float t_max;
 };
 
-/// Sixteen rays side by side, as packet engines want them, which may take four or eight of them at a time; the last
-/// packet of a set may have invalid ones (valid 0, else -1).
+/// Sixteen rays side by side, the layout of packet engines, which may take four or eight at a time; the last packet of
+/// a set may have invalid ones (valid 0, else -1).
 struct alignas(64) RayPacket {
   static constexpr int kLanes = 16;
   float ox[kLanes], oy[kLanes], oz[kLanes];
@@ -66,12 +66,12 @@ std::vector<RayRecord> records_of(const std::vector<BenchRay>& rays);
 
 struct RaySet {
   RayClass ray_class;
-  bool any_hit;   ///< whether the question is "is it blocked" or "where is the first hit"
+  bool any_hit;   ///< whether the query is any-hit or closest-hit
   bool must_hit;  ///< whether every ray hits
   std::vector<BenchRay> rays;
-  std::vector<RayPacket> packets{};  ///< the same rays, as packet engines want them
-  std::vector<RayRecord> records{};  ///< the same rays, one after the other as Embree wants them
-  std::vector<Ray> library_rays{};   ///< the same rays, as the library wants them
+  std::vector<RayPacket> packets{};  ///< the same rays in the layout of packet engines
+  std::vector<RayRecord> records{};  ///< the same rays one after the other, in Embree's layout
+  std::vector<Ray> library_rays{};   ///< the same rays in the library's layout
 
   std::int64_t size() const { return static_cast<std::int64_t>(rays.size()); }
 };
@@ -85,11 +85,11 @@ struct RayCounts {
   int lidar_rows = 512, lidar_columns = 2048;
 };
 
-/// Where the camera of the primary rays is and looks to, and where the sun of the shadow rays is.
+/// The camera of the primary rays and the sun of the shadow rays.
 struct RayView {
   std::string_view name = "over the south";
-  dvec3 eye{0.5, 0.02, 0.05};    ///< shares of width and depth, and of the longer of them above the highest point
-  dvec3 target{0.5, 0.5, 0.5};   ///< shares of width, depth and relief
+  dvec3 eye{0.5, 0.02, 0.05};    ///< fractions of width and depth, and of the longer of them above the highest point
+  dvec3 target{0.5, 0.5, 0.5};   ///< fractions of width, depth and relief
   double sun_azimuth_deg = 315;  ///< compass
   double sun_altitude_deg = 20;
 };
@@ -108,7 +108,7 @@ struct PrimaryPixel {
 /// The pixel of a primary ray, from its number.
 PrimaryPixel primary_pixel(std::size_t ray, int width);
 
-/// The classes asked for, in the order of kRayClasses. Deterministic by seed.
+/// The requested classes, in the order of kRayClasses. Deterministic by seed.
 std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
                               std::uint64_t seed, const RayView& view = {});
 

@@ -40,7 +40,7 @@ std::string machine() {
 
 namespace {
 
-// Numbers and words as JSON has them, without quotes where no comma needs them; null is empty.
+// Numbers and words as in JSON, quoted only if they contain a comma; null is empty.
 std::string csv_cell(const nlohmann::ordered_json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();

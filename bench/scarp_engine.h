@@ -14,13 +14,12 @@ namespace scarp::bench {
 /// A field ready for all marches; outlives the engines made from it.
 class ScarpGround {
  public:
-  /// Builds the pyramid and takes the time.
+  /// Builds the pyramid and measures the time.
   explicit ScarpGround(const HeightField& field);
   ScarpGround(const ScarpGround&) = delete;
   ScarpGround& operator=(const ScarpGround&) = delete;
 
-  /// One march of the table under the given settings. Rays that only ask whether they are blocked go to the march's own
-  /// function for that where there is one.
+  /// One march of the table under the given settings. Any-hit rays use the march's any-hit function if it has one.
   Engine engine(const HeightMarchEntry& march, const MarchSettings& settings = {}) const;
 
   /// The same, but any-hit rays are answered by the closest hit.
@@ -29,7 +28,7 @@ class ScarpGround {
   /// `max-mip` in vectors, with all optimisations or some.
   Engine vectors(const std::string& mode, const VectorOptions& options = {}) const;
 
-  /// Every march of the table but the judge.
+  /// Every march of the table except the judge.
   std::vector<Engine> engines() const;
 
   HeightTarget target() const { return {&field_, &pyramid_, slope_bound_}; }

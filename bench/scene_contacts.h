@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Contacts in scenes of many objects: voxel balls of 2 m and hills of 2 x 2 m, in the places of `objects`, whose fields
-// are 0 or 1. Spheres of 0.5 m move by 1 m, boxes of 1 m stand, closest points are searched without a limit, all from
-// anywhere in the cube of the objects.
+// Contacts in scenes of many objects: voxel balls of 2 m and hills of 2 x 2 m, at the placements of `objects`, whose
+// fields are 0 or 1. Spheres of 0.5 m move by 1 m, boxes of 1 m do not move, closest points are searched without a
+// limit, all at random positions in the cube of the objects.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@
 namespace scarp::bench {
 
 /// Returns the row's members: number of queries, microseconds of processor time per query of each kind (median of
-/// `repeats` passes) and how many sweeps and boxes touch something.
+/// `repeats` passes) and the number of sweeps and boxes that touch something.
 nlohmann::ordered_json measure_contacts(const std::vector<SceneObject>& objects, double side, int queries, int repeats);
 
 }  // namespace scarp::bench

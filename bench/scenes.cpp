@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench scenes`: how soon a hierarchy over many objects is built, and how many rays it answers, on one thread:
-// boxes and balls of 1 to 4 m at random in a cube, turned at random. Beside a new scene: edits of a LiveScene, by a
-// step of at most 1 m along each axis, or to any place in the cube. Then contacts with voxels and heights in the places
-// of the objects (scene_contacts.h).
+// `scarp-bench scenes`: build time of a hierarchy over many objects, and rays per second on one thread: boxes and balls
+// of 1 to 4 m at random in a cube, turned at random. Compared with a new scene: edits of a LiveScene, by a step of at
+// most 1 m along each axis, or to any position in the cube. Then contacts with voxels and heights at the placements of
+// the objects (scene_contacts.h).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench seams`: very many rays at the lines where height fields meet, as fields of a scene and as tiles. A ray
-// that comes from above all ground and is below all of it before it leaves the terrain must hit, whatever is between,
-// and where it hits the ground is as high as the ray: the judge interpolates the samples in long double.
+// `scarp-bench seams`: a large number of rays at the lines where height fields meet, as fields of a scene and as tiles.
+// A ray that starts above all ground and is below all of it before it leaves the terrain must hit, and the ground at
+// its hit is as high as the ray: the judge interpolates the samples in long double.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ float sample_at(const SeamTerrain& of, int col, int row, std::uint64_t seed) {
   return static_cast<float>(of.base + kRelief * share);
 }
 
-// The ground at a place of a terrain of one resolution, in the terrain's own space.
+// The ground at a position of a terrain of one resolution, in the terrain's own space.
 long double ground_at(const SeamTerrain& of, long double x, long double y, std::uint64_t seed) {
   const long double at_col = x / of.cell, at_row = of.side() - 1 - y / of.cell;
   const auto cell = [&](long double at) { return static_cast<int>(std::clamp<long double>(at, 0, of.side() - 2)); };
@@ -140,7 +140,7 @@ std::vector<SeamTerrain> terrains(std::uint64_t seed) {
   return all;
 }
 
-// How a ray comes to the seam; each crosses a line where fields meet near the ground there.
+// How a ray approaches the seam; each crosses a line where fields meet, close to the ground.
 enum class Aim { steep, flat, corner, along, upright, leaning, leaning_corner };
 constexpr std::array kAims{Aim::steep,   Aim::flat,    Aim::corner,        Aim::along,
                            Aim::upright, Aim::leaning, Aim::leaning_corner};
@@ -161,7 +161,7 @@ Ray ray_to_seam(const SeamTerrain& to, Aim aim, Random& random) {
     if (aim == Aim::upright) d.x = d.y = 0;
     if (aim == Aim::leaning || aim == Aim::leaning_corner) {
       d.x = off_vertical(random), d.y = random.below(2) ? off_vertical(random) : 0;
-      // Beside the seam by rounding, of this place or of the world's.
+      // Off the seam by rounding, of this position or of the world's.
       if (random.below(2)) p.x += random.uniform(-2, 2) * 0x1p-53 * (p.x + glm::length(to.place.origin));
     }
     if (random.below(2)) std::swap(p.x, p.y), std::swap(d.x, d.y);

@@ -24,8 +24,8 @@
 namespace scarp::bench {
 namespace {
 
-// RADV's manifests where Vulkan's loader looks for drivers. There may be one per architecture: the loader takes what
-// fits.
+// RADV's manifests in the search path of Vulkan's loader. There may be one per architecture: the loader takes the one
+// that matches.
 std::string radv_manifests() {
   std::string all;
   for (const char* folder : {"/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
@@ -40,7 +40,7 @@ std::string radv_manifests() {
   return all;
 }
 
-// Devices opened from now on are RADV's null device: it reads the family when an instance is made.
+// Devices opened from now on are RADV's null device, which reads the family when an instance is created.
 void use_radv(const std::string& family) {
   const std::string manifests = radv_manifests();
   if (manifests.empty()) {
@@ -56,7 +56,7 @@ void use_radv(const std::string& family) {
   for (const char* name : {"RADV_DEBUG", "RADV_PERFTEST", "ACO_DEBUG"}) ::unsetenv(name);
 }
 
-// RADV aborts the process over a name that it does not know, so another process tries.
+// RADV aborts the process on an unknown name, so another process tries it.
 void require_family(const std::string& family) {
   use_radv(family);
   const pid_t child = ::fork();
@@ -100,7 +100,7 @@ std::string shader_disassembly(const ShaderProgram& program, const std::string& 
 
 ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families) {
   ShaderTable table;
-  // All of them before there are threads, because a process is forked.
+  // All of them before any thread starts, because this forks a process.
   for (const std::string& family : families) table.compilers = shader_compilers(family);
   table.rows.resize(programs.size() * families.size());
   for (std::size_t f = 0; f < families.size(); ++f) {

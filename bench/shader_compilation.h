@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiles Scarp's shaders for graphics cards that need not be there, with Mesa's RADV: its null device compiles for
-// any AMD card and has no memory.
+// Compiles Scarp's shaders for graphics cards that need not be installed, with Mesa's RADV. Its null device compiles
+// for any AMD card and has no memory.
 //
 //   library_shaders() ──SPIR-V, specialisation──▶ RADV, one family of cards after another ──▶ rows of a ShaderTable
 #pragma once
@@ -17,8 +17,8 @@ namespace scarp::bench {
 std::vector<ShaderProgram> library_shaders();
 
 /// Returns the compilers of SPIR-V and of RADV for a family of cards ("navi21"), with their versions. Changes
-/// environment variables of Vulkan drivers and leaves them so. Throws Error if RADV is missing or does not know the
-/// family.
+/// environment variables of Vulkan drivers and does not restore them. Throws Error if RADV is missing or does not know
+/// the family.
 std::string shader_compilers(const std::string& family);
 
 /// Returns RADV's machine code of a shader for a family of cards, as text. The environment and errors are as for

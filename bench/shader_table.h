@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table of shader figures that bench/shader_statistics.csv keeps: a test fails when a shader grows beyond it.
+// The table of shader statistics in bench/shader_statistics.csv: a test fails if a shader grows beyond it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace scarp::bench {
 struct ShaderFigure {
   std::string_view name;         ///< column of the table, field of the JSON
   std::string_view driver_name;  ///< RADV's name of the statistic
-  bool judged;                   ///< whether it may not grow
+  bool judged;                   ///< whether growth fails the test
 };
 inline constexpr std::array<ShaderFigure, 10> kShaderFigures = {{
     {"instructions", "Instructions", true},
@@ -47,8 +47,7 @@ ShaderTable read_shader_table(const std::string& file);
 /// Throws Error if the file cannot be written.
 void write_shader_table(const std::string& file, const ShaderTable& table);
 
-/// Returns one line for each judged figure of `found` that is above that of `kept`, and for each row that one of them
-/// lacks.
+/// Returns one line for each judged figure of `found` that is above that of `kept`, and for each row missing in either.
 std::vector<std::string> shader_breaches(const ShaderTable& kept, const ShaderTable& found);
 
 }  // namespace scarp::bench

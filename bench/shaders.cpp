@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench shaders`: what a driver's compiler makes of each shader, without a card.
+// `scarp-bench shaders`: a driver compiler's statistics of each shader, without a card.
 #include <fmt/format.h>
 
 #include <cstdio>

@@ -30,7 +30,7 @@ TEST(Shaders, AreAllListed) {
   EXPECT_EQ(listed, files) << "a shader's owner lists it for library_shaders() of bench/shader_compilation.cpp";
 }
 
-TEST(Shaders, AreListedOnceAndFitIntoTheTable) {
+TEST(Shaders, AreListedOnceAndFitTheTable) {
   std::set<std::pair<std::string, std::string>> names;
   for (const ShaderProgram& program : library_shaders()) {
     EXPECT_TRUE(names.emplace(program.file, program.variant).second) << program.file << ", " << program.variant;
@@ -44,7 +44,7 @@ ShaderTable table_of_two() {
           {{"a.comp", "any", "navi21", {100, 24, 128, 0, 3, 900, 32, 7}}, {"b.comp", "", "navi21", {50, 16, 128}}}};
 }
 
-TEST(ShaderTable, FindsWhatGrows) {
+TEST(ShaderTable, ReportsRegressions) {
   const ShaderTable kept = table_of_two();
   EXPECT_TRUE(shader_breaches(kept, kept).empty());
   for (std::size_t k = 0; k < kShaderFigures.size(); ++k) {
@@ -59,7 +59,7 @@ TEST(ShaderTable, FindsWhatGrows) {
   EXPECT_EQ(shader_breaches(kept, more), std::vector<std::string>{"b.comp, navi21: 51 instructions, in the table 50"});
 }
 
-TEST(ShaderTable, FindsWhatIsMissing) {
+TEST(ShaderTable, ReportsMissingRows) {
   const ShaderTable kept = table_of_two();
   ShaderTable found = kept;
   found.rows[0].specialisation = "closest";
@@ -68,7 +68,7 @@ TEST(ShaderTable, FindsWhatIsMissing) {
                                       "a.comp, any, navi21: in the table, but no such shader"}));
 }
 
-TEST(ShaderTable, IsReadAsWritten) {
+TEST(ShaderTable, RoundTrips) {
   const std::string file =
       std::filesystem::temp_directory_path() / ("scarp-shader-table-" + std::to_string(::getpid()) + ".csv");
   const ShaderTable table = table_of_two();
@@ -93,7 +93,7 @@ class WithRadv : public testing::Test {
   std::string compilers_;
 };
 
-TEST_F(WithRadv, TheCommandWritesTheDocumentedFields) {
+TEST_F(WithRadv, CommandWritesTheDocumentedFields) {
   const auto folder = std::filesystem::temp_directory_path();
   const std::string json = folder / ("scarp-shaders-" + std::to_string(::getpid()) + ".json");
   run_shaders({.families = {"vega10", "navi21"}, .shader = "max_pyramid"}, {"scarp-bench shaders", json});
@@ -116,7 +116,7 @@ TEST_F(WithRadv, TheCommandWritesTheDocumentedFields) {
   EXPECT_NE(all["rows"][0]["code_bytes"], all["rows"][1]["code_bytes"]);
 }
 
-TEST_F(WithRadv, NamesWhatIsUnknown) {
+TEST_F(WithRadv, ErrorNamesUnknownFamilyOrShader) {
   const auto why = [](const ShadersOptions& options) {
     try {
       run_shaders(options, {});
@@ -129,7 +129,7 @@ TEST_F(WithRadv, NamesWhatIsUnknown) {
   EXPECT_NE(why({.shader = "no_shader"}).find("'no_shader'"), std::string::npos);
 }
 
-TEST_F(WithRadv, NoShaderIsLargerThanInTheTable) {
+TEST_F(WithRadv, NoShaderExceedsTheTable) {
   const ShaderTable kept = read_shader_table(kTable);
   std::set<std::string> families;
   for (const ShaderRow& row : kept.rows) families.insert(row.family);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench shapes`: sphere-trace over distance fields, on the pixels of one picture and the shadow rays from it,
-// beside the same march by balls alone and the proofs of the judge.
+// compared with plain sphere tracing and checked by the judge's proofs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace shape;
 
-constexpr double kFarthest = 400;  // metres that a ray is followed
+constexpr double kFarthest = 400;  // maximum length of a ray in metres
 
 struct Scene {
   std::string name;
@@ -114,13 +114,13 @@ std::vector<Ray> shadows(const DistanceField& field, const std::vector<Ray>& ray
   return out;
 }
 
-// Hart's march as it is: balls until one is within the tolerance, which counts as a hit.
+// Hart's original march: spheres until one is within the tolerance, which counts as a hit.
 Hit by_balls(const DistanceField& field, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
   Hit hit;
   const SphereTraceSettings& s = settings.sphere_trace;
   const double speed = length(ray.direction);
   *stats = {};
-  // A ray from the surface is pushed off it, as is usual.
+  // A ray from the surface is offset from it, as usual.
   double t = ray.t_min + (ray.start == RayStart::on_surface ? 1e-3 : 0);
   while (t <= ray.t_max) {
     if (stats->steps == static_cast<std::uint32_t>(s.max_steps)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench simd`: what the vectors gain over the scalar walk, and what each optimisation adds.
+// `scarp-bench simd`: the gain of the vectors over the scalar walk, and the contribution of each optimisation.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -32,7 +32,7 @@ const Variant kVariants[] = {
     {"none", {.refill = false, .wait = false, .doubles = false, .put_off = false, .find_hits = false, .beam = false}},
 };
 
-// What a pass over all rays counts, and how many answers are not those of the scalar walk.
+// Counters of a pass over all rays, and the number of answers that differ from the scalar walk.
 struct Count {
   VectorStats stats;
   std::int64_t different = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench simt`: the shaders of max-mip and naive without a card. The CPU runs their text for each ray
-// (simt_trace.h), replays neighbouring rays in lockstep (simt_bundle.h), and adds up what the compiled shaders have in
-// the blocks that a bundle enters (simt_blocks.h).
+// (simt_trace.h), replays neighbouring rays in lockstep (simt_bundle.h), and adds up the instructions of the compiled
+// shaders in the blocks that a bundle enters (simt_blocks.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,14 +32,14 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kGroup = 64;
 constexpr std::array<std::size_t, 2> kBundles = {32, kGroup};
 constexpr std::int64_t kRaysPerPiece = 256;
-// One ray in so many is tried first in the search for naive's settings. Settings are given up if these rays alone are
+// One ray in this many is tried first in the search for naive's settings. Settings are rejected if these rays alone are
 // wrong this many times as often as allowed.
 constexpr std::int64_t kRoughShare = 8;
 constexpr double kBeyondDoubt = 3;
 // Steps per ray beyond which the search ends.
 constexpr double kMostSteps = 1024;
 
-// Whole groups of rays, a random one from each of as many equal stretches of a class.
+// Whole groups of rays, one at random from each of equally long pieces of a class.
 RaySet groups_of(const RaySet& all, std::int64_t groups, std::uint64_t seed) {
   const std::int64_t blocks = (all.size() + kGroup - 1) / kGroup, kept = std::min(groups, blocks);
   RaySet part{all.ray_class, all.any_hit, all.must_hit, {}};
@@ -62,7 +62,7 @@ using March = std::function<SimtAnswer(const Ray&, SimtTrace*)>;
 struct Contender {
   std::string mode;
   std::string shader;
-  std::optional<SimtNaive> naive;  // nothing: max-mip
+  std::optional<SimtNaive> naive;  // nullopt: max-mip
   Judgement judged{};
   std::array<SimtBundle, kBundles.size()> bundles{};  // sums over all bundles of a size
   double second_pass = 0;                             // share of rays
@@ -77,7 +77,7 @@ std::vector<Judge::Answer> answers_of(const March& march, const RaySet& set, con
   return answers;
 }
 
-// Judges all rays, and counts what their bundles pay.
+// Judges all rays, and counts the costs of their bundles.
 void count(const March& march, const RaySet& set, const Judge& judge, Contender& contender) {
   std::vector<Judge::Answer> answers(set.library_rays.size());
   std::int64_t second = 0;
@@ -175,7 +175,7 @@ class Comparison {
     };
   }
 
-  // Naive at the cheapest settings that are right enough: as the limit says, and as right as max-mip.
+  // Naive at the cheapest settings that are accurate enough: by the limit, and as accurate as max-mip.
   void add_naive(const SimtGround& ground, const RaySet& set, const Judge& judge, const Judge& rough, bool clipped,
                  std::vector<Contender>& contenders) const {
     std::map<std::pair<double, double>, Judgement> tried;

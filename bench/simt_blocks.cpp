@@ -34,7 +34,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-// "5 24-35*3": numbers of basic blocks and how often each is run, called one by one.
+// "5 24-35*3": numbers of basic blocks and how often each runs; calls `f` for each of them.
 template <class Call>
 void each_of(const std::string& ranges, const Call& call) {
   for (const std::string& written : split(ranges, ' ')) {
@@ -65,7 +65,7 @@ std::map<int, SimtCost> basic_blocks_of(std::string_view disassembly) {
   for (std::string line; std::getline(stream, line);) {
     if (line.starts_with("BB") && line.ends_with(':')) {
       const int index = number(std::string_view(line).substr(2, line.size() - 3), "disassembly");
-      // What comes before is the same shader in the compiler's own terms.
+      // The text before is the same shader in the compiler's own representation.
       if (index == 0) all.clear();
       at = &all[index];
     } else if (at && line.starts_with('\t')) {
@@ -148,7 +148,7 @@ SimtShader count_blocks(const SimtShader& shader, std::string_view disassembly) 
   for (std::size_t block = 0; block < kSimtBlocks; ++block) {
     each_of(shader.basic_blocks[block], [&](int at, int turns) {
       if (++used[at] == 2) is_wrong(at, "is in several blocks");
-      // The compiler leaves out numbers.
+      // The compiler skips numbers.
       const auto basic = found.find(at);
       if (basic == found.end()) return;
       counted.instructions += turns * basic->second.instructions;

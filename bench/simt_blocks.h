@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Blocks of the marches' shaders, as SCARP_COUNT (vk/glsl_cpp.h) names them in the text, and what a bundle of rays pays
-// for each: instructions of the compiled shader.
+// Blocks of the marches' shaders, as SCARP_COUNT (vk/glsl_cpp.h) names them in the text, and the cost of each for a
+// bundle of rays: instructions of the compiled shader.
 //
 // bench/simt_blocks.csv keeps the counts: Mesa's RADV for navi21, rays in wavefronts of 64, float32 samples, no holes,
 // walls, wraps or triangles. A row is one block of one shader, with the basic blocks of the disassembly that belong to
@@ -18,21 +18,22 @@
 namespace scarp::bench {
 
 enum class SimtBlock : std::uint8_t {
-  begin,   ///< once: what is the same for all rays
-  frame,   ///< the ray is read, and begins anew where it has come to; the end of that as well, after the inner loop
-  walk,    ///< max-mip: a turn of the walk
+  begin,   ///< once: code that is the same for all rays
+  frame,   ///< the ray is read and a frame starts where it has got to; also the end of a frame, after the inner loop
+  walk,    ///< max-mip: an iteration of the walk
   cell,    ///< the surface in a cell
-  probe,   ///< marches that sample: a turn
+  probe,   ///< sampling marches: an iteration
   hit,     ///< where a march ends at a point
-  answer,  ///< the answer is written: in the shader's main, which is not text of C++
+  answer,  ///< the answer is written: in the shader's main, which is not compiled as C++
   end,     ///< once
   unused,  ///< code for settings that are not counted, and for rays that are left to the second pass
 
-  // Of voxel marches, whose walk is a turn of the march, and whose frame is a node of the hierarchy over the objects.
+  // Voxel marches: their walk is an iteration of the march, and their frame is a node of the hierarchy over the
+  // objects.
   object,  ///< the ray is quantised in an object's box
-  turned,  ///< its direction is, for objects turned another way than the last
+  turned,  ///< its direction is quantised, for objects rotated differently from the last
   cross,   ///< one plane is crossed
-  skip,    ///< planes up to the end of what is empty
+  skip,    ///< planes up to the end of empty space
   sector,  ///< a sector is read, around an empty brick
 };
 inline constexpr std::size_t kSimtBlocks = 14;
@@ -67,7 +68,7 @@ constexpr SimtNesting nesting(SimtBlock block) {
   }
 }
 
-/// What a bundle pays each time that one of its rays enters the block.
+/// Cost for a bundle each time that one of its rays enters the block.
 struct SimtCost {
   int instructions = 0;  ///< all, memory instructions included
   int vector = 0;        ///< arithmetic of the rays' own values
@@ -79,10 +80,10 @@ struct SimtCost {
 /// The blocks of one shader in one specialisation.
 struct SimtShader {
   std::string name;  ///< "max-mip", "max-mip any", "naive"
-  int instructions;  ///< of the whole shader, as the driver reports it; those of inner loops by their turns
+  int instructions;  ///< of the whole shader, as the driver reports it; inner loops multiplied by their iterations
   std::array<SimtCost, kSimtBlocks> costs{};
-  /// Numbers in the disassembly, "5 24-35"; "24-35*3": of an inner loop with three turns. Empty: the shader has no such
-  /// block.
+  /// Numbers in the disassembly, "5 24-35"; "24-35*3": an inner loop with three iterations. Empty: the shader has no
+  /// such block.
   std::array<std::string, kSimtBlocks> basic_blocks{};
 
   const SimtCost& operator[](SimtBlock block) const { return costs[static_cast<std::size_t>(block)]; }
@@ -107,8 +108,8 @@ struct SimtOptions;
 struct ReportOptions;
 void run_simt_voxels(const SimtOptions& options, SimtShaders shaders, const ReportOptions& report);
 
-/// Counts the blocks of a shader anew, by its basic blocks, in RADV's disassembly of it. Throws Error that names the
-/// basic blocks that belong to none or to several blocks, or to one that the disassembly lacks.
+/// Recounts the blocks of a shader, by its basic blocks, in RADV's disassembly of it. Throws Error that names the basic
+/// blocks that belong to none or to several blocks, or to one that the disassembly lacks.
 SimtShader count_blocks(const SimtShader& shader, std::string_view disassembly);
 
 }  // namespace scarp::bench

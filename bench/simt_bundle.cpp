@@ -34,7 +34,7 @@ class Replay {
     loop(1, lanes);
     straight(0, lanes);
     pay(SimtBlock::end, lanes.size());
-    // Blocks come in the order of their nesting, or this is not the trace of a shader.
+    // Blocks must be in the order of their nesting; otherwise this is not the trace of a shader.
     if (std::any_of(all.begin(), all.end(), [](const Lane& lane) { return lane.next != lane.end; }))
       throw Error("simt: a trace has a block outside of its loop");
   }
@@ -42,7 +42,7 @@ class Replay {
   const SimtBundle& sum() const { return sum_; }
 
  private:
-  // Turns of a loop until none of the lanes begins another.
+  // Iterations of a loop until no lane starts another one.
   void loop(int depth, const Lanes& lanes) {
     Lanes active = lanes;
     for (;;) {
@@ -88,7 +88,7 @@ class Replay {
     sum_.lanes[static_cast<std::size_t>(block)] += lanes;
   }
 
-  // Of one instruction in all lanes.
+  // Addresses of one instruction in all lanes.
   void pay_fetch(const std::vector<std::uint64_t>& fetches) {
     ++sum_.fetches;
     for (std::size_t k = 0; k < kCacheLines.size(); ++k) {

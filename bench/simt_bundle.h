@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays in lockstep: what a bundle of rays pays on a device whose lanes share one instruction stream.
+// Rays in lockstep: the cost of a bundle of rays on a device whose lanes share one instruction stream.
 //
 //   SimtTrace of each ray ──▶ replay: loops go on until the slowest ray is done, ──▶ SimtBundle
 //                             a block is paid for if any ray enters it
@@ -17,7 +17,7 @@
 
 namespace scarp::bench {
 
-/// What one ray did: the blocks that it entered, and after each the addresses that it read, in order.
+/// The trace of one ray: the blocks that it entered, each followed by the addresses that it read, in order.
 class SimtTrace {
  public:
   void enter(SimtBlock block) { events_.push_back(kBlockBit | static_cast<std::uint64_t>(block)); }
@@ -36,7 +36,7 @@ class SimtTrace {
 /// Sizes of a cache line, in bytes.
 inline constexpr std::array<int, 2> kCacheLines = {128, 64};
 
-/// What a bundle paid, or the sum of several bundles.
+/// The cost of a bundle, or the sum of several bundles.
 struct SimtBundle {
   std::array<std::uint64_t, kSimtBlocks> runs{};          ///< times that a block was paid for
   std::array<std::uint64_t, kSimtBlocks> lanes{};         ///< the same, summed over the rays that entered it
@@ -50,7 +50,7 @@ struct SimtBundle {
 /// Replays rays as one bundle; `begin` and `end` are paid for once.
 SimtBundle replay(std::span<const SimtTrace> lanes);
 
-/// Instructions and so on that bundles pay in a shader.
+/// Instructions and other costs of bundles in a shader.
 struct SimtSum {
   std::uint64_t instructions = 0, vector = 0, memory = 0;
 };

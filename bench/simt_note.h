@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The record of the ray that is being traced, for files that compile the shaders' text as C++. To be included before
-// any of that text: it defines SCARP_COUNT.
+// The record of the current ray, for files that compile the shaders' text as C++. Include this before any of that text:
+// it defines SCARP_COUNT.
 #pragma once
 
 #define SCARP_COUNT(block) ::scarp::bench::note_block(::scarp::bench::SimtBlock::block)
@@ -9,7 +9,7 @@
 
 namespace scarp::bench {
 
-/// Null: nothing is noted.
+/// Null: nothing is recorded.
 inline thread_local SimtTrace* noted = nullptr;
 
 inline void note_block(SimtBlock block) {

@@ -27,7 +27,7 @@ const std::string kTable = SCARP_SOURCE_DIR "/bench/simt_blocks.csv";
 
 using Block = SimtBlock;
 
-// A frame with so many turns of the walk, each of which reads 8 bytes at the address.
+// A frame with this many iterations of the walk, each of which reads 8 bytes at the address.
 void add_frame(SimtTrace& trace, int turns, std::uint64_t address) {
   trace.enter(Block::frame);
   for (int turn = 0; turn < turns; ++turn) {
@@ -36,7 +36,7 @@ void add_frame(SimtTrace& trace, int turns, std::uint64_t address) {
   }
 }
 
-TEST(SimtBundle, LoopsGoOnUntilTheSlowestRayIsDone) {
+TEST(SimtBundle, LoopsRunUntilTheSlowestRayIsDone) {
   std::vector<SimtTrace> lanes(2);
   add_frame(lanes[0], 1, 0);
   add_frame(lanes[0], 3, 0);
@@ -44,13 +44,13 @@ TEST(SimtBundle, LoopsGoOnUntilTheSlowestRayIsDone) {
   const SimtBundle bundle = replay(lanes);
   EXPECT_EQ(bundle.of(Block::begin), 1u);
   EXPECT_EQ(bundle.of(Block::frame), 2u);
-  // Both first frames take the two turns of the longer one.
+  // Both first frames take the two iterations of the longer one.
   EXPECT_EQ(bundle.of(Block::walk), 2u + 3u);
   EXPECT_EQ(bundle.lanes[static_cast<std::size_t>(Block::walk)], 1u + 3u + 2u);
   EXPECT_EQ(bundle.of(Block::end), 1u);
 }
 
-TEST(SimtBundle, PaysForABranchThatAnyRayTakes) {
+TEST(SimtBundle, CountsBranchesTakenByAnyRay) {
   std::vector<SimtTrace> lanes(2);
   for (SimtTrace& lane : lanes) add_frame(lane, 1, 0);
   lanes[0].enter(Block::cell);
@@ -64,7 +64,7 @@ TEST(SimtBundle, PaysForABranchThatAnyRayTakes) {
   EXPECT_EQ(bundle.of(Block::hit), 1u);
 }
 
-TEST(SimtBundle, CountsCacheLinesOfEachFetch) {
+TEST(SimtBundle, CountsCacheLinesPerFetch) {
   std::vector<SimtTrace> lanes(3);
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     lanes[lane].enter(Block::frame);
@@ -92,7 +92,7 @@ TEST(SimtBundle, AddsUpCosts) {
   EXPECT_EQ(sum.memory, 8u);
 }
 
-TEST(SimtBundle, RejectsWhatIsNoTrace) {
+TEST(SimtBundle, RejectsInvalidTraces) {
   std::vector<SimtTrace> lanes(1);
   lanes[0].enter(Block::cell);
   EXPECT_THROW(replay(lanes), Error);
@@ -126,7 +126,7 @@ TEST(SimtBlocks, CountsBasicBlocks) {
   EXPECT_EQ(counted[Block::end].instructions, 1);
 }
 
-TEST(SimtBlocks, NamesBasicBlocksThatItDoesNotKnow) {
+TEST(SimtBlocks, NamesUnknownBasicBlocks) {
   const auto why = [](const char* walk) {
     try {
       count_blocks(toy_shader(walk), kDisassembly);
@@ -140,7 +140,7 @@ TEST(SimtBlocks, NamesBasicBlocksThatItDoesNotKnow) {
   EXPECT_EQ(why("2 9"), "shader 'toy': the disassembly is shorter than the table's");
 }
 
-TEST(SimtBlocks, AreReadAsWritten) {
+TEST(SimtBlocks, RoundTrip) {
   SimtShaders all{"compilers", {count_blocks(toy_shader("1-3"), kDisassembly)}};
   const std::string file =
       std::filesystem::temp_directory_path() / ("scarp-simt-" + std::to_string(::getpid()) + ".csv");
@@ -158,7 +158,7 @@ TEST(SimtBlocks, AreReadAsWritten) {
 }
 
 #ifdef SCARP_BENCH_VULKAN
-TEST(SimtBlocks, AreThoseOfTheShaders) {
+TEST(SimtBlocks, MatchTheShaders) {
   const SimtShaders kept = read_simt_shaders(kTable);
   std::string compilers;
   try {
@@ -189,7 +189,7 @@ struct SimtTraces : testing::Test {
   const RayCounts counts{160, 88, 4096, 4096, 64};
   SimtShaders shaders = read_simt_shaders(kTable);
 
-  // Each block that a ray enters has a price.
+  // Each block that a ray enters has a cost.
   void expect_priced(const SimtTrace& trace, const std::string& shader) {
     const SimtBundle bundle = replay(std::span(&trace, 1));
     for (std::size_t block = 0; block < kSimtBlocks; ++block) {
@@ -199,7 +199,7 @@ struct SimtTraces : testing::Test {
   }
 };
 
-TEST_F(SimtTraces, AnswerAsMaxMipDoesAndTellWhatTheyRead) {
+TEST_F(SimtTraces, MatchMaxMipAndRecordReads) {
   std::size_t hits = 0;
   for (const RaySet& set : make_rays(field, {RayClass::primary, RayClass::shadow}, counts, 1)) {
     for (std::size_t i = 0; i < set.library_rays.size(); i += 7) {
@@ -230,7 +230,7 @@ TEST_F(SimtTraces, NaiveTakesFewerStepsWhenClipped) {
   for (std::size_t i = 0; i < set.library_rays.size(); i += 7) {
     bool hit[2];
     for (const bool clipped : {false, true}) {
-      // The least step is a share of the way: so small that it does not count.
+      // The minimum step is a fraction of the distance: so small that it has no effect.
       const SimtNaive naive{{.min_step = 1e-6, .max_steps = 1 << 20}, clipped};
       SimtTrace trace;
       const SimtAnswer answer = trace_naive(ground, set.library_rays[i], true, naive, &trace);
@@ -247,7 +247,7 @@ TEST_F(SimtTraces, NaiveTakesFewerStepsWhenClipped) {
   EXPECT_LT(others, set.library_rays.size() / 7 / 50);
 }
 
-TEST(SimtVoxelTraces, AnswerAsTheCpuDoes) {
+TEST(SimtVoxelTraces, MatchTheCpu) {
   SimtShaders shaders = read_simt_shaders(kTable);
   for (const VoxelMarchEntry& march : voxel_marches()) {
     if (!march.gpu) continue;
@@ -270,7 +270,7 @@ TEST(SimtVoxelTraces, AnswerAsTheCpuDoes) {
       const SimtBundle bundle = replay(std::span(&trace, 1));
       EXPECT_GE(bundle.of(SimtBlock::walk), bundle.of(SimtBlock::cross));
       EXPECT_EQ(bundle.of(SimtBlock::object) > 0, bundle.of(SimtBlock::turned) == 1);
-      // A turn either takes a step or finds the voxel.
+      // An iteration either takes a step or finds the voxel.
       if (march.name == "voxel-planes") {
         EXPECT_EQ(bundle.of(SimtBlock::walk), stats.steps + bundle.of(SimtBlock::hit));
       }
@@ -282,7 +282,7 @@ TEST(SimtVoxelTraces, AnswerAsTheCpuDoes) {
   }
 }
 
-TEST_F(SimtTraces, LeaveTheTraceOutWhenItIsNull) {
+TEST_F(SimtTraces, SkipTheTraceWhenNull) {
   const Ray ray = make_rays(field, {RayClass::chunk}, counts, 1).front().library_rays.front();
   SimtTrace trace;
   const bool traced = trace_max_mip(ground, ray, true, &trace).answer.hit;

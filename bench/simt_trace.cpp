@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The shader text asks its host for samples and quads: here they come from memory, and a trace notes their addresses.
+// The shader text reads samples and quads through its host: here they come from memory, and a trace records their
+// addresses.
 
 #include "bench/simt_note.h"
-// After the definition of SCARP_COUNT, as all that includes the text.
+// Included after the definition of SCARP_COUNT, like all files that include the text.
 #include "bench/simt_trace.h"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ namespace {
 
 thread_local const SimtGround::Impl* ground = nullptr;
 
-// Apart from the addresses of samples.
+// Disjoint from the addresses of samples.
 constexpr std::uint64_t kQuadsBegin = std::uint64_t{1} << 40;
 constexpr std::int64_t kRowsPerPiece = 64;
 
@@ -101,7 +102,7 @@ SCARP_GLSL_END
 namespace scarp::bench {
 namespace {
 
-// The text's host for as long as a ray marches.
+// Sets the text's host during the march of a ray.
 struct Hosted {
   Hosted(const SimtGround& on, SimtTrace* trace) {
     ground = &on.impl();

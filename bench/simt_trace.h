@@ -18,7 +18,7 @@ namespace scarp::bench {
 /// neither copied nor owned.
 class SimtGround {
  public:
-  /// Builds the quads, on all threads. Throws Error for a field that the counted shaders are not compiled for.
+  /// Builds the quads, on all threads. Throws Error for a field for which the counted shaders are not compiled.
   SimtGround(const HeightField& field, const MaxPyramid& pyramid);
   ~SimtGround();
 
@@ -29,18 +29,18 @@ class SimtGround {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What a ray met, and whether the first pass left it to the second.
+/// The answer to a ray, and whether the first pass left it to the second.
 struct SimtAnswer {
   Judge::Answer answer;
   bool second_pass = false;
 };
 
-/// Both passes on devices; traces the first. `trace` may be null.
+/// Runs both passes, as on devices; traces the first. `trace` may be null.
 SimtAnswer trace_max_mip(const SimtGround& ground, const Ray& ray, bool any, SimtTrace* trace);
 
 struct SimtNaive {
   NaiveSettings settings;
-  bool clipped;  ///< whether rays begin and end no higher than the field's highest sample
+  bool clipped;  ///< whether rays start and end no higher than the field's highest sample
 };
 SimtAnswer trace_naive(const SimtGround& ground, const Ray& ray, bool any, const SimtNaive& naive, SimtTrace* trace);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The shader text asks its host for masks and bytes: here they come from memory, and a trace notes their addresses.
+// The shader text reads masks and bytes through its host: here they come from memory, and a trace records their
+// addresses.
 
 #include "bench/simt_note.h"
-// After the definition of SCARP_COUNT, as all that includes the text.
+// Included after the definition of SCARP_COUNT, like all files that include the text.
 #include "bench/simt_voxel_trace.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace {
 thread_local const VoxelTarget* marched_grid = nullptr;
 thread_local std::uint64_t marched_address = 0;
 
-// Addresses of what a grid has, apart from those of other grids.
+// Addresses of the data of a grid, disjoint from those of other grids.
 constexpr int kGridBits = 44;
 constexpr std::uint64_t kMasks = std::uint64_t{1} << 41, kMarks = std::uint64_t{1} << 42;
 
@@ -236,7 +237,7 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
   if (boxes.met && !all.nodes.empty()) {
     TurnedRay turned;
     double t_max = ray.t_max;
-    std::vector<std::uint32_t> waiting;  // a node, and the children that are left
+    std::vector<std::uint32_t> waiting;  // a node, and its remaining children
     std::uint32_t node = 0, rest = 15;
     for (bool over = false; !over;) {
       note_block(SimtBlock::frame);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shader text of voxel marches, run on the CPU one ray at a time, with a record of what each ray does
-// (simt_bundle.h). The walk through the hierarchy over the objects, which is not text of C++, is written again here.
+// (simt_bundle.h). The walk through the hierarchy over the objects, which is not compiled as C++, is reimplemented
+// here.
 #pragma once
 
 #include <memory>
@@ -14,11 +15,11 @@ namespace scarp::bench {
 /// Voxel objects in the layout that they have in device memory.
 class SimtVoxels {
  public:
-  /// All models have one march, which runs on devices. Their voxels count as cubes.
+  /// All models have the same march, which must run on devices. Their voxels count as cubes.
   explicit SimtVoxels(const PlacedVoxels& voxels);
   ~SimtVoxels();
 
-  /// The answer as a device gives it. `trace` may be null.
+  /// The answer as computed by a device. `trace` may be null.
   Hit trace(const Ray& ray, SimtTrace* trace) const;
 
  private:

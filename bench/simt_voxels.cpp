@@ -30,7 +30,7 @@ struct Paid {
   std::uint64_t wrong = 0, hits = 0;
 };
 
-// Counts what the bundles of all rays pay, and rays whose answer is not that of the CPU.
+// Counts the costs of the bundles of all rays, and rays whose answer differs from the CPU's.
 Paid paid_for(const SimtVoxels& voxels, const Scene& scene, const std::vector<Ray>& rays) {
   Paid sum;
   std::mutex adding;

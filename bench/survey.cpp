@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench survey`: one field, one camera and one sun may be a lucky choice. Here are several, and what is told is
+// `scarp-bench survey`: one field, one camera and one sun may be a lucky choice. This command runs several and reports
 // the median and the worst: Scarp's best mode over the peers' best mode, on the same rays by processor time.
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Low over the south; high over the north-western corner, the sun behind it; close over the ground at a late hour.
+// Low over the south; high over the north-western corner, the sun behind it; close to the ground, with a low sun.
 const RayView kViews[] = {
     {},
     {"from a high corner", {0.02, 0.98, 0.4}, {0.6, 0.4, 0.5}, 135, 45},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A judge of sweeps that shares no code with them: the distance of a moving convex body to a triangle is a convex
 // function of time, so its minimum over a part of the motion is found by golden sections. A sweep has tunnelled if the
-// capsule is deeper in some triangle than rounding explains, before the contact that the sweep returned or, if it
-// returned none, at any time.
+// capsule penetrates a triangle more deeply than rounding explains, before the contact that the sweep returned or, if
+// it returned none, at any time.
 #pragma once
 
 #include <algorithm>
@@ -92,11 +92,11 @@ struct JudgedSweep {
     return least;
   }
 
-  /// Rounding of distances: some of each coordinate.
+  /// Rounding of distances: proportional to each coordinate.
   double rounding() const { return 64 * 0x1p-53 * (length(a) + length(b) + length(motion) + radius); }
 
  private:
-  // Metres by which triangles are out of reach before they are left out: far more than rounding over the few metres of
+  // Triangles farther out of reach than this, in metres, are skipped: far more than rounding over the few metres of
   // judged fields.
   static constexpr double kMargin = 0x1p-20;
 
@@ -134,8 +134,8 @@ inline std::vector<JudgedTriangle> all_triangles(const HeightField& field, int p
   return all;
 }
 
-/// What is wrong with an answer: how much deeper than touching the capsule is before the contact, in metres, and how
-/// far the contact is from a touch. 0 for both within rounding. `off`: metres that the triangles are off the surface.
+/// Error of an answer: the capsule's penetration before the contact, in metres, and the distance of the contact from a
+/// touch. 0 for both within rounding. `off`: metres that the triangles are off the surface.
 struct SweepError {
   double tunnelled = 0;
   double untouched = 0;
@@ -147,7 +147,7 @@ inline SweepError judge_sweep(const JudgedSweep& sweep, const std::vector<Judged
   double nearest = std::numeric_limits<double>::infinity();
   for (const JudgedTriangle& triangle : triangles) {
     const double deepest = sweep.deepest(triangle, end);
-    // One that overlaps where it starts touches at once, however deep.
+    // A capsule that overlaps at its start touches at once, at any depth.
     if (!(hit && t == 0)) error.tunnelled = std::max(error.tunnelled, sweep.radius - slack - deepest);
     if (hit && deepest <= sweep.radius + slack) nearest = std::min(nearest, sweep.distance(triangle, end));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench sweeps`: spheres and capsules that move over a height field, beside Bullet, and random ones over rugged
-// small fields and voxels before a judge of all triangles.
+// `scarp-bench sweeps`: spheres and capsules that move over a height field, compared with Bullet, and random ones over
+// rugged small fields and voxels, judged by all triangles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ struct Class {
   std::string name;
   double radius, height, least, most;  // metres, of capsules the length of the segment; of the motion
   bool along;                          // over the ground, not through the air
-  int fewer;                           // one in so many: Bullet looks at all triangles of a box around the motion
+  int fewer;                           // one in this many: Bullet tests all triangles of a box around the motion
 };
 const std::vector<Class> kClasses = {{"sphere, step along the ground", 0.5, 0, 0.1, 0.5, true, 1},
                                      {"capsule, step along the ground", 0.4, 1, 0.1, 0.5, true, 1},
@@ -55,7 +55,7 @@ const std::vector<Class> kClasses = {{"sphere, step along the ground", 0.5, 0, 0
                                      {"sphere, shot 200 m", 0.1, 0, 200, 200, false, 100},
                                      {"capsule, falls 50 m", 0.4, 1, 50, 50, false, 1}};
 
-// On the ground by a hair, or in the air above it.
+// Just above the ground, or in the air above it.
 std::vector<Moving> sweeps_of(const Class& kind, const HeightField& field, int count, std::uint64_t seed) {
   std::vector<Moving> all;
   for (int i = 0; i < count; ++i) {
@@ -228,7 +228,7 @@ void judge_voxels(std::uint64_t seed, std::uint64_t number, std::int64_t count, 
   for (std::int64_t i = 0; i < count; ++i) {
     const Moving moving = random_sweep(dvec3(size), triangles, random);
     const auto hit = sweep(grid, moving.capsule, moving.motion);
-    // Starts within a voxel are contacts at once, however far its faces are.
+    // Starts within a voxel are contacts at once, regardless of the distance of its faces.
     if (hit && hit->normal == dvec3(0.0)) {
       ++to.sweeps, ++to.contacts;
       continue;

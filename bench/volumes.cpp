@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench volumes`: from a file of numbers to a voxel model, beside reading the same bytes into memory.
+// `scarp-bench volumes`: from a file of numbers to a voxel model, compared with reading the same bytes into memory.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSolidFrom = 100;
 
-// A file that is removed.
+// A temporary file.
 class ScratchFile {
  public:
   ScratchFile() : path_(std::filesystem::temp_directory_path() / fmt::format("scarp-bench-{}.raw", getpid())) {}
@@ -69,7 +69,7 @@ void read_plainly(const std::string& path) {
   if (!in) throw Error(fmt::format("{}: cannot be read", path));
 }
 
-// Voxels of as many colours as given.
+// Voxels of the given number of colours.
 double seconds_of(const std::string& path, const std::string& format, std::size_t colours, double solid_from) {
   const std::vector<VoxelColour> palette(colours);
   FromVolumeOptions options;

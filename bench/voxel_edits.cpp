@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxel-edits`: how long accelerators of voxels take to follow an edit: spheres added to a grid and
-// removed again, at random places; beside accelerators built anew.
+// `scarp-bench voxel-edits`: time that voxel accelerators take to follow an edit: spheres added to a grid and removed
+// again, at random positions; compared with rebuilt accelerators.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ Json measure(std::string_view name, std::string_view of, const VoxelEditsOptions
   std::vector<double> added, removed;
   for (int i = 0; i < options.edits; ++i) {
     dvec3 centre(random.below(options.side), random.below(options.side), random.below(options.side));
-    // Diggers work on the ground.
+    // Digging happens at the ground.
     if (name == "hills") centre.z = hill(options.side, centre.x, centre.y);
     const auto follow = [&](const VoxelBox& changed, std::vector<double>& seconds) {
       const Stopwatch watch;

@@ -19,7 +19,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 float below(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
 float above(double x) { return std::nextafter(static_cast<float>(x), kInfinity); }
 
-// Up to 8 rays in a question, with what the callback needs of them in double.
+// Up to 8 rays of a query, with the callback's data of them in double.
 struct Question {
   RTCIntersectContext embree;
   const Ray* rays = nullptr;
@@ -29,7 +29,7 @@ struct Question {
   std::array<Hit, 8> best;
 };
 
-// A face that can be seen: of which voxel, and which.
+// A visible face: its voxel, and which one.
 struct Quad {
   ivec3 voxel;
   VoxelFace face;
@@ -38,7 +38,7 @@ struct Quad {
 }  // namespace
 
 struct VoxelEmbreePeer::Scene {
-  // Declared first, destroyed last: Embree counts down while its device goes.
+  // Declared first, destroyed last: Embree reports deallocations while its device is released.
   std::atomic<std::int64_t> bytes{0};
   std::string name;
   std::vector<VoxelPlace> places;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Embree 3.13 over the objects of `scarp-bench voxels`, in two ways: the boxes around their solid voxels as user
-// geometry, with a march of Scarp in the callback; and the faces that can be seen of one object as triangles, an
-// instance of them in each place.
+// geometry, with a march of Scarp in the callback; and the visible faces of one object as triangles, instanced at each
+// placement.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `scarp-bench voxels` measures: something that answers many rays at voxels.
+// What `scarp-bench voxels` measures: an engine that traces batches of rays at voxels.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace scarp::bench {
 
 struct VoxelEngine {
   std::string name;  ///< a march, or a peer
-  std::string mode;  ///< x1: one ray at a time; x64, x8: so many neighbours at once
-  std::string box;   ///< which part of objects is followed: grid or bounds
+  std::string mode;  ///< x1: one ray at a time; x64, x8: this many neighbours at once
+  std::string box;   ///< part of objects that rays traverse: grid or bounds
   double mib = 0;    ///< with one model for all objects
   /// hits[i] answers rays[i]: status, t, voxel and part. On one thread.
   std::function<void(std::span<const Ray> rays, std::span<Hit> hits)> trace;

@@ -22,7 +22,7 @@ VoxelHash::VoxelHash(const VoxelGrid& grid, bool surface_only) : bits_(grid.entr
     if (seen) voxels.push_back(v);
   });
   count_ = voxels.size();
-  // The least table that all fit into; a sixth as many offsets, and more until there is a way to set them.
+  // The smallest table that fits all; a sixth as many offsets, and more until an assignment is found.
   const double side = std::cbrt(static_cast<double>(std::max<std::size_t>(count_, 1)));
   for (m_ = 1; static_cast<std::size_t>(m_) * m_ * m_ < count_;) ++m_;
   for (r_ = std::max(1, static_cast<int>(std::ceil(side / std::cbrt(6.0)))); !build(voxels); ++r_) {
@@ -44,9 +44,9 @@ std::uint32_t VoxelHash::packed(std::size_t place) const {
   return static_cast<std::uint32_t>(value & ((std::uint64_t{1} << bits_) - 1));
 }
 
-// The voxels that share an offset, most of them first: the first offset that takes none of them where one is.
+// Largest buckets first: each takes the first offset at which none of its voxels collides.
 bool VoxelHash::build(const std::vector<ivec3>& voxels) {
-  // With a common divisor offsets could not part some voxels.
+  // With a common divisor, offsets could not separate some voxels.
   if (m_ > 1 && std::gcd(m_, r_) != 1) return false;
   const std::size_t places = static_cast<std::size_t>(m_) * m_ * m_, buckets = static_cast<std::size_t>(r_) * r_ * r_;
   std::vector<std::vector<ivec3>> of(buckets);
@@ -63,7 +63,7 @@ bool VoxelHash::build(const std::vector<ivec3>& voxels) {
     if (of[bucket].empty()) break;
     bool found = false;
     for (std::size_t i = 0; i < places && !found; ++i) {
-      // From a place on that differs from bucket to bucket.
+      // Starts from a position that differs from bucket to bucket.
       const auto at = static_cast<int>((start + i) % places);
       const ivec3 offset(at % m_, at / m_ % m_, at / m_ / m_);
       mine.clear();

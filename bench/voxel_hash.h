@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Colours of voxels by a perfect spatial hash, the 3-D hash that the founding post wishes for: measured beside the rank
-// of VoxelGrid.
+// Colours of voxels by a perfect spatial hash, the 3-D hash that the founding post proposes: compared with the rank of
+// VoxelGrid.
 //
 //   place(p) = (p + offset[p mod r]) mod m     m^3 places for n voxels, r^3 offsets, no two voxels in one place
 //
@@ -19,10 +19,10 @@ namespace scarp::bench {
 
 class VoxelHash {
  public:
-  /// Of the solid voxels, or only of those with an empty neighbour.
+  /// Hashes the solid voxels, or only those with an empty neighbour.
   VoxelHash(const VoxelGrid& grid, bool surface_only);
 
-  /// The entry of a voxel that is in it.
+  /// The entry of a hashed voxel.
   std::uint32_t entry(const ivec3& voxel) const {
     const std::array<std::uint8_t, 3>& offset = offsets_[index(voxel, r_)];
     return packed(index(voxel + ivec3(offset[0], offset[1], offset[2]), m_));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxel-leaks`: very many rays at voxel grids. All marches have to give the same voxel, face and t, ray by
-// ray and in vectors, and one ray in some is answered by the judge, too. Then rays at scenes of turned objects, each of
-// which is judged in one grid into which all objects are written.
+// `scarp-bench voxel-leaks`: a large number of rays at voxel grids. All marches must return the same voxel, face and t,
+// ray by ray and in vectors, and a fraction of the rays is also traced by the judge. Then rays at scenes of turned
+// objects, each of which is judged in one grid into which all objects are written.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -116,7 +116,7 @@ struct Together {
     packet.t_min[lane] = ray.t_min, packet.t_max[lane] = ray.t_max;
     expected[lane] = hit, index[lane] = i;
   }
-  // Asks one march, and calls wrong(i) for each ray that it answers differently; entries are not told.
+  // Runs one march, and calls wrong(i) for each ray with a different answer; entries are not compared.
   template <class Wrong>
   void ask(const VoxelModel& model, const Wrong& wrong) {
     aim_voxel_packet(packet, glm::dmat3(1.0));

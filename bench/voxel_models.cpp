@@ -54,7 +54,7 @@ struct Built {
   }
 };
 
-// Rays of a picture from eight sides; from what they hit, those to a sun, and those to the sky, at random.
+// Rays of a picture from eight sides; from their hits, rays to a sun, and random rays to the sky.
 struct RayClasses {
   std::vector<Ray> camera, sun, sky;
   std::vector<Hit> hits;         // of the camera's rays that hit

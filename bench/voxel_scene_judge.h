@@ -7,7 +7,7 @@
 //   ray     origin in halves of a voxel, direction of whole numbers, ends in whole multiples of it
 //
 // The rule, in the directions of the lattice: planes crossed at once are crossed in the order x, y, z; a ray along a
-// plane belongs to the upper side, and one that starts on a plane to the cell that it enters.
+// plane belongs to the upper side, and a ray that starts on a plane to the cell that it enters.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct LatticeRay {
   bool exact = false;
 };
 
-/// The first solid cell, or cells: those that are entered at the same t.
+/// The first solid cell, or all that are entered at the same t.
 struct LatticeAnswer {
   std::int64_t t_num = 0, t_den = 1;  ///< t = t_num / t_den
   std::vector<std::array<int, 3>> cells;
@@ -80,7 +80,7 @@ class VoxelSceneJudge {
         std::swap(axis[static_cast<std::size_t>(k)], axis[static_cast<std::size_t>(random.below(k + 1))]);
       if (random.below(8) == 0) axis = {0, 1, 2};
       for (int& s : sign) s = random.below(2) ? 1 : -1;
-      // Its box on the lattice begins at `low`.
+      // Its box on the lattice starts at `low`.
       ivec3 low(0), shift(0);
       glm::dmat3 turn(0.0);
       for (int k = 0; k < 3; ++k) {
@@ -103,7 +103,7 @@ class VoxelSceneJudge {
 
   const PlacedVoxels& placed() const { return placed_; }
 
-  /// The same objects as fields of their own, turned by their placements; mirrored ones in their fields.
+  /// The same objects as separate fields, rotated by their placements; mirrored ones are mirrored in their fields.
   Scene as_fields() const {
     std::vector<SceneFieldPtr> fields;
     std::vector<SceneObject> objects;
@@ -152,7 +152,7 @@ class VoxelSceneJudge {
     }
     if (ray.direction == std::array<std::int64_t, 3>{})
       ray.direction[static_cast<std::size_t>(random.below(3))] = random.below(2) ? 1 : -1;
-    // Away from the scene, or in it.
+    // Outside of the scene, or in it.
     if (random.below(2)) {
       const std::int64_t back = random.below(64);
       for (std::size_t i = 0; i < 3; ++i) ray.origin[i] -= back * ray.direction[i];
@@ -211,7 +211,7 @@ class VoxelSceneJudge {
     }
   }
 
-  /// Whether a hit of the scene is one that the ray may have.
+  /// Whether a hit of the scene is admissible for the ray.
   bool agrees(const LatticeRay& ray, const LatticeAnswer& expected, const Hit& hit) const {
     if (!expected.decided) return true;
     if (static_cast<bool>(hit) != expected.hit()) return false;

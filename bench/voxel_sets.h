@@ -2,8 +2,8 @@
 // The objects and the camera of C. Leak, "Raymarching voxel rendering": 32 x n x 32 objects of 32^3 voxels, side by
 // side.
 //
-// Space is the post's: y up, the eye at (-16, 0, -16) looking along (1, 0, 1), 45 degrees high and 16 : 9; a voxel has
-// the side 0.25, an object 8. Rays and objects know no up, so nothing has to be turned.
+// Coordinates are those of the post: y up, the eye at (-16, 0, -16) looking along (1, 0, 1), 45 degrees high and 16 :
+// 9; a voxel has the side 0.25, an object 8. Rays and objects have no preferred up axis, so nothing has to be rotated.
 #pragma once
 
 #include <array>

@@ -21,7 +21,7 @@ constexpr std::uint32_t kFragmentWords[] = {
 #include "bench/voxel_triangles.frag.inc"
 };
 
-// Nearer than all that is seen, and farther.
+// Nearer than everything visible, and farther.
 constexpr double kNear = 0x1p-10, kFar = 1024;
 
 std::vector<std::uint32_t> face_words(const VoxelGrid& grid) {
@@ -60,7 +60,7 @@ struct VoxelTriangles::Impl {
   bool solid;
   std::optional<RasterTarget> target;
   std::optional<DeviceBuffer> pixels;
-  Commands commands{device};  // after what its runs use: it waits for them
+  Commands commands{device};  // declared after the resources of its runs: it waits for them
 };
 
 VoxelTriangles::VoxelTriangles(const Device& device, const VoxelGrid& grid, std::span<const VoxelPlace> places)
@@ -114,7 +114,7 @@ std::vector<Hit> VoxelTriangles::drawn() const {
 
 double VoxelTriangles::snap(const PictureFrame& frame) const {
   const double corner = std::ldexp(1, -1 - static_cast<int>(raster_limits(impl_->device).subpixel_bits));
-  // Places as far as the farthest object at the depth of the picture's corner, where |place| / W is largest.
+  // Positions as far as the farthest object at the depth of the picture's corner, where |place| / W is largest.
   const dvec2 edge = frame.place(0, 0) * frame.pixel;
   double far = 0;
   for (const VoxelPlace& place : impl_->places) far = std::max(far, length(place.origin - frame.eye) + 16);

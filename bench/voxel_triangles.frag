@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which face it is.
+// Writes the index of the face.
 #version 450
 
 layout(location = 0) flat in uvec2 seen;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What voxel_triangles.vert, .frag and .cpp agree upon.
+// Shared by voxel_triangles.vert, .frag and .cpp.
 #ifndef BENCH_VOXEL_TRIANGLES_GLSL_H
 #define BENCH_VOXEL_TRIANGLES_GLSL_H
 

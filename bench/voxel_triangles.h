@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Voxels drawn by a Vulkan device as two triangles per face between a solid and an empty voxel: the peer of marches,
+// Voxels drawn by a Vulkan device as two triangles per face between a solid and an empty voxel: a peer of the marches,
 // and a second judge of their pictures.
 //
-// Rasterisers round corners to a fraction of a pixel, so near edges they show what lies beside them. A corner is off by
-// at most
+// Rasterisers round corners to a fraction of a pixel, so near edges they show neighbouring faces. A corner is off by at
+// most
 //
 //   2^-(bits + 1)               the device's sub-pixel grid, along either axis
 //   2^-22 width                 the same in clip coordinates
@@ -33,9 +33,9 @@ class VoxelTriangles {
   void draw(const PictureFrame& frame);
   /// Times of the last draw().
   const std::vector<PassTime>& passes() const;
-  /// What was drawn, row by row: hits without t.
+  /// The picture, row by row: hits without t.
   std::vector<Hit> drawn() const;
-  /// How far beside its place an edge may be drawn, in pixels.
+  /// Bound of the displacement of a drawn edge, in pixels.
   double snap(const PictureFrame& frame) const;
   /// Triangles of one object, and the size of faces and objects on the device.
   std::size_t triangles() const;
@@ -49,7 +49,7 @@ class VoxelTriangles {
 struct TrianglesMatch {
   std::int64_t pixels = 0;
   std::int64_t near_edges = 0;  ///< pixels within the snap of an edge
-  std::int64_t other = 0;       ///< of these, those that show another face than the ray hits
+  std::int64_t other = 0;       ///< of these, those that do not show the face that the ray hits
   std::int64_t differ = 0;      ///< of the others
   std::string first;            ///< pixel that differs
 };
@@ -58,7 +58,7 @@ struct TrianglesMatch {
 TrianglesMatch compare_with_triangles(const RasterPicture& quads, std::span<const Hit> drawn, std::span<const Hit> hits,
                                       const PictureFrame& frame);
 
-/// The picture as the library's calls have it.
+/// The picture in the types of the library's calls.
 VoxelPicture picture_of(const PictureFrame& frame);
 
 }  // namespace scarp::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A corner of a voxel's face: two triangles per face, an instance per object. Faces that look away shrink to a point.
+// A corner of a voxel's face: two triangles per face, an instance per object. Back faces collapse to a point.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxel-worlds`: procedural ground as voxels, thousands a side: how long it takes to build, memory, and
-// the rays of pictures in it, one at a time and in batches; beside NanoVDB over the voxels that can be seen.
+// `scarp-bench voxel-worlds`: procedural ground as voxels, thousands a side: build time, memory, and the rays of
+// pictures in it, one at a time and in batches; compared with NanoVDB over the visible voxels.
 #include <fmt/format.h>
 #include <sys/resource.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench voxels`: the tables of the founding post for the marches of voxel grids: time per frame, memory, steps
-// and boxes per ray, the time that builders take; beside Embree, NanoVDB and a hash for colours.
+// and boxes per ray, build times; compared with Embree, NanoVDB and a hash for colours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ constexpr std::size_t kTileRays = 64;
 
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : short_number(value); }
 
-// The least of several times, in microseconds: of a single thread, so what is above it is others' doing.
+// The least of several times, in microseconds: of a single thread, so any excess is due to other processes.
 double least_us(const std::function<void()>& work, int times = 20) {
   double least = 1e300;
   for (int i = 0; i < times; ++i) {
@@ -60,7 +60,7 @@ void measure_builders(Json& rows, std::vector<std::vector<std::string>>& lines) 
   }
 }
 
-// Colours by rank, as VoxelGrid has them, beside a perfect spatial hash: bytes, and time per colour in the order in
+// Colours by rank, as in VoxelGrid, compared with a perfect spatial hash: bytes, and time per colour in the order in
 // which the camera's rays hit.
 void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
   for (const bool surface : {true, false}) {
@@ -94,7 +94,7 @@ void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
       rows.push_back({{"table", "colours"}, {"of", of}, {"way", way}, {"bytes", bytes}, {"ns", ns}, {"us", us}});
       lines.push_back({of, way, short_number(bytes), short_number(ns), short_number(us)});
     };
-    // Of both without the shape itself, which marches need; with the mask of coloured voxels, which is the rank's.
+    // Both without the shape itself, which marches need; rank includes the mask of coloured voxels.
     row("rank", static_cast<double>(ranked.bytes()) - shape, rank_ns, rank_us);
     row("hash", static_cast<double>(hash.bytes()), hash_ns, hash_us);
   }
@@ -104,7 +104,7 @@ void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
 struct Measured {
   double ray_s = 0;
   std::size_t rays = 0, hits = 0;
-  std::size_t lost = 0, other = 0;  // hits of the first engine that it does not tell, or tells of another voxel
+  std::size_t lost = 0, other = 0;  // hits of the first engine that it does not report, or reports for another voxel
 };
 
 std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, const std::vector<Ray>& rays,
@@ -123,7 +123,7 @@ std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, c
       engines[e].trace(own[e], answers);
       return watch.cpu_s();
     };
-    // What slow techniques leave out is spread evenly over the picture.
+    // The rays that slow techniques skip are spread evenly over the picture.
     const double probe_s = part(32) * static_cast<double>(rays.size()) / static_cast<double>(own[e].size());
     const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(probe_s / options.pass_limit_s)));
     part(every);
@@ -165,7 +165,7 @@ void add_engines(const Scene& scene, std::string_view march, const char* box, st
   engines.push_back(engine);
 }
 
-// The post's scene in every technique, and its peers.
+// The scene of the post in every technique, and its peers.
 void measure_frame(const std::string& set, int n, const VoxelsOptions& options, Json& rows,
                    std::vector<std::vector<std::string>>& lines) {
   struct Technique {

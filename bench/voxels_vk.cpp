@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxels --device NAME`: the founding post's pictures on a Vulkan device, by both ways of drawing and
-// every march, beside their quads drawn by the same device as triangles. Times are those of the device's own clock.
+// `scarp-bench voxels --device NAME`: the pictures of the founding post on a Vulkan device, by both drawing methods and
+// every march, compared with their quads drawn by the same device as triangles. Times are those of the device's clock.
 //
-// Boxes are the post's, around grids, or tight ones, around solid voxels. All objects share a grid; what 1,024 of them
-// would take with grids of their own is a column.
+// Boxes are around grids, as in the post, or tight, around solid voxels. All objects share a grid; a column shows the
+// memory of 1,024 objects with separate grids.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMiB = 1 << 20;
 constexpr double kMilliseconds = 1e3;  // in a second
 
-// Hits that are not those of the CPU.
+// Hits that differ from the CPU's.
 std::size_t count_wrong(std::span<const Hit> hits, std::span<const Hit> expected) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -41,7 +41,7 @@ std::size_t count_wrong(std::span<const Hit> hits, std::span<const Hit> expected
 
 class DeviceTables {
  public:
-  // `device` and `drawing` are the same device, opened twice: gpu_raster.cpp tells why.
+  // `device` and `drawing` are the same device, opened twice: gpu_raster.cpp explains why.
   DeviceTables(const VoxelsOptions& options, const Device& device, const Device& drawing)
       : options_(options), device_(device), drawing_(drawing) {}
 
@@ -119,7 +119,7 @@ class DeviceTables {
     add(std::move(row));
   }
 
-  // Of compute, on the CPU, which takes the same steps in the same boxes.
+  // Costs of compute, counted on the CPU, which takes the same steps in the same boxes.
   static std::pair<double, double> costs(const Scene& scene, const std::vector<Ray>& rays) {
     MarchStats sum;
     std::size_t asked = 0;

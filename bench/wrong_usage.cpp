@@ -24,14 +24,14 @@ std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& called) 
     return unconverted(*conversion, called);
   }
   if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
-    // "--fov: 'x': expected ..." as the others are told.
+    // "--fov: 'x': expected ...", as for other errors.
     std::string text = error.what();
     const std::size_t end = text.find(": '");
     if (end != std::string::npos && text.find("expected", end) != std::string::npos) text.erase(end, 1);
     return text;
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    // What is missing was perhaps given, under a name that is wrong.
+    // The missing option may have been given under a wrong name.
     for (const std::string& argument : called.remaining()) {
       if (argument.starts_with('-')) return "The following argument was not expected: " + argument;
     }
@@ -52,7 +52,7 @@ std::string subcommands_of(const CLI::App& program) {
 
 std::string unknown_subcommand(const CLI::App& program) {
   if (!program.get_subcommands().empty()) return {};
-  // An option that is wrong is told as such.
+  // A wrong option is reported as such.
   const std::vector<std::string> words = program.remaining();
   return words.empty() || words.front().starts_with('-') ? std::string() : words.front();
 }

@@ -7,13 +7,13 @@
 
 namespace scarp::bench {
 
-/// The exit status that goes with it.
+/// Its exit status.
 constexpr int kWrongUsage = 2;
 
-/// What is wrong, and which help tells more; CLI11's own words where there are no better ones.
+/// Describes the error and names the help to read; in CLI11's words if there are no better ones.
 std::string wrong_usage(const CLI::ParseError& error, const CLI::App& program);
 
-/// The word that stands where a subcommand should; empty where one does, or nothing.
+/// The word in place of a subcommand; empty if it is a subcommand, or if there is none.
 std::string unknown_subcommand(const CLI::App& program);
 
 }  // namespace scarp::bench

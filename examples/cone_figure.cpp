@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws why the height above a terrain function is no distance, and which ball is free of ground for certain: an SVG on
-// standard output. Ground, slope and hits are the library's; only their places on the page are chosen here.
+// Draws why the height above a terrain function is not a distance, and which ball is certainly free of ground: an SVG
+// on standard output. Ground, slope and hits are the library's; only their places on the page are chosen here.
 //
 //   cone_figure > from-height-to-distance.svg
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr double kWidth = 230, kLow = -42, kHigh = 84;  // metres that the page shows
+constexpr double kWidth = 230, kLow = -42, kHigh = 84;  // metres shown on the page
 constexpr double kPixels = 4;                           // per metre
 
 double page_x(double x) { return kPixels * x; }
@@ -35,7 +35,7 @@ int main() {
   const HeightFunction ground(make_function(Sines{{{25, 170, 0, 2.5}, {13, 83, 0, 2.9}, {3, 31, 0, 0}}}));
   const dvec3 p(110, 0, 27);
   const double h = p.z - ground.value(p.x, p.y);
-  // The bound of the slope over all that the page shows, and the ball that follows.
+  // The bound of the slope over the page, and the ball that follows from it.
   const double c = ground.bound({0, kWidth, 0, 0}).slope, shrink = 1 / std::sqrt(1 + c * c);
   const Hit level = march_lipschitz_local(ground, {p, {1, 0, 0}});
   if (!level) return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A batch of rays on a Vulkan device: gpu_batch [DEVICE], by default the best there is. The same call as on the CPU.
+// A batch of rays on a Vulkan device: gpu_batch [DEVICE], by default the best one. The same call as on the CPU.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

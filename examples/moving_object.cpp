@@ -21,7 +21,7 @@ int main() {
     rolling = editor.add(ball, {.origin = {100, 500, 20}});
   });
 
-  // Each reading sees one state, whatever is edited meanwhile: the ball is always in sight, exactly once.
+  // Each reading sees one state, regardless of concurrent edits: the ball is always in sight, exactly once.
   std::atomic<bool> done{false};
   std::atomic<int> wrong{0};
   std::thread watcher([&] {

@@ -13,7 +13,7 @@
 
 namespace {
 
-// What stands for the engine's job system: it runs jobs by their index and waits for the last one.
+// Stands in for the engine's job system: it runs jobs by their index and waits for the last one.
 class Jobs final : public scarp::Executor {
  public:
   void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) override {

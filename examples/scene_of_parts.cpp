@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene: a terrain from memory, voxels and a shape in one world, and what rays from above hit.
+// A scene: a terrain from memory, voxels and a shape in one world, and rays from above.
 #include <cstdint>
 #include <cstdio>
 #include <vector>

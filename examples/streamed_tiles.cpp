@@ -20,7 +20,7 @@ float height(double x, double y) {
   return static_cast<float>(120 * std::sin(0.0011 * x) * std::cos(0.0007 * y) + 15 * std::sin(0.013 * (x + y)));
 }
 
-// What a program would read from a file.
+// A real program would read these from a file.
 scarp::HeightField load(scarp::TilePlace place, int level) {
   const int step = 1 << level, side = kCells / step + 1;
   std::vector<float> samples;
@@ -31,7 +31,7 @@ scarp::HeightField load(scarp::TilePlace place, int level) {
   return scarp::HeightField::own(std::move(samples), side, side, {.cell_x = kCell * step, .cell_y = kCell * step});
 }
 
-// The tile over which the eye is and those beside it in detail, the next two rings coarser; -1: not loaded.
+// The tile below the eye and its neighbours in full detail, the next two rings coarser; -1: not loaded.
 int wanted_level(scarp::TilePlace place, int eye_col, int eye_row) {
   const int away = std::max(std::abs(place.col - eye_col), std::abs(place.row - eye_row));
   return away <= 1 ? 0 : away <= 3 ? away - 1 : -1;
@@ -48,7 +48,8 @@ int main() {
   std::atomic<int> eye{-1};
   std::atomic<bool> done{false};
   std::atomic<int> lost{0}, frames{0};
-  // Steep rays around the eye hit the ground in every frame: borders of levels have no gaps, and no tile is half there.
+  // Steep rays around the eye hit the ground in every frame: borders of levels have no gaps, and no tile is half
+  // loaded.
   std::thread frame([&] {
     while (!done) {
       const scarp::TerrainTiles tiles = terrain.read();

@@ -68,7 +68,7 @@ class Builder {
       }
     }
   }
-  // A roof along y over [x0, x1) from z0 up, steep times as high as it is wide to the ridge, with gables below it.
+  // A roof along y over [x0, x1) from z0 up, height to the ridge is `steep` times the width, with gables below it.
   void gable_roof(int x0, int x1, int y0, int y1, int z0, int steep, Colour tiles, Colour top, Colour gable) {
     for (int inset = 0; x0 + inset < x1 - inset; ++inset) {
       const int left = x0 + inset, right = x1 - 1 - inset;
@@ -143,7 +143,7 @@ Builder church() {
   return b;
 }
 
-// A whole number for a voxel, the same each time.
+// A reproducible pseudo-random integer for a voxel.
 int mixed(int x, int y, int z) {
   std::uint32_t n = static_cast<std::uint32_t>(x) * 73856093U ^ static_cast<std::uint32_t>(y) * 19349663U ^
                     static_cast<std::uint32_t>(z) * 83492791U;
@@ -188,7 +188,7 @@ Builder broadleaf() {
   return b;
 }
 
-// Solid, to cut other models with.
+// Solid, for cutting other models.
 Builder block() {
   Builder b(16, 12, 20);
   for (int z = 0; z < 20; ++z) {

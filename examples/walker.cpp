@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A character, an upright capsule, that walks over terrain and slides along a tower: one sweep per step, and another
-// one along what it touched.
+// one along the surface that it touched.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -36,7 +36,7 @@ int step(const scarp::SceneQuery& query, scarp::Capsule& walker, scarp::dvec3 mo
   int towers = 0;
   for (int i = 0; i < 3 && length(motion) > kGap; ++i) {
     const auto contact = query.sweep(walker, motion);
-    // It stops a little before what it touches, so that it does not touch it where the next step starts.
+    // It stops a little before contact, so that the next step does not start in contact.
     const double t = contact ? std::max(0.0, contact->t - kGap / length(motion)) : 1;
     walker.a += t * motion, walker.b += t * motion;
     if (!contact) break;

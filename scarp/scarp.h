@@ -19,7 +19,7 @@
 // scarp::scarp; a program that calls them but links only scarp::core fails to link (undefined reference to
 // scarp::render). Errors are exceptions of type scarp::Error. A Terrain or Voxels converts to a Scene.
 // After an edit of a field, scenes that contain it throw Error until they are built again; LiveScene
-// (scarp/scene/live_scene.h) takes edits of objects and fields, also while other threads query it.
+// (scarp/scene/live_scene.h) supports edits of objects and fields, also while other threads query it.
 #pragma once
 
 #include <string>

@@ -10,8 +10,8 @@
 
 namespace scarp::test {
 
-/// While it exists, files of this process and of programs that it starts take that many bytes: writes beyond fail, as
-/// on a full disk.
+/// While it exists, files of this process and its children can hold this many bytes: writes beyond fail, as on a full
+/// disk.
 class FullDisk {
  public:
   explicit FullDisk(std::uint64_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

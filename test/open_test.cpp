@@ -40,7 +40,7 @@ TEST(TerrainOpen, ReadsAnElevationModel) {
   EXPECT_EQ(terrain.georeference().map_from_node[0], 1012.5);
 }
 
-TEST(TerrainOpen, TakesOptions) {
+TEST(TerrainOpen, AppliesOptions) {
   RasterOptions raster;
   raster.nodata = 4;
   const Terrain terrain = Terrain::open(small_grid(), raster, {.exaggeration = 2});
@@ -48,7 +48,7 @@ TEST(TerrainOpen, TakesOptions) {
   EXPECT_FALSE(terrain.height(10, 12));
 }
 
-TEST(TerrainOpen, RefusesWithOneLineThatNamesTheFile) {
+TEST(TerrainOpen, ErrorIsOneLineAndNamesTheFile) {
   const std::string text = path_of("open_test.txt");
   std::ofstream(text) << "no raster\n";
   const std::string folder = path_of("open_test_folder");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// render() of scarp.h: the pictures of its parts, and what it refuses.
+// render() of scarp.h: the pictures of its parts, and errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ Terrain waves(Wrap wrap = Wrap::none) {
   return Terrain::own(std::move(samples), 20, 20, {.wrap = wrap});
 }
 
-TEST(Render, WritesThePictureOfATerrainOnItsPlinth) {
+TEST(Render, DrawsTerrainOnItsPlinth) {
   const Terrain terrain = waves();
   render(terrain, kPath, kSmall, {.azimuth_deg = 120});
   const Scene scene = with_plinth(terrain);
@@ -50,7 +50,7 @@ TEST(Render, FramesAnyScene) {
   EXPECT_EQ(test::read_png(kPath).bytes, render_picture(scene, camera, kSmall).image.rgb);
 }
 
-TEST(Render, RefusesWhatItCannotShowOrWrite) {
+TEST(Render, RejectsInvalidScenesAndFiles) {
   const Terrain terrain = waves();
   std::filesystem::remove(kPath);
   EXPECT_NE(refusal([&] { render(waves(Wrap::periodic), kPath); }), "");

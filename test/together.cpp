@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Runs the tests of some of its files: where several test programs are built as one (TOGETHER in test/CMakeLists.txt),
-// a test of ctest is still the files of one of them, in a process of its own. SCARP_TEST_FILES: their names, with
-// commas between. Without it, and with --gtest_filter, all files count.
+// a test of ctest still runs the files of one of them, in a separate process. SCARP_TEST_FILES: their names, separated
+// by commas. Without it, and with --gtest_filter, all files count.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@
 
 namespace {
 
-// What --gtest_filter takes: all tests of these files by name. Empty when one of the files has none.
+// A value for --gtest_filter: all tests of these files by name. Empty if one of the files has none.
 std::string tests_of(const std::string& files) {
   std::set<std::string> wanted, found;
   std::istringstream names(files);

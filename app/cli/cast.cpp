@@ -40,7 +40,7 @@
 namespace scarp::cli {
 namespace {
 
-// Rays are answered and written by the piece: a table of any length needs the memory of its rays, not of its hits.
+// Rays are traced and written in pieces: a table of any length needs memory for its rays, not for its hits.
 constexpr std::size_t kPiece = 1 << 16;
 
 constexpr std::string_view kRasterCrs = "--raster-crs";
@@ -75,7 +75,7 @@ struct CastOptions : InputOptions {
 
 using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
 
-// The march's function for all hits, null when those are not asked for.
+// The march's function for all hits, null if they are not requested.
 AllHits all_hits_of(const CastOptions& options) {
   if (!options.all) return nullptr;
   if (!options.device.empty()) {
@@ -88,7 +88,7 @@ AllHits all_hits_of(const CastOptions& options) {
   throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march));
 }
 
-// Readers of rasters speak of --crs, which says here what the coordinates of the rays are.
+// Raster readers mention --crs, which selects the coordinates of the rays here.
 std::string in_words_of_cast(std::string text) {
   constexpr std::string_view kTheirs = "--crs";
   for (std::size_t at = 0; (at = text.find(kTheirs, at)) != std::string::npos; at += kRasterCrs.size()) {
@@ -115,8 +115,8 @@ Places places_of(const CastOptions& options, const OpenedInput& input) {
   return {{input.path, input.georeference, input.cols, input.rows}, coordinates, 1};
 }
 
-// Returns how far in metres a ray from the surface starts above or below it. Throws Error, without file and line, if it
-// starts over none of its cell and the cells around it: a hit on a border that was rounded is over one of those.
+// Returns how far in metres a ray from the surface starts above or below it. Throws Error, without file and line,
+// unless it starts over its cell or one of the cells around it: a rounded hit on a border is over one of these.
 double off_surface(const Ray& ray, const HeightField& field) {
   const GridRay grid = field.grid_from_world(ray);
   const dvec3 at = grid.origin + grid.direction * ray.t_min;
@@ -170,7 +170,7 @@ std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene
 }
 
 // A note with the bounds of the scene, for rays that hit nothing: the table may be in other coordinates. Empty if a ray
-// starts above the scene, or the scene is endless.
+// starts above the scene, or the scene is unbounded.
 std::string place_of(const Scene& scene, std::span<const Ray> rays, const Places& places) {
   const WorldBox box = ground_box(scene);
   const auto over = [&](const Ray& ray) {
@@ -186,7 +186,7 @@ std::string place_of(const Scene& scene, std::span<const Ray> rays, const Places
              : fmt::format("nothing was hit, and no ray begins over the scene: {}", place);
 }
 
-// Answers rays and writes what they met, piece by piece.
+// Traces rays and writes their hits, piece by piece.
 class Caster {
  public:
   // `all` finds all hits and needs a scene of one height field; null: nearest hits only. `materials`: number of
@@ -227,8 +227,8 @@ class Caster {
   }
 
   std::size_t hits() const { return hits_; }
-  /// Returns the number of rays that start below ground and never emerge; of those asked by hits(), also of those that
-  /// enter below ground through the border.
+  /// Returns the number of rays that start below ground and never emerge; hits() also counts those that enter below
+  /// ground through the border.
   std::size_t below() const { return below_; }
   double seconds() const { return seconds_; }
 
@@ -240,8 +240,8 @@ class Caster {
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
-  // Counts rays that are not blocked because they are below ground. Only those that begin under the height of the
-  // ground are asked once more: nearly all begin above.
+  // Counts rays that are not blocked because they are below ground. Only rays that start below the height of the ground
+  // are traced again: nearly all start above.
   void count_below(std::span<const Ray> rays, std::span<const std::uint8_t> blocked) {
     std::vector<Ray> low;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -301,7 +301,7 @@ class Caster {
   double seconds_ = 0;
 };
 
-// A note where the answers need one. Empty: they do not.
+// A note about the results; empty if they need none.
 std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays, const Scene& scene,
                        const Places& places) {
   if (rays.empty()) return "the table of rays has a header alone: 0 rays, and no rows in the output";
@@ -346,7 +346,7 @@ void run(CastOptions options, const Command& command) {
   }
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
-  // Who reads the table may go away, as `head` does: then the program ends as others do, without a word.
+  // The reader of the table may close the pipe, as `head` does: the program then ends silently, as others do.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
 
   const RayTable table = read_rays(options.rays);
@@ -388,7 +388,7 @@ void run(CastOptions options, const Command& command) {
     if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
   }
   out.commit();
-  // Last: who fails says one line alone.
+  // Last: on failure only one line is printed.
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
   if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
     fmt::print(stderr, "note: {}\n", note);

@@ -67,7 +67,7 @@ std::string see_help(const CLI::App& app, const CLI::App* called) {
 
 std::string unknown_word(const CLI::App& app, const CLI::App* called, const std::vector<std::string>& words) {
   const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
-  // Behind a word that is no subcommand every option is unknown.
+  // After a word that is not a subcommand, every option is unknown.
   const auto option =
       called != nullptr || is_option(words.front()) ? std::find_if(words.begin(), words.end(), is_option) : words.end();
   if (option != words.end()) {
@@ -141,7 +141,7 @@ std::vector<std::string> Command::typed_values() const {
   std::vector<std::string> values;
   for (const Typed& one : typed_) {
     if (one.option->name == "--output") continue;
-    // "-" of --rays is what stands before the program in a shell: scarp cast --rays - < FILE.
+    // --rays - reads standard input: scarp cast --rays - < FILE.
     for (const std::string& value : one.values) values.push_back(value == "-" ? "/dev/stdin" : value);
   }
   return values;

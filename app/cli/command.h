@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program and its subcommands: what they declare, and what was typed.
+// The program and its subcommands: their declarations, and the typed options.
 #pragma once
 
 #include <deque>
@@ -24,7 +24,7 @@ class Command {
   void example(std::string line) { examples_.push_back(std::move(line)); }
   /// Text below the options in the help.
   void footer(std::string text) { footer_ = std::move(text); }
-  /// What the subcommand does.
+  /// The function that the subcommand runs.
   void runs(std::function<void()> work) { work_ = std::move(work); }
 
   const std::string& name() const { return name_; }
@@ -33,23 +33,23 @@ class Command {
   const std::deque<Declared>& options() const { return options_; }
   const std::vector<std::string>& examples() const { return examples_; }
   const std::string& footer() const { return footer_; }
-  /// Null when there is no such option.
+  /// Null if there is no such option.
   const Declared* find(std::string_view name) const;
 
   /// The names of the options that were typed, in the order typed.
   std::vector<std::string> given() const;
   bool given(std::string_view name) const { return typed(name) != nullptr; }
-  /// What was typed for an option, the last word of it; empty: nothing.
+  /// The last value typed for an option; empty: not typed.
   std::string value(std::string_view name) const;
   /// Every value except that of --output. Values that name files count as inputs, so new options are covered.
   std::vector<std::string> typed_values() const;
-  /// The words that were typed, but for the options `left_out`; quoted for a shell where they need it.
+  /// The typed words, without the options `left_out`; quoted for a shell where necessary.
   std::string typed_words(const std::vector<std::string_view>& left_out) const;
-  /// Throws Error for the first option in the order typed that has no effect; an option that another one needs comes
+  /// Throws Error for the first option, in the order typed, that has no effect; an option that another one needs comes
   /// before it.
   void require_effect(const Use& use) const;
 
-  /// What was typed for one option.
+  /// The values typed for one option.
   struct Typed {
     const Declared* option;
     std::vector<std::string> values;
@@ -58,7 +58,7 @@ class Command {
   const std::vector<Typed>& all_typed() const { return typed_; }
   /// The names of the options that were typed and have no effect.
   std::vector<std::string> without_effect(const Use& use) const;
-  /// Sets the variables and runs. Throws WrongUsage, and whatever the work throws.
+  /// Sets the variables and runs. Throws WrongUsage, and whatever the subcommand throws.
   void run(std::vector<Typed> typed);
 
  private:
@@ -73,14 +73,14 @@ class Command {
   std::vector<Typed> typed_;
 };
 
-/// Whether `option` is among the names of given().
+/// Whether `option` is in given().
 bool is_given(const std::vector<std::string>& given, std::string_view option);
 
 class Program {
  public:
   /// A hidden subcommand is not listed in the help.
   Command& add(const std::string& name, const std::string& summary, bool hidden = false);
-  /// Those that are not hidden.
+  /// The visible subcommands.
   std::vector<const Command*> commands() const;
   const Command* find(std::string_view name) const;
 

@@ -19,7 +19,7 @@ constexpr int kFailed = 1, kWrongUsage = 2;
 
 int fail(std::string text, int status) {
   end_progress_line();
-  // One line, whatever a file name or a library has put into it.
+  // One line, even if a file name or a library has put line breaks into it.
   std::replace(text.begin(), text.end(), '\n', ' ');
   std::fprintf(stderr, "scarp: error: %s\n", text.c_str());
   return status;

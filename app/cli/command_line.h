@@ -6,7 +6,7 @@
 
 namespace scarp::cli {
 
-/// What main() does. To be called once per process: handlers of signals and the state of progress are the process's.
+/// The body of main(). Call once per process: signal handlers and progress are global.
 int run_command_line(int argc, char** argv);
 
 class Program;

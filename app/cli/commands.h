@@ -22,7 +22,7 @@ void add_viewshed(Program& program);
 void add_voxelise(Program& program);
 void add_devices(Program& program);  // with SCARP_VULKAN
 
-void add_options(Program& program);  // hidden: the documents that are made of the declarations
+void add_options(Program& program);  // hidden: the documents generated from the declarations
 
 /// All of these.
 void add_commands(Program& program);

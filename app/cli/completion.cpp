@@ -32,7 +32,7 @@ std::vector<std::string> option_names(const Command& command) {
   return names;
 }
 
-// What --help takes: "all water fog".
+// The arguments of --help: "all water fog".
 std::string topics_of_help(const Command& command) {
   std::string names = "all";
   for (const auto& [topic, options] : options_by_topic(command)) names += fmt::format(" {}", name_of(topic));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp composite`: another renderer's picture and ours in one, pixel by pixel what is nearer.
+// `scarp composite`: combines another renderer's picture with ours, pixel by pixel by depth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -103,13 +103,13 @@ void run(const CompositeOptions& options) {
   for (std::size_t i = 0; i < depth.size(); ++i) {
     double z = theirs.values[i];
     if (range) {
-      // What lies on the far plane is what was never drawn.
+      // Pixels on the far plane were never drawn.
       const bool cleared = range->reversed ? z <= 0 : z >= 1;
       z = cleared ? std::numeric_limits<double>::infinity() : view_depth_from_device(z, *range);
     }
     if (!(z < depth[i]) || alpha[i] <= 0) continue;
     ++taken;
-    // Colours of EXR are multiplied with their alpha already.
+    // EXR colours are premultiplied with alpha.
     colour[i] = their_colour[i] + colour[i] * (1 - alpha[i]);
     depth[i] = static_cast<float>(z);
   }

@@ -58,7 +58,7 @@ class Search {
     return h ? std::optional(*h / exaggeration_) : std::nullopt;
   }
 
-  // If a labelled contour line crosses the way from one point to the next.
+  // Whether a labelled contour line crosses the segment between two points.
   void try_between(const dvec2& from, double low, const dvec2& way, double high) {
     const double interval = settings_.interval;
     const double line = std::ceil(std::min(low, high) / interval);

@@ -10,7 +10,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct DepthOptions {
   std::string range;
   bool reversed = false;

@@ -14,7 +14,8 @@ namespace scarp::cli {
 
 namespace {
 
-// GLM's matrices are for column vectors and stored by columns: the order of numbers is that of row vectors by rows.
+// GLM's matrices are for column vectors and stored by columns, which is the same order as for row vectors stored by
+// rows.
 ExrMatrix matrix(const char* name, const glm::dmat4& m) {
   ExrMatrix stored{name, {}};
   for (int i = 0; i < 16; ++i) stored.elements[static_cast<std::size_t>(i)] = static_cast<float>(m[i / 4][i % 4]);

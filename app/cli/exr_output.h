@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of many layers into OpenEXR files, under the channel names that compositing programs look for.
+// Writes layered pictures to OpenEXR files, with the channel names that compositing programs expect.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ namespace scarp::cli {
 void require_exr(const std::string& path);
 
 /// R, G, B (half), Z, N.X, N.Y, N.Z, P.X, P.Y, P.Z (float) and steps (uint), worldToCamera and worldToNDC in the
-/// header. Writes into the place that `file` has reserved and commits it; throws Error as write_exr() does. With
-/// `range` also `depth` (float), what a depth buffer of these planes holds.
+/// header. Writes to the temporary file of `file` and commits it; throws Error as write_exr() does. With `range` also
+/// writes `depth` (float), the depth buffer value for these planes.
 void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
                   const std::optional<DepthRange>& range);
 

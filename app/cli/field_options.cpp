@@ -43,8 +43,8 @@ double chosen_exaggeration(double relief, double side) {
 }
 
 std::string flatness_note(double relief, double side) {
-  // Pixels that the relief is high where the longer side of the ground fills a picture of the default width, as in the
-  // default view: fewer are taken for a plane.
+  // Height of the relief in pixels if the longer side of the ground fills a picture of the default width, as in the
+  // default view: less than this looks like a plane.
   constexpr double kLeastPixels = 4;
   const double width = PictureSettings{}.width;
   if (relief * width >= kLeastPixels * side) return {};

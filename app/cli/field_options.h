@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The options of every subcommand that makes a surface of a raster.
+// The options of every subcommand that builds a surface from a raster.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace scarp::cli {
 
-/// What a subcommand can do beyond the border of a field: nothing, go round it, or be at its mirror images, too.
+/// Ground that a subcommand supports beyond the border of a field: none, periodic wrap, or mirror images as well.
 enum class BeyondBorders { none, wraps, mirrors };
 
 /// --exaggeration as typed, beside FieldOptions::exaggeration.
@@ -20,14 +20,14 @@ struct Exaggeration {
 /// Returns the factor at which a relief is a tenth of the longer side of the ground, both in metres, rounded down to 1,
 /// 2 or 5 times a power of ten; at least 1.
 double chosen_exaggeration(double relief, double side);
-/// Returns what to tell about ground whose relief hardly shows in pictures; empty: it shows.
+/// Returns a note about ground whose relief is barely visible in pictures; empty if it is visible.
 std::string flatness_note(double relief, double side);
 
 /// Returns why every ray misses a field; empty: it has ground.
 std::string no_ground_note(const HeightField& field);
 
 /// Declares --exaggeration, --surface, --solid and, except for `none`, --wrap. Without `exaggeration`, the value auto
-/// is refused.
+/// is rejected.
 void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders,
                        Exaggeration* exaggeration = nullptr);
 

@@ -203,7 +203,8 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
   }
 }
 
-// What the picture's middle shows, else the middle of the scene. Throws Error if neither is in front of the camera.
+// The point in the picture's centre, otherwise the centre of the scene. Throws Error if neither is in front of the
+// camera.
 dvec3 middle_of(const FigureSubject& subject, std::string_view option) {
   const dvec2 size = subject.camera.size();
   const Ray ray = subject.camera.ray(0.5 * size.x, 0.5 * size.y);
@@ -287,7 +288,7 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
     labels.per_pixel = per_pixel;
     figure.labels = contour_labels_of(*field, camera, labels);
   }
-  // Found before the work: all but the legend is known.
+  // Checked before the work: everything except the legend is known.
   require_room(figure, static_cast<int>(width), static_cast<int>(height));
   return figure;
 }

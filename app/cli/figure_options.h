@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What explains a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
+// Annotations of a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,13 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct FigureOptions {
   bool legend = false, scale_bar = false, north_arrow = false, contour_labels = false;
   std::string title, graticule, layout = "on";
   double dots_per_inch = 150;
 
-  /// The first option that was given, for messages; empty: none.
+  /// The first given option, for messages; empty: none.
   std::string_view any() const;
 };
 
@@ -31,7 +31,7 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
 /// What can be judged without the field. Throws Error.
 void check_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
 
-/// What a figure shows.
+/// The contents of a figure.
 struct FigureSubject {
   const Scene& scene;
   const Camera& camera;
@@ -41,17 +41,17 @@ struct FigureSubject {
   int cols = 0, rows = 0;                    ///< likewise
 };
 
-/// What was asked for over a picture, but for the legend; nullopt: nothing. Throws Error where the middle of the
-/// picture shows nothing, or a graticule has no georeference.
+/// Returns the requested figure without its legend; nullopt: none. Throws Error if the centre of the picture shows
+/// nothing, or a graticule has no georeference.
 std::optional<Figure> figure_of(const FigureOptions& options, const PictureSettings& settings,
                                 const FigureSubject& subject);
 
-/// Adds the legend of a rendered picture if it was asked for. Throws Error where colours have no scale.
+/// Adds the legend of a rendered picture if requested. Throws Error if colours have no scale.
 void add_legend(const FigureOptions& options, const PictureSettings& settings, const FigureSubject& subject,
                 const Picture& picture, std::optional<Figure>& figure);
 
-/// The legend of a ramp over numbers from low to high, which it takes multiplied by `per_colour`. Numbers at its ticks
-/// are multiples of a power of ten of at least `least_step`. Builds with Cairo only.
+/// Returns the legend of a ramp over numbers from low to high, which the ramp expects multiplied by `per_colour`.
+/// Numbers at its ticks are multiples of a power of ten of at least `least_step`. Builds with Cairo only.
 FigureLegend legend_of(std::string title, double low, double high, const Ramp& ramp, double per_colour = 1,
                        double least_step = 0);
 

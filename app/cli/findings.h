@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What `scarp render` found besides the picture.
+// Results of `scarp render` besides the picture.
 #pragma once
 
 #include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
 
-/// Steps, heights, verdicts: those that the picture's look has.
+/// Steps, heights and verdicts, depending on the look.
 void print_findings(const Picture& picture);
 
 }  // namespace scarp::cli

@@ -18,7 +18,7 @@ namespace {
 constexpr int kMostFrames = 1000000;
 constexpr int kTurntableFrames = 120;
 
-// The #s are in the name, not in its folders.
+// The #s must be in the name, not in its folders.
 struct Place {
   std::size_t first, count;
 };
@@ -151,7 +151,7 @@ void make_frames(const FrameOptions& o, const std::string& output, const std::ve
     if (progress) progress((i + 1.0) / frames);
   }
   fmt::print("{}: {} frames, {} made now{}\n", output, frames, frames - kept,
-             kept > 0 ? fmt::format(", {} kept as they were; --overwrite makes all anew", kept) : "");
+             kept > 0 ? fmt::format(", {} kept; --overwrite renders all again", kept) : "");
 }
 
 }  // namespace scarp::cli

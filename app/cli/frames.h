@@ -12,7 +12,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct FrameOptions {
   std::string path;
   int frames = 0;  // 0: one per row of the path
@@ -26,7 +26,7 @@ void add_frame_options(Command& command, FrameOptions& options);
 /// Throws Error where several frames have an output without a place for their number.
 void check_frames(const FrameOptions& options, const std::string& output);
 
-/// How positions of a table become positions in world metres.
+/// Converts positions of a table to world metres.
 struct PathPlaces {
   const Places& places;
   const Scene& scene;  ///< targets without z are on its surface
@@ -34,16 +34,16 @@ struct PathPlaces {
   std::function<dvec3(const dvec3& at, const std::string& what)> above_surface{};
 };
 
-/// Where the frames are seen from; `framed` makes those of a turntable, which begins at `view`. Eyes without z follow
-/// the surface, between the rows of the table as well. Throws Error naming file and line.
+/// Returns the cameras of the frames; `framed` makes those of a turntable, which starts at `view`. Eyes without z
+/// follow the surface, between the rows of the table as well. Throws Error naming file and line.
 std::vector<Camera> frame_cameras(const FrameOptions& options, const ViewSettings& view, int width, int height,
                                   const std::function<Camera(const ViewSettings&)>& framed, const PathPlaces& path);
 
 /// The output's name with frame i (from 0) in place of its #s, at least as many digits.
 std::string frame_name(const std::string& output, int i);
 
-/// Calls make(camera, name) for the frames that are not there yet and tells what was done. A frame that fails ends it;
-/// those before stay.
+/// Calls make(camera, name) for the frames that do not exist yet, and prints a summary. Stops at a frame that fails;
+/// earlier ones stay.
 void make_frames(const FrameOptions& options, const std::string& output, const std::vector<Camera>& cameras,
                  const std::function<void(const Camera&, const std::string&)>& make);
 

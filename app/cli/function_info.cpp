@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of the fractal that has the most.
+// Octaves of the fractal that has the most.
 void find_octaves(const Function& function, Octaves& most) {
   std::visit(
       [&](const auto& f) {
@@ -60,7 +60,7 @@ Seen seen_in(const HeightFunction& function, const FunctionRectangle& r, int sid
 
 double ratio(double certified, double seen) { return seen > 0 ? certified / seen : 1; }
 
-// How many times as wide as what is seen the certified bounds are, on average over squares of a size.
+// Ratio of the certified to the observed range, averaged over squares of a size.
 Json tightness_of(const HeightFunction& function, double extent, double size) {
   constexpr int kSquares = 5, kSide = 17;  // along each axis; samples along a side
   double range = 0, slope = 0;

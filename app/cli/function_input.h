@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions where subcommands take files: --function and --preset.
+// Terrain functions as inputs of subcommands: --function and --preset.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct FunctionInput {
 
 /// Declares --function and, unless its help is empty, --extent.
 void add_function_option(Command& command, FunctionInput& input, const std::string& extent);
-/// These and --preset. `march` and `settings` are where --march and its settings go; a preset sets them first.
+/// These and --preset. `march` and `settings` are the variables of --march and its settings; a preset sets them first.
 void add_function_options(Command& command, FunctionInput& input, const std::string& extent, std::string& march,
                           MarchSettings& settings);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Command lines of GDAL's programs: their flags have one dash and several letters, which this program's parser takes
-// for several flags.
+// Command lines of GDAL's programs: their flags have one dash and several letters, which this program's parser would
+// read as several flags.
 #pragma once
 
 #include <string>

@@ -29,7 +29,7 @@ struct GenerateOptions {
   int threads = 0;
 };
 
-// Samples of a function about its origin; its heights are what it says, whatever the size.
+// Samples of a function around its origin; heights do not depend on the size.
 ComputedDem dem_of(const HeightFunction& function, const GenerateOptions& options) {
   const int cols = options.terrain.cols, rows = options.terrain.rows;
   const double cell = options.terrain.cell_m;
@@ -58,7 +58,7 @@ void run(GenerateOptions options) {
   terrain.cols = static_cast<int>(size.front());
   terrain.rows = static_cast<int>(size.back());
   terrain.kind = *terrain_kind(options.kind);
-  // A name that ends in .png is a slip: what is there is a picture, and no program would open the new file as one.
+  // A name that ends in .png is a mistake: no program would open the new file as a picture.
   const std::string extension = extension_of(options.output);
   if (!options.output.empty() && extension != ".tif" && extension != ".tiff") {
     throw Error(fmt::format("output '{}': terrain is written as GeoTIFF (name it *.tif or *.tiff)", options.output));

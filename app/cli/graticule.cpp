@@ -47,7 +47,7 @@ constexpr double kWantedLines = 5, kMostWanted = 12;  // along the longer side
 constexpr int kMostLines = 200;
 constexpr int kLattice = 17;      // points a side that find the range of longitudes and latitudes
 constexpr int kPieces = 64;       // of a line
-constexpr double kBeyond = 0.05;  // share of the range by which lines go on beyond it, to reach the border
+constexpr double kBeyond = 0.05;  // fraction of the range by which lines extend beyond it, to reach the border
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -59,7 +59,7 @@ struct Range {
   }
 };
 
-// "84°20'W"; all lines of a spacing show the same parts.
+// "84°20'W"; all lines of a spacing show the same units.
 std::string degrees_text(double degrees, double spacing, const char* positive, const char* negative) {
   const double size = std::abs(degrees);
   const auto whole = [&](double unit) { return std::abs(spacing / unit - std::round(spacing / unit)) < 1e-9; };
@@ -86,8 +86,8 @@ class Graticule {
     const dvec2 size = camera.size();
     std::optional<double> middle;
     for (int i = 0; i < kLattice * kLattice; ++i) {
-      // Begins in the middle. Half a pixel inside the border: the longitude of the border may be that of the other
-      // side.
+      // Starts in the middle. Half a pixel inside the border, because the longitude of the border may be that of the
+      // other side.
       const int k = (i + kLattice * kLattice / 2) % (kLattice * kLattice);
       const auto at = [&](int n, double pixels) { return 0.5 + n / (kLattice - 1.0) * (pixels - 1); };
       dvec3 p = camera.ray(at(k % kLattice, size.x), at(k / kLattice, size.y)).origin;
@@ -103,7 +103,7 @@ class Graticule {
     const double most = std::max(longitudes_.size(), latitudes_.size());
     std::size_t i = 0;
     while (i + 1 < std::size(kSpacings) && most / kSpacings[i] > kWantedLines) ++i;
-    // Closer where the shorter side would have no line.
+    // Closer if the shorter side would have no line.
     const auto leaves_one_out = [&](double spacing) {
       return longitudes_.multiples(spacing) == 0 || latitudes_.multiples(spacing) == 0;
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `--help` prints, from the declarations of the options.
+// The output of `--help`, from the declarations of the options.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace scarp::cli {
 /// The program: its subcommands.
 std::string help_text(const Program& program);
 /// A subcommand. Topic "": the common options where there are many; "all": every option; else the options of a topic.
-/// Throws WrongUsage listing the topics when there is no such topic.
+/// Throws WrongUsage listing the topics if there is no such topic.
 std::string help_text(const Command& command, const std::string& topic);
 
 /// The topics that the options of a subcommand have, in order, each with its options.

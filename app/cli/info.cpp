@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp info`: what is in a raster, a voxel model, a mesh, a scene or a terrain function, as Scarp will use it.
+// `scarp info`: describes a raster, a voxel model, a mesh, a scene or a terrain function, as Scarp reads it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ Json extent_of(const Georeference& geo, int cols, int rows) {
           {"edges_lonlat", json_of(extent.edges_lonlat)}};
 }
 
-// Everything there is to say, once: the text and the JSON are made of this.
+// All information in one structure, from which the text and the JSON are generated.
 Json describe(const InfoOptions& options) {
   Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
   stop_if_interrupted();

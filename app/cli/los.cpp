@@ -114,7 +114,7 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const std
       add(from, to, properties);
       continue;
     }
-    // The line itself where it meets the ground's place: straight between the ends.
+    // The line itself at the position of the ground: straight between the ends.
     const Json middle = point(block.col, block.row, line.eye + block.along * (line.target - line.eye));
     properties["part"] = "visible";
     add(from, middle, properties);

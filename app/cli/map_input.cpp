@@ -131,7 +131,7 @@ dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view w
 
 Node MapInput::node_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   const dvec2 at = position_of(place, lonlat, what);
-  // Pixels are half open, as GDAL has them.
+  // Pixels are half open, as in GDAL.
   const double col = std::floor(at.x + 0.5), row = std::floor(at.y + 0.5);
   if (!(col >= 0 && row >= 0 && col < field_.cols() && row < field_.rows())) refuse_outside(place, what, 0.5);
   return {static_cast<int>(col), static_cast<int>(row)};

@@ -50,7 +50,7 @@ class MapInput {
   const Georeference& georeference() const { return georeference_; }
   const std::string& path() const { return path_; }
   const std::vector<std::string>& files() const { return files_; }
-  /// Lines for people, printed last.
+  /// Notes for users, printed last.
   std::vector<std::string> notes;
 
   /// The coefficient of --cc, else 6/7 on Earth and 1 elsewhere.
@@ -63,7 +63,7 @@ class MapInput {
   dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// The sample nearest to a place, as grid_of(); a place up to half a cell beyond the border counts.
   Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
-  /// Map coordinates, degrees or metres of a position in columns and rows, as --crs has it.
+  /// Converts a position in columns and rows to map coordinates, degrees or metres, as --crs specifies.
   dvec2 place_of(double col, double row) const;
   /// Longitude and latitude in degrees; nullopt without a CRS.
   std::optional<dvec2> lonlat_of(double col, double row) const;
@@ -93,7 +93,7 @@ class MapInput {
     double col, row, reach;
     MetricPlane plane;
   };
-  std::optional<Plane> last_;  // places that follow one another often have one observer
+  std::optional<Plane> last_;  // consecutive places often have the same observer
   bool plane_is_noted_ = false;
 };
 

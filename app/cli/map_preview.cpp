@@ -31,7 +31,7 @@ std::string kept(std::string path, const MapInput& input) {
   return path;
 }
 
-// The ground over which a map lies is shaded, but throws no shadows: those of a map would not be told apart from them.
+// The ground below a map is shaded, but without cast shadows, which could be mistaken for those of the map.
 PictureSettings settings_of(const MapInput& input, const Scene& scene) {
   constexpr int kLongerSide = 1000;
   PictureRequest request;
@@ -72,8 +72,8 @@ Paint paint_of_classes(const MapBand& band, std::span<const std::uint8_t> codes)
   return {[=](std::size_t i) { return colours[codes[i]]; }, std::move(key)};
 }
 
-// The range that colours show: of whole numbers all; of others without the 1 % at either end, among them lines of sight
-// straight down.
+// The range of the colours: complete for integers; for other values without 1 % at either end, which includes lines of
+// sight straight down.
 template <class Sample>
 std::pair<double, double> range_of(std::vector<Sample> numbers) {
   if (numbers.empty()) return {0, 0};
@@ -117,7 +117,7 @@ Paint paint_of(const MapBand& band, const std::string& ramp) {
   return std::visit(paint, band.samples);
 }
 
-// Pixels over the nodes of some rows; means of blocks where the picture has fewer.
+// Pixels over the nodes of some rows; averages of blocks if the picture has fewer pixels.
 Drape drape_of(const Paint& paint, const MapInput& input, const RowBand& rows, int picture_width) {
   const int cols = input.field().cols(), block = std::max(1, cols / (2 * picture_width));
   Drape drape{(cols + block - 1) / block, (rows.rows() + block - 1) / block, {}};

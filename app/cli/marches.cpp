@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp marches`: the tables of marching techniques, for people or as Markdown for the documentation.
+// `scarp marches`: the tables of marching techniques, as text or as Markdown for the documentation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ Row row_of(const MarchPreset& preset) {
           std::string(preset.source),  ""};
 }
 
-// Columns whose head is empty are none.
+// Columns with an empty heading are omitted.
 void print_markdown(const Row& heads, const std::vector<Row>& rows) {
   const auto columns = std::find(heads.begin(), heads.end(), "") - heads.begin();
   fmt::print("| {} |\n|", fmt::join(heads.begin(), heads.begin() + columns, " | "));

@@ -101,9 +101,10 @@ std::string local_mesh_at(const MeshOptions& options, const Places& places) {
 
 namespace {
 
-// The point nearest to the middle of the scene, on a lattice, that has a surface; else the middle at the lowest height.
+// The point of a lattice nearest to the centre of the scene that has a surface; otherwise the centre at the lowest
+// height.
 dvec3 place_near_middle(const Scene& scene) {
-  constexpr int kHalf = 32;  // places from the middle to the border
+  constexpr int kHalf = 32;  // lattice points from the centre to the border
   const WorldBox& box = scene.box();
   if (box.empty()) return {0, 0, surface_at(scene, 0, 0).value_or(0.0)};
   const dvec3 middle = 0.5 * (box.low + box.high), step = (box.high - middle) / static_cast<double>(kHalf);
@@ -150,7 +151,7 @@ Scene MeshInput::alone() const {
 
 #else
 
-// The rule of --mesh has refused all meshes.
+// The rule of --mesh has rejected all meshes.
 Scene MeshInput::with_mesh(Scene scene, const Places&) const { return scene; }
 
 Scene MeshInput::alone() const {

@@ -14,7 +14,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct MeshOptions {
   std::string file, at, up = "y";
   double scale = 1, turn_deg = 0;
@@ -31,7 +31,7 @@ bool is_mesh_input(const std::vector<std::string>& inputs);
 /// A mesh from the command line, or none.
 class MeshInput {
  public:
-  /// Reads the file of --mesh, if there is one. `options` must live as long. Throws Error naming the file.
+  /// Reads the file of --mesh, if given. `options` must outlive the object. Throws Error naming the file.
   explicit MeshInput(const MeshOptions& options) : MeshInput(options.file, options) {}
   /// Reads `path`, unless it is empty.
   MeshInput(const std::string& path, const MeshOptions& options);

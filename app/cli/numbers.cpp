@@ -66,7 +66,7 @@ std::array<int, 2> pixels_from(std::string_view text, std::string_view option, s
 
 std::function<std::string(const std::string& text)> number_in(const NumberRange& range) {
   return [range](const std::string& text) -> std::string {
-    // As CLI11 reads it afterwards.
+    // As CLI11 will read it.
     char* end = nullptr;
     const double number = std::strtod(text.c_str(), &end);
     if (!text.empty() && *end == '\0' && std::isfinite(number) && number <= range.most &&
@@ -77,7 +77,7 @@ std::function<std::string(const std::string& text)> number_in(const NumberRange&
 }
 
 std::string metres_text(double metres) {
-  // Three digits of numbers from 1000 on would be an exponent's.
+  // With three digits, numbers from 1000 on would be printed with an exponent.
   return metres < 100 ? fmt::format("{:.3g}", metres) : fmt::format("{:.0f}", metres);
 }
 

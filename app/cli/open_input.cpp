@@ -34,7 +34,7 @@ void choose_exaggeration(const Raster& raster, FieldOptions& settings, std::vect
   };
   try {
     const HeightField field = std::visit(view, raster.samples);
-    if (field.all_nodata()) return;  // refused later
+    if (field.all_nodata()) return;  // rejected later
     const double relief = field.max_height() - field.min_height(), side = std::max(field.width(), field.depth());
     settings.exaggeration = chosen_exaggeration(relief, side);
     notes.push_back(fmt::format(
@@ -81,7 +81,7 @@ OpenedInput voxels(const InputOptions& options, const std::string& ramp) {
   VoxelFileOptions voxels;
   voxels.march = options.march;
   require_march_of(voxel_marches(), "voxels", options.march);
-  // An unknown name is found before the file is read.
+  // An unknown name is reported before the file is read.
   if (!options.march.empty()) find_voxel_march(options.march);
   voxels.surface_colours = options.vox.surface_colours;
   voxels.rounding = options.vox_look.rounding;

@@ -38,7 +38,8 @@ struct InputOptions {
   std::string march;  ///< empty: the fastest exact one
   MarchSettings march_settings;
   std::string device;
-  /// Whether the camera will move: large rasters are read for any view, and besides `device` the CPU answers rays.
+  /// Whether the camera will move: large rasters are read for any view, and the CPU traces rays in addition to
+  /// `device`.
   bool moves = false;
 };
 
@@ -50,8 +51,8 @@ std::string_view march_of(const InputOptions& options, InputKind kind);
 
 struct OpenedInput {
   Scene scene{{}, {}};
-  std::vector<std::string> notes{};  ///< one line each, for people
-  std::vector<std::string> files{};  ///< that were read, beside those that were typed
+  std::vector<std::string> notes{};  ///< one line each, for users
+  std::vector<std::string> files{};  ///< files read in addition to those that were typed
 
   // Terrain only.
   std::string path{};  ///< first raster, for messages

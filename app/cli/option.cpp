@@ -77,7 +77,7 @@ std::string placeholder(const Option& option, const Binding& to) {
   return std::holds_alternative<double*>(to) || std::holds_alternative<std::optional<double>*>(to) ? "F" : "N";
 }
 
-// Returns what is wrong with the text; empty: nothing.
+// Returns the error of a text; empty if it is valid.
 template <class Whole>
 std::string set_whole(Whole& value, const NumberRange& range, const std::string& text) {
   Whole number = 0;

@@ -17,13 +17,13 @@
 
 namespace scarp::cli {
 
-/// The command line itself is wrong, not the files or data that it names. The text is one line.
+/// Thrown if the command line itself is wrong, not the files or data that it names. The text is one line.
 class WrongUsage : public Error {
  public:
   using Error::Error;
 };
 
-/// What a subcommand works on. The values are bits of Inputs::kinds.
+/// Kinds of input. The values are bits of Inputs::kinds.
 enum class InputKind : std::uint8_t { terrain = 1, voxels = 2, scene = 4, function = 8, mesh = 16 };
 constexpr unsigned kTerrain = 1, kVoxels = 2, kScene = 4, kFunction = 8, kMesh = 16, kEveryInput = 31;
 /// "terrain", "voxels", "scene", "function", "mesh".
@@ -54,22 +54,23 @@ constexpr int kTopics = 18;
 std::string_view name_of(Topic topic);
 std::string_view heading_of(Topic topic);
 
-/// The inputs that an option has an effect on, and why not on the others.
+/// Input kinds that an option applies to, with the reason shown for the rest.
 struct Inputs {
   unsigned kinds = kEveryInput;
   std::string_view why{};
   std::string_view why_not_scenes = "a scene file describes its own content";
 };
 
-/// The looks that read an option ("shaded comanche"; empty: all), and why the others do not. Of inputs of `of` only.
+/// The looks that read an option ("shaded comanche"; empty: all), with the reason shown for the rest. Only for inputs
+/// in `of`.
 struct Looks {
   std::string_view names{};
   std::string_view why{};
   unsigned of = kEveryInput;
 };
 
-/// What else must hold where an option is given. `text` continues the sentence that the option's name begins. Of inputs
-/// of `of` only.
+/// A further condition of an option. `text` continues the sentence that starts with the option's name. Only for inputs
+/// in `of`.
 struct Rule {
   std::string text;
   std::function<bool()> holds;
@@ -91,16 +92,16 @@ using Binding =
 
 struct Option {
   std::string names;                    ///< "-o,--output", "--fov"; "IN" for positional arguments
-  std::string value{};                  ///< placeholder of the value: "FILE"; empty: of the unit, or a flag
+  std::string value{};                  ///< placeholder of the value: "FILE"; empty: by the unit, or a flag
   std::string help{};                   ///< noun phrase without unit, range and default
   std::string unit{};                   ///< "metres"
   NumberRange range{};                  ///< of numbers; checked
-  std::vector<std::string> choices{};   ///< words that the value may be; checked if `closed`
+  std::vector<std::string> choices{};   ///< allowed words; checked if `closed`
   bool closed = false;                  ///< no other words than `choices`
-  bool unlisted = false;                ///< `choices` are too many for the help; completion has them
+  bool unlisted = false;                ///< `choices` are too many for the help; only completion lists them
   std::string files{};                  ///< extensions of files for completion, "png exr"; "*": any file
-  std::string note{};                   ///< what else to know: "0: none"
-  bool repeats = false;                 ///< of several values: one after each mention; otherwise any number
+  std::string note{};                   ///< further details: "0: none"
+  bool repeats = false;                 ///< for several values: one per mention; otherwise any number
   std::string fallback{};               ///< the default in words; empty: the value of the variable
   std::function<std::string()> now{};   ///< what a Setter has set, as text; empty: nothing
   Topic topic = Topic::general;         //
@@ -114,7 +115,7 @@ struct Option {
   std::vector<std::string> excludes{};  ///< options that cannot be given beside it
 };
 
-/// An option with what the program found out about it.
+/// An option with properties derived from its declaration.
 struct Declared {
   Option option;
   Binding to;
@@ -136,7 +137,7 @@ struct Declared {
 /// Sets the variable. Throws WrongUsage "--fov '0': expected a number from 1 to 150".
 void set_value(const Declared& option, const std::string& text);
 
-/// What the option is used with. Throws Error where it has no effect; empty look or march: not checked.
+/// Checks the context of an option. Throws Error if it has no effect there; an empty look or march is not checked.
 struct Use {
   InputKind kind = InputKind::terrain;
   std::string_view look{};

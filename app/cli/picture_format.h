@@ -15,12 +15,12 @@ struct PictureFormat {
   std::string_view name;        ///< "JPEG"
   std::string_view extensions;  ///< without dots: "jpg jpeg"; the first is shown
   std::string_view holds;       ///< for help, after the extension; empty: a picture
-  bool layers = false;          ///< linear light and what rays found, instead of colours for the screen
+  bool layers = false;          ///< linear light and geometry, instead of display colours
   bool map = false;             ///< georeferenced: needs --top
-  bool margins = true;          ///< may be larger than the picture
+  bool margins = true;          ///< may have margins around the picture
 };
 
-/// Throws Error listing the extensions if there is no such format, and if this build lacks its library. `with_margins`:
+/// Throws Error listing the extensions if the format is unknown, or if this build lacks its library. `with_margins`:
 /// lists only formats with margins.
 const PictureFormat& picture_format_of(const std::string& output, bool with_margins = false);
 

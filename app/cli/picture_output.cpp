@@ -14,7 +14,8 @@
 namespace scarp::cli {
 namespace {
 
-// Nearly the white of a figure's paper, but no grey, so that all that is drawn over it is a change: with_figure().
+// Nearly the white of a figure's background, but not grey, so that everything drawn over it is detected as a change:
+// with_figure().
 constexpr std::array<std::uint8_t, 3> kBelowFigure = {250, 255, 250};
 
 Image on_white(Image image) {
@@ -25,7 +26,7 @@ Image on_white(Image image) {
   return image;
 }
 
-// What a figure is drawn over is not transparent.
+// Pixels covered by a figure become opaque.
 std::vector<std::uint8_t> with_figure(const Image& image, const std::vector<std::uint8_t>& drawn) {
   std::vector<std::uint8_t> alpha = image.alpha;
   for (std::size_t i = 0; i < alpha.size(); ++i) {

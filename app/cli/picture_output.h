@@ -21,13 +21,13 @@ namespace scarp::cli {
 std::optional<MapPlace> place_of_map(const Camera& camera, int width, int height, const Georeference& georeference,
                                      int cols, int rows);
 
-/// Pixels of what was written: of the picture, or, except in PDF, with its margins.
+/// Size in pixels of the written picture, including margins except in PDF.
 struct WrittenSize {
   int width = 0, height = 0;
 };
 
-/// Writes into the place that `file` has reserved and commits it. `image`: its opacity is written as GeoTIFF only, and
-/// grows where the figure is drawn. Throws Error naming the file, and if the figure does not fit the picture.
+/// Writes to the temporary file of `file` and commits it. The opacity of `image` is written only to GeoTIFF, and
+/// becomes opaque where the figure is drawn. Throws Error naming the file, and if the figure does not fit the picture.
 WrittenSize write_picture(ReplaceFile& file, const std::string& path, const PictureFormat& format, const Image& image,
                           const std::optional<Figure>& figure, const std::optional<MapPlace>& place,
                           double dots_per_inch);

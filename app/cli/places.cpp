@@ -86,7 +86,7 @@ std::string Places::bounds_text(const Scene& scene) const {
 
 std::optional<double> surface_at(const Scene& scene, double x, double y) {
   std::optional<double> highest = scene.height(x, y);
-  // A height field has no surface in its holes, but a ray would find the plinth there.
+  // A height field has no surface in its holes, but a ray would hit the plinth there.
   if (scene.only_heights() || scene.box().empty()) return highest;
   const double top = std::max(scene.box().high.z, highest.value_or(scene.box().high.z)) + 1,
                bottom = std::min(scene.box().low.z, highest.value_or(scene.box().low.z)) - 1;

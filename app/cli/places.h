@@ -28,7 +28,7 @@ struct TypedPlace {
 /// Throws Error "OPTION 'TEXT': expected ...".
 TypedPlace typed_place(const std::string& text, std::string_view option);
 
-/// A raster by which positions are converted. Inputs without a georeference have local coordinates alone.
+/// The raster that defines the conversion. Inputs without a georeference have only local coordinates.
 struct PlaceRaster {
   std::string path{};  ///< for messages
   Georeference georeference{};
@@ -47,8 +47,8 @@ class Places {
   dvec3 world_direction(const dvec3& given) const;
   /// Returns the position of an option, without Z on the surface. Throws Error as above and on_surface().
   dvec3 world(const TypedPlace& given, const Scene& scene, std::string_view what) const;
-  /// Returns (x, y) of `at`, a position in world metres, on the surface (surface_at()). Throws Error naming the bounds
-  /// of the scene if there is none.
+  /// Returns `at`, a position in world metres, moved vertically to the surface (surface_at()). Throws Error naming the
+  /// bounds of the scene if there is none.
   dvec3 on_surface(const dvec3& at, const Scene& scene, std::string_view what) const;
 
   /// "x 0 to 990, y 0 to 990" in the coordinates of the positions; empty for an endless scene.
@@ -60,7 +60,7 @@ class Places {
 };
 
 /// Returns z of the highest surface at (x, y), ground or whatever a vertical ray from above hits; nullopt if there is
-/// none. A plinth is no surface.
+/// none. A plinth does not count.
 std::optional<double> surface_at(const Scene& scene, double x, double y);
 
 /// Horizontal bounds of a scene: of the samples of a raster alone, else of the box. z is 0 or that of the box.

@@ -18,24 +18,24 @@
 namespace scarp::cli {
 namespace {
 
-// Of handlers and of all threads.
+// Shared by signal handlers and all threads.
 std::atomic<int> signal_caught = 0;
-std::atomic<bool> signal_seen = false;  // somebody knows, and is on the way out
+std::atomic<bool> signal_seen = false;  // the signal was noticed, and the program is stopping
 std::atomic<bool> line_open = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-// What users, shells and systems end programs by. HUP: the terminal is gone.
+// Signals by which users, shells and systems end programs. HUP: the terminal is gone.
 constexpr std::array kEndings = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
-// Pictures ask several times a second. What asks less often, as the reading of a large file, is not waited for longer
-// than a person waits.
+// Rendering polls several times a second. Tasks that poll less often, such as reading a large file, are ended after the
+// time that a person is willing to wait.
 constexpr unsigned kPatience = 2;  // seconds
 
 // One tick per 2.5 %, a number every fourth, as GDALTermProgress does.
 constexpr int kTicks = 40;
 constexpr int kTicksPerNumber = 4;
 
-// By means that a handler of signals may use, alone.
+// Uses only functions that are safe in a signal handler.
 [[noreturn]] void end_now(int number) {
   remove_temporary_files();
   constexpr std::string_view kWord = "\nscarp: interrupted\n";
@@ -64,9 +64,9 @@ extern "C" void scarp_end_patience(int) {
 
 void catch_interrupts() {
   struct sigaction action {};
-  // Reads and writes go on: who reads would take the signal for a fault of the file.
+  // Reads and writes are restarted: readers would report the signal as a file error.
   action.sa_flags = SA_RESTART;
-  // The first handler is not interrupted by the second one, which would take itself for the first.
+  // The second signal must not interrupt the handler of the first, or it would be treated as the first.
   for (const int number : kEndings) ::sigaddset(&action.sa_mask, number);
   ::sigaddset(&action.sa_mask, SIGALRM);
   action.sa_handler = scarp_end_patience;
@@ -75,10 +75,10 @@ void catch_interrupts() {
   for (const int number : kEndings) {
     struct sigaction before {};
     ::sigaction(number, nullptr, &before);
-    // nohup, and shells for what they start with &.
+    // Set by nohup, and by shells for background jobs.
     if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);
   }
-  // A file as large as a limit lets it be is a full disk, of which who writes tells.
+  // A file size limit then acts like a full disk, which writers report.
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Progress on a terminal, and the way out with Ctrl-C.
+// Progress on a terminal, and interruption by Ctrl-C.
 #pragma once
 
 #include <string_view>
@@ -8,26 +8,25 @@
 
 namespace scarp::cli {
 
-/// The exit status of a program that a signal has ended is this and the signal's number, as shells have it.
+/// The exit status of a program ended by a signal is this plus the signal's number, as in shells.
 constexpr int kSignalled = 128;
 
-/// From now on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT makes every terminal_progress() ask for a stop, so that
-/// files half written are removed on the way out. A second one ends the program at once, and so does the first where
-/// within two seconds nobody has asked whether there was one; then, too, the files are removed. One that was ignored
-/// when the program was started stays so. A limit on the size of files (SIGXFSZ) makes writing fail and does not end
-/// the program.
+/// From now on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT makes every terminal_progress() request a stop, so that
+/// partial files are removed on exit. A second signal ends the program at once, and so does the first if it is not
+/// polled within two seconds; partial files are removed in both cases. Signals that were ignored when the program
+/// started stay ignored. A file size limit (SIGXFSZ) makes writing fail and does not end the program.
 void catch_interrupts();
 
 /// The signal that was caught, or 0.
 int caught_signal();
 
-/// Throws Interrupted when a signal was caught: for the places between two long tasks.
+/// Throws Interrupted if a signal was caught: for use between two long tasks.
 void stop_if_interrupted();
 
-/// A line "what 0...10...20" on stderr when that is a terminal, nothing otherwise; asks for a stop after a signal.
+/// Prints a line "what 0...10...20" to stderr if that is a terminal; requests a stop after a signal.
 Progress terminal_progress(std::string_view what);
 
-/// Ends a progress line that has not come to its end, so that a message begins on a line of its own.
+/// Ends an incomplete progress line, so that a message starts on its own line.
 void end_progress_line();
 
 }  // namespace scarp::cli

@@ -16,12 +16,12 @@ constexpr const char* kEveryFile =
     ".gltf, .glb) "
     "or scene (.json)";
 
-/// Declares IN, one or several files or folders: what read_tiles() takes. `kinds` is its help.
+/// Declares IN, one or several files or folders, as read_tiles() accepts. `kinds` is its help.
 void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const std::string& kinds,
                        bool required = true);
 
 /// Declares --band, --window, --nodata, --scale and the other options that interpret a raster. `crs_option` replaces
-/// --crs where that means something else.
+/// --crs if that has another meaning.
 void add_raster_options(Command& command, RasterOptions& options, const std::string& crs_option = "--crs");
 
 }  // namespace scarp::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maps as georeferenced rasters: the options, and what is in every file.
+// Maps as georeferenced rasters: the options, and the metadata of every file.
 #pragma once
 
 #include <chrono>
@@ -32,11 +32,12 @@ void settle_output(RasterOutput& options, const MapOptions& map);
 /// Returns the rows of --part. Throws Error.
 RowBand rows_of_part(const MapInput& input, const RasterOutput& options);
 
-/// Returns a map of these rows with the input's place, without bands. `method` and the pairs go into the metadata.
+/// Returns a map of these rows with the input's georeference, without bands. `method` and the pairs go into the
+/// metadata.
 RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBand& rows, const std::string& method,
                  std::vector<std::pair<std::string, std::string>> metadata);
 
-/// Prints what a run would need: size of the output, memory, seconds.
+/// Prints the requirements of a run: size of the output, memory, seconds.
 void print_dry_run(const MapInput& input, const RowBand& rows, const std::string& output, double bytes_per_node,
                    double seconds);
 

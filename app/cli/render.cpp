@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render`: an elevation model, a voxel model or a scene in, a picture out.
+// `scarp render`: renders an elevation model, a voxel model or a scene to a picture.
 #include <fmt/format.h>
 
 #include <memory>

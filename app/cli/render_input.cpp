@@ -180,7 +180,7 @@ InputOptions input_of(InputKind kind, const RenderOptions& options, ImageSize si
 bool reads_all_samples(const RenderOptions& options) {
   const Look look = look_of(options.picture);
   const bool measures = look == Look::steps || look == Look::error || look == Look::level;
-  // The shared border would be averaged with what lies beside it.
+  // The shared border would be averaged with its neighbours.
   return options.full || measures || options.field.wrap == Wrap::shared_border;
 }
 

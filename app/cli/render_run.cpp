@@ -31,7 +31,7 @@ class Render {
   Render(InputKind kind, RenderOptions options) : stage_(kind, std::move(options)) {}
 
   void run() {
-    // Reserved first: an unwritable place is found before the work and not after it.
+    // Reserved first, so that an unwritable path is reported before the work.
     ReplaceFile file(options().output);
     stage_.open();
     if (options().frames.several()) return make_all();
@@ -145,7 +145,7 @@ class Render {
     }
   }
 
-  // From under the ground one sees its other side, and through it.
+  // From below the ground its underside is invisible.
   void tell_if_buried(const Camera& camera, const std::string& whose) const {
     const auto ground = stage_.scene().height(camera.eye().x, camera.eye().y);
     if (!ground || camera.eye().z >= *ground) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the options of `scarp render` to files: scene, cameras, pictures.
+// Runs `scarp render`: from its options to scene, cameras and files.
 #pragma once
 
 #include "app/cli/render_options.h"

@@ -17,7 +17,7 @@
 namespace scarp::cli {
 namespace {
 
-// Seconds since it was made or last asked.
+// Stopwatch: seconds since construction or the last call.
 class Watch {
  public:
   double lap() {
@@ -162,7 +162,7 @@ dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
   return eye + dvec3(0, 0, *options_.camera.eye_above * exaggeration());
 }
 
-// What --top shows.
+// The area that --top shows.
 WorldBox RenderStage::map_box() const {
   if (scene_.box().empty() && scene_.endless() && !scene_.terrain())
     throw Error(

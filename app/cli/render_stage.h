@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The scene of `scarp render` and of the window, ready for rays: inputs read, put on the device, and the cameras that
-// the options ask for.
+// The scene of `scarp render` and of the window, ready for rays: reads the inputs, copies them to the device, and
+// creates the cameras of the options.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ class RenderStage {
   RenderStage(const RenderStage&) = delete;
   RenderStage& operator=(const RenderStage&) = delete;
 
-  /// Reads the inputs and builds what rays need. Throws Error naming the file.
+  /// Reads the inputs and builds their accelerators. Throws Error naming the file.
   void open();
 
   const RenderOptions& options() const { return options_; }
@@ -45,11 +45,11 @@ class RenderStage {
   const BlankFacts& facts() const { return facts_; }
   double read_seconds() const { return read_s_; }
   double build_seconds() const { return build_s_; }
-  /// Metres by which eyes were lifted out of the ground, the most so far.
+  /// Maximum height in metres by which eyes were raised out of the ground so far.
   double raised() const { return raised_; }
-  /// ", on NAME", and what it drew; empty on the CPU.
+  /// ", on NAME", and the number of drawn rays; empty on the CPU.
   std::string on_device() const;
-  /// Where nothing has an end, a point: the middle of what the picture is about.
+  /// For unbounded scenes a point: the centre of the picture's extent.
   WorldBox scene_box() const;
   /// The factor between heights of the file and z.
   double exaggeration() const;

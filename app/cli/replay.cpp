@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp replay`: rays out of a text file through all marches, side by side.
+// `scarp replay`: traces the rays of a text file with all marches, side by side.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string_view status_name(HitStatus status) {
   return kNames[static_cast<std::size_t>(status)];
 }
 
-// One ray and everything asked about it.
+// One ray and all of its results.
 class Replay {
  public:
   explicit Replay(const RayDump& dump)
@@ -92,8 +92,8 @@ class Replay {
     return hit.height - field.height_from_sample(height_in_cell(field.settings().surface, *h, hit.u, hit.v));
   }
 
-  // Whether two answers may both be right: they tell the same, and between their hits the ray is no further from the
-  // surface than rounding can pretend.
+  // Whether two results are both plausible: their statuses are equal, and between their hits the ray is no farther from
+  // the surface than the rounding error.
   bool same(const Hit& a, const Hit& b) const {
     if (a.status != b.status || a.wall != b.wall) return false;
     if (!a || a.t == b.t) return true;
@@ -104,7 +104,7 @@ class Replay {
       const dvec3 p = dump_.ray.at(t);
       const auto ground = field.height(p.x, p.y);
       const double metres = field.settings().scale * field.settings().exaggeration;
-      // Both the answer and this look at it round.
+      // Both the result and this height are rounded.
       if (ground &&
           std::abs(p.z - *ground) > 2 * metres * rounding_of_clearance(field, field.grid_from_world(dump_.ray), t))
         return false;

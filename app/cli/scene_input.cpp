@@ -108,7 +108,7 @@ ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look lo
 
 namespace {
 
-// What SceneField::elements() counts.
+// The elements that SceneField::elements() counts.
 std::string_view elements_of(std::string_view kind) {
   return kind == "voxels" ? "voxels" : kind == "mesh" ? "triangles" : "samples";
 }

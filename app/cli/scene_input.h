@@ -13,7 +13,7 @@
 
 namespace scarp::cli {
 
-/// Whether the input is a scene. Throws Error when other inputs stand beside one.
+/// Whether the input is a scene. Throws Error if there are other inputs as well.
 bool is_scene_input(const std::vector<std::string>& inputs);
 
 /// Returns the picture that the file itself asks for.
@@ -23,7 +23,7 @@ void check_effect(const PictureRequest& asked, const SceneFile& file);
 /// Returns the view of the options, completed by that of the file, which has no eye.
 ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look look);
 
-/// What is in a scene: for --json, and the same as lines of text.
+/// Describes a scene: for --json, and as lines of text.
 nlohmann::ordered_json describe_scene(const std::string& path);
 std::string scene_text_of(const nlohmann::ordered_json& info);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLeastSeen = 0.005;     // of the pixels
 constexpr double kLeastContrast = 0.02;  // that is visible through fog; see fog.h
-constexpr double kMostRays = 8192;       // some 40 of them are the least share: its error is a few tenths of it
+constexpr double kMostRays = 8192;       // the smallest fraction is about 40 of them, with an error of a few tenths
 
 // Relief of natural ground is a small part of its extent; even a single cliff is hardly four times as high as wide.
 constexpr double kTooSteep = 4;

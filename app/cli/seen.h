@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pictures that show nothing: warns, and says why.
-//
-// A coarse grid of camera rays counts the share of the picture on surfaces above water. Below half a percent the
-// picture counts as blank, and the reason is sought in the facts: where the eye is, what stands in the way, what the
-// heights are. A picture of one colour counts as blank, too.
+// Warns about pictures that show nothing, with the reason. A coarse grid of camera rays measures the fraction of the
+// picture on surfaces above water. Below half a percent the picture counts as blank, and the reason is derived from the
+// position of the eye, obstructions and heights. A picture of one colour counts as blank, too.
 #pragma once
 
 #include <string>
@@ -15,19 +13,19 @@
 
 namespace scarp::cli {
 
-/// Shares of a picture, 0 to 1, by the rays of a coarse grid.
+/// Fractions of a picture, 0 to 1, measured with a coarse grid of rays.
 struct SeenShares {
-  double surfaces = 0;     ///< surfaces above water, not hidden by fog; plinths are no surfaces
+  double surfaces = 0;     ///< surfaces above water, not hidden by fog; plinths do not count
   double under_water = 0;  ///< ground below the level of the water
   double in_fog = 0;       ///< surfaces beyond the visibility
-  double inside = 0;       ///< rays that begin inside a solid
+  double inside = 0;       ///< rays that start inside a solid
   double nearest = 0;      ///< metres to the nearest hit; 0 without one
 };
 
 /// Traces at most some thousand rays.
 SeenShares seen_shares(const Scene& scene, const Camera& camera, const PictureSettings& picture);
 
-/// What the reasons refer to, beside scene and camera.
+/// Facts for the reasons, besides scene and camera.
 struct BlankFacts {
   ReliefRange heights{};  ///< of the ground, exaggerated
   bool one_colour = false;
@@ -35,7 +33,7 @@ struct BlankFacts {
   double function_reach = 0;  ///< metres, of rays over functions; 0: no function
 };
 
-/// Returns why a picture is blank, to follow a colon; empty if it is not.
+/// Returns why a picture is blank, as text after a colon; empty if it is not.
 std::string why_blank(const Scene& scene, const Camera& camera, const PictureSettings& picture,
                       const BlankFacts& facts);
 
@@ -46,9 +44,9 @@ bool has_one_colour(const PictureLayers& layers);
 /// Collects blank pictures of one run, for one warning.
 class BlankPictures {
  public:
-  /// `why` is what why_blank() returns.
+  /// `why` is the result of why_blank().
   void add(const std::string& name, const std::string& why);
-  /// Prints the warning, if there is one to print; returns whether there was.
+  /// Prints the warning, if any; returns whether it printed one.
   bool tell() const;
   /// Returns the number of blank pictures.
   int count() const { return blank_; }

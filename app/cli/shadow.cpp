@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp shadow`: where the sun shines on an elevation model, as a raster.
+// `scarp shadow`: maps where the sun shines on an elevation model.
 #include "scarp/analysis/shadow.h"
 
 #include <fmt/format.h>
@@ -70,7 +70,7 @@ double grid_north_of(MapInput& input) { return input.grid_north_at(centre_of(inp
 // The sun of one time over a raster.
 struct SunSpread {
   SunPosition centre;
-  double error = 0;                // how far it is off in the corners, radians
+  double error = 0;                // largest deviation in the corners, radians
   double lowest = 0, highest = 0;  // altitudes at centre and corners
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heights of observers and targets, and the ends of lines of sight, as options and tables have them.
+// Heights of observers and targets, and the ends of lines of sight, from options and tables.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace scarp::cli {
 
 struct SightHeights {
   double observer = 2, target = 0;  ///< metres
-  std::string datum = "ground";     ///< what heights of places count from
+  std::string datum = "ground";     ///< vertical reference of the heights of places
 };
 
 /// Declares --observer-height, --target-height and --heights.

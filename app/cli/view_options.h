@@ -19,7 +19,7 @@ struct ViewOptions : RenderOptions {
   bool validation = false;
 };
 
-/// Options that the command of a window's picture states itself, or that `scarp render` has not.
+/// Options that the window's command sets itself, or that `scarp render` does not have.
 extern const std::vector<std::string_view> kWindowOptions;
 
 /// Adds the subcommand and declares its options.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp viewshed`: what one or many observers see of an elevation model, as a raster.
+// `scarp viewshed`: maps what one or many observers see of an elevation model.
 #include "scarp/analysis/viewshed.h"
 
 #include <fmt/format.h>
@@ -163,7 +163,7 @@ struct PixelValues {
   }
 };
 
-// Throws Error where visible pixels would be equal to others.
+// Throws Error if visible pixels would equal others.
 PixelValues pixel_values(const ViewshedOptions& options) {
   PixelValues values{options.hidden, options.visible, 0, kNodata};
   if (options.nodata) {
@@ -198,7 +198,7 @@ struct VisiblePixels {
   std::size_t visible = 0, hidden = 0;  // number of targets within the limits
 };
 
-// Pixels of `visible`: the best that any observer has of a node.
+// Pixels of `visible`: the best visibility of a node over all observers.
 VisiblePixels visible_pixels(const std::vector<Observer>& observers, const PixelValues& values, const RowBand& rows,
                              const Progress& progress) {
   VisiblePixels result;
@@ -233,7 +233,7 @@ std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers
   return counts;
 }
 
-// Returns NaN where there is nothing.
+// Returns NaN for pixels without a value.
 std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, const RowBand& rows,
                                 const Progress& progress) {
   std::vector<float> pixels;
@@ -265,7 +265,7 @@ std::vector<float> angle_pixels(const std::vector<Observer>& observers, const Ro
   return pixels;
 }
 
-// Writes nodata in place of NaN. Returns how often. Throws Error if a pixel with something has that value.
+// Replaces NaN by nodata, and returns the number of replacements. Throws Error if a valid pixel has that value.
 std::size_t mark_nothing(std::vector<float>& pixels, double written) {
   const auto nodata = static_cast<float>(written);
   std::size_t count = 0;
@@ -280,7 +280,7 @@ std::size_t mark_nothing(std::vector<float>& pixels, double written) {
 }
 
 std::string mode_of(const std::string& typed) {
-  // As gdal_viewshed has them.
+  // As in gdal_viewshed.
   if (typed == "NORMAL") return "visible";
   if (typed == "DEM") return "dem";
   if (typed == "GROUND") return "ground";

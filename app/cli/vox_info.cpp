@@ -158,7 +158,7 @@ void write_document(const WriteLine& line, const Json& info) {
        });
 }
 
-// Where a part of the scene stands. The corner p of a voxel of the file is at offset + axes[0] p.x + axes[1] p.y +
+// Placement of a part of the scene. The corner p of a voxel of the file is at offset + axes[0] p.x + axes[1] p.y +
 // axes[2] p.z.
 Json part_of(const PlacedVoxels& voxels, const VoxelPlace& place) {
   const LatticePlace& in_file = voxels.models[place.model]->file_place();
@@ -199,7 +199,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   info["parts"] = Json::array();
   for (const VoxelPlace& place : input.voxels.places) info["parts"].push_back(part_of(input.voxels, place));
   const WorldBox box = *field->extent();
-  // Files with a transform of their own have decimals.
+  // Files with their own transform have decimals.
   const bool metres = is_vdb_path(path);
   const auto corner = [&](const dvec3& p) {
     return metres ? Json{p.x, p.y, p.z} : Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)};
@@ -215,7 +215,7 @@ std::string vox_text_of(const Json& info) {
   const WriteLine line = [&](std::string_view name, const std::string& value) {
     const std::size_t begin = out.size();
     out += fmt::format("{:<12} {}\n", name, value);
-    // Names in the file may hold codes that terminals obey.
+    // Names in the file may contain terminal control codes.
     std::replace_if(
         out.begin() + static_cast<std::ptrdiff_t>(begin), out.end() - 1,
         [](unsigned char c) { return c < ' ' || c == 0x7f; }, '.');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxel files where a subcommand takes rasters, too: MagicaVoxel, binvox, volumes of numbers.
+// Voxel files as inputs: MagicaVoxel, binvox, volumes of numbers.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@
 
 namespace scarp::cli {
 
-/// What was typed.
+/// Typed options.
 struct VoxOptions {
   VoxSceneOptions scene;
   bool surface_colours = false;
@@ -24,7 +24,7 @@ struct VoxOptions {
   std::string up = "z";
 };
 
-/// How voxels look, typed, too.
+/// Typed options for the look of voxels.
 struct VoxLookOptions {
   std::string normals = "flat";
   double normal_radius = VoxelShading{}.normal_radius;
@@ -33,8 +33,8 @@ struct VoxLookOptions {
   bool coarse = false;
 };
 
-/// Whether the inputs are one file of voxels: by its ending, or because --volume was given. Throws Error when such a
-/// file is among others.
+/// Whether the input is a voxel file: by its extension, or because --volume was given. Throws Error if there are other
+/// inputs as well.
 bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& options);
 
 /// Declares --frame, --hidden, --volume, ...
@@ -63,22 +63,22 @@ std::vector<VoxelColour> colours_of(const std::string& ramp);
 struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
   PlacedVoxels voxels;
-  std::optional<SolidRange> numbers{};  ///< volumes: range that the colours show
+  std::optional<SolidRange> numbers{};  ///< volumes: range of the colours
   std::vector<std::string> notes{};     ///< one line each, for users
   std::string format = "binvox";        ///< name of the file's format
 };
-/// Throws Error naming the file if nothing is visible. Numbers of volumes are shown by `ramp`, of ramp_names(); empty:
-/// not at all.
+/// Throws Error naming the file if nothing is visible. `ramp`, one of ramp_names(), colours the numbers of volumes;
+/// empty: not coloured.
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
                      const std::string& ramp);
 
-/// The same for files in which nothing is visible, except volumes.
+/// The same, but also accepts files without visible voxels, except volumes.
 VoxInput read_any_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
                          const std::string& ramp);
 
 VoxelShading shading_of(const VoxLookOptions& options);
 
-/// What is in a voxel file, for `scarp info`.
+/// Describes a voxel file, for `scarp info`.
 nlohmann::ordered_json describe_vox(const std::string& path, const VoxOptions& options);
 std::string vox_text_of(const nlohmann::ordered_json& info);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp section`: one layer of a voxel model with the radius that spheres or cubes may have around each empty voxel,
-// as figures 5 of C. Leak, "Raymarching voxel rendering", have it.
+// `scarp section`: draws one layer of a voxel model with the radius of the empty sphere or cube around each voxel, as
+// in figure 5 of C. Leak, "Raymarching voxel rendering".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::string shade(int radius, int largest) {
   return fmt::format("#{:02x}{:02x}{:02x}", mix(255, 246), mix(255, 190), mix(255, 110));
 }
 
-// The shape alone, with empty voxels around.
+// The shape alone, surrounded by empty voxels.
 VoxelGrid with_margin(const VoxelGrid& grid, int margin) {
   VoxelGrid larger(grid.size() + 2 * margin, 1);
   larger.edit(larger.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {

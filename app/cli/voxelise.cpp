@@ -63,11 +63,11 @@ double side_of(const VoxeliseOptions& options, InputKind kind, const Scene& scen
   if (!within && scene.endless())
     throw Error("--within is required: the scene is endless (give XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH)");
   if (options.voxel > 0) return options.voxel;
-  // Voxels stay what they are.
+  // Voxels are not changed.
   if (options.count == 0 && kind == InputKind::voxels) return scene.cell_side();
   const WorldBox& box = within ? *within : scene.box();
   const dvec3 size = box.high - box.low;
-  // One less, for the lattice does not begin where the box does.
+  // One less, because the lattice is not aligned with the box.
   return std::max({size.x, size.y, size.z}) / std::max(1, (options.count > 0 ? options.count : kUsualCount) - 1);
 }
 
@@ -100,7 +100,7 @@ void run(const VoxeliseOptions& options, const Command& command) {
   stop_if_interrupted();
   const double side = side_of(options, kind, input.scene, within);
   const std::string name = options.inputs.empty() ? "--function" : options.inputs.front();
-  // Worlds: of terrain, in files that hold them.
+  // Worlds: for terrain, in file formats that support them.
   const HeightField* const ground = extension == ".vdb" ? input.scene.only_heights() : nullptr;
   const int most = ground ? VoxelGrid::kMaxSide : VoxelGrid::kMaxModelSide;
   const VoxelLattice lattice = naming(name, [&] { return lattice_around(input.scene, side, within, most); });

@@ -17,12 +17,12 @@
 namespace scarp::viewer {
 namespace {
 
-// Sliders without ends of their own go from a fraction of the default to a multiple of it.
+// Sliders without declared limits range from a fraction to a multiple of the default.
 constexpr double kSpan = 64;
 // Sliders of lengths go down to this share of the picture's extent, and those of heights beyond the highest ground.
 constexpr double kLeastLength = 1e-3, kBeyond = 0.25;
-constexpr double kMostCount = 100;  // of whole numbers without an end
-// A range of more is no slider.
+constexpr double kMostCount = 100;  // of integers without a limit
+// Larger ranges get no slider.
 constexpr double kWidest = 1e5;
 // Options without a control: the window has its own way to set them, or they choose the input or a preset.
 constexpr std::array<std::string_view, 4> kNone = {"--size", "--preset", "--function", "--lowres"};
@@ -43,7 +43,7 @@ std::optional<double> number_from(const std::string& text) {
   return number;
 }
 
-// As short as the slider shows it: numbers of a mouse have no more digits.
+// As short as the slider shows it: mouse input has no more digits.
 std::string short_text(double number) {
   constexpr double kNoDecimals = 1000;
   return std::abs(number) < kNoDecimals ? fmt::format("{:.4g}", number) : fmt::format("{:.0f}", number);
@@ -58,7 +58,7 @@ class Maker {
  public:
   Maker(const Opening& opening, const ControlScales& scales) : opening_(opening), scales_(scales) {}
 
-  // Nullopt for options that are no control: files, texts.
+  // Nullopt for options without a control: files, texts.
   std::optional<Control> of(const cli::Declared& declared) const {
     const cli::Option& option = declared.option;
     Control control;
@@ -111,7 +111,7 @@ class Maker {
   void make_choice(const cli::Declared& declared, Control& control) const {
     control.kind = ControlKind::choice;
     for (const std::string& choice : declared.option.choices) {
-      // Few large pixels have another size and camera than the window.
+      // Large pixels have a different size and camera from the window.
       if (declared.name != "--look" || choice != name_of(Look::comanche)) control.choices.push_back(choice);
     }
     const auto* text = std::get_if<std::string*>(&declared.to);
@@ -174,7 +174,7 @@ class Maker {
     if (!std::isfinite(value))
       value = control.logarithmic ? std::sqrt(control.least * control.most)
                                   : control.least + (control.most - control.least) / 4;
-    // What was typed may lie beyond.
+    // Typed values may lie beyond.
     control.least = std::min(control.least, value), control.most = std::max(control.most, value);
     return true;
   }
@@ -184,7 +184,7 @@ class Maker {
     const bool no_least = range.least <= -cli::kMostOfGround;
     if (!no_least && range.most - range.least <= kWidest) {
       control.least = range.least, control.most = range.most;
-      // Few are as good as twice as many.
+      // A few are as good as twice as many.
       if (control.whole && range.most - range.least > kMostCount) control.logarithmic = true;
       if (range.above_least) control.least = range.most / (kSpan * kSpan), control.logarithmic = true;
     } else if (option.unit == "metres" && no_least) {

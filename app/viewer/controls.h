@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The controls of the panel, made of the declared options: flags become check boxes, choices lists, numbers sliders.
-//
-// A control shows the value that an option has, and turns what one does with it into a text for the option. An option
-// has a control where it has an effect.
+// The controls of the panel, generated from the declared options: flags become check boxes, choices lists, numbers
+// sliders. A control shows the value of an option, and converts changes to a text for the option. An option has a
+// control if it has an effect.
 #pragma once
 
 #include <array>
@@ -26,16 +25,16 @@ enum class ControlKind {
 struct Control {
   std::string option;  ///< "--no-shadows"
   std::string label;   ///< "shadows"
-  std::string help{};  ///< what the option's help says
+  std::string help{};  ///< the option's help
   cli::Topic topic = cli::Topic::picture;
-  bool common = false;  ///< one of the options that a plain `--help` shows
+  bool common = false;  ///< shown by a plain `--help`
   ControlKind kind = ControlKind::flag;
-  bool at_once = false;   ///< takes effect while it moves; others open the input again, and wait until it is let go
-  bool inverted = false;  ///< a flag that begins with "no-": on is the option that is not given
+  bool at_once = false;  ///< takes effect while it moves; others reopen the input, and wait until the mouse is released
+  bool inverted = false;  ///< a flag that starts with "no-": on means that the option is not given
   bool worded = false;    ///< a flag with the values true and false
   bool on = false;        ///< flags
-  bool may_rest = false;  ///< may be left out, with a meaning that no value has: no water
-  bool rests = false;     ///< is left out
+  bool may_rest = false;  ///< optional, with a meaning that no value has: no water
+  bool rests = false;     ///< not given
   bool whole = false;     ///< whole numbers
   bool logarithmic = false;
   double least = 0, most = 1;  ///< of sliders
@@ -44,22 +43,22 @@ struct Control {
   std::string choice{};
 };
 
-/// What an input says about its options.
+/// Properties of an input that controls depend on.
 struct ControlScales {
   double low = 0, high = 0;               ///< heights in metres, not exaggerated
-  double across = 1;                      ///< metres that a picture is about
+  double across = 1;                      ///< extent of the picture in metres
   double steps_low = 0, steps_high = 64;  ///< of the colours of the look `steps`
   double exaggeration = 1;
   std::vector<std::string> marches{};  ///< of the input; empty: it has no choice
   std::string march{};                 ///< in use
 };
 
-/// The controls of the options that have an effect, in the order of their declarations. `at_once` says which of them
-/// need no opening of the input.
+/// The controls of the options that have an effect, in the order of their declarations. `at_once` returns whether an
+/// option applies without reopening the input.
 std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales,
                                  const std::function<bool(const cli::Declared&)>& at_once);
 
-/// The change that gives the option the value of the control.
+/// The change that sets the option to the value of the control.
 OptionChange change_of(const Control& control);
 
 }  // namespace scarp::viewer

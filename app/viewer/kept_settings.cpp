@@ -8,7 +8,7 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr int kLeastSide = 64, kMostSide = 16384;  // of a window that one finds again
+constexpr int kLeastSide = 64, kMostSide = 16384;  // minimum size of a usable window
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the window remembers from one start to the next: scarp/view in the XDG folder of settings.
+// Settings that the window keeps between runs: scarp/view in the XDG configuration folder.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct KeptSettings {
 
 /// $XDG_CONFIG_HOME/scarp/view, or ~/.config/scarp/view; empty if neither variable is set.
 std::string settings_file();
-/// Reads the file; keeps the default of all that is missing or wrong.
+/// Reads the file; keeps the defaults for everything missing or wrong.
 KeptSettings read_settings(const std::string& file);
 /// Returns false if the file cannot be written.
 bool write_settings(const std::string& file, const KeptSettings& settings);

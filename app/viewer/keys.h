@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What mouse and keys do: one table for the window and for its help.
+// Bindings of mouse and keys: one table for the window and for its help.
 #pragma once
 
 #include <optional>
@@ -30,9 +30,9 @@ struct HelpLine {
   const char* effect;  ///< "turn, look around; top: shift"
 };
 
-/// What a key does when it is pressed, by GLFW's number.
+/// The action of a key press, by GLFW's number.
 std::optional<WindowAction> action_of(int key);
-/// The key that moves while it is held.
+/// The movement of a key while it is held.
 std::optional<MoveKey> move_key_of(int key);
 std::span<const HelpLine> help_lines();
 

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     const ThreadLimit limit(options->threads);
     viewer::run_viewer(std::move(opening));
   });
-  // Its own name says which subcommand: "scarp-view dem.tif" is "scarp view dem.tif".
+  // Its name implies the subcommand: "scarp-view dem.tif" is "scarp view dem.tif".
   std::string view = "view";
   std::vector<char*> words(argv, argv + argc);
   if (argc < 2 || view != argv[1]) words.insert(words.begin() + 1, view.data());

@@ -15,17 +15,17 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSteepest = 89.5 * kDegree;         // look_at() turns over beyond
 constexpr double kTurnPerHeight = std::numbers::pi;  // of a drag over the height of the picture
 constexpr double kWheelStep = 0.85;                  // nearer per step
-constexpr double kGoTo = 0.4;                        // share of the distance that is left after a double click
+constexpr double kGoTo = 0.4;                        // fraction of the distance that remains after a double click
 constexpr double kSpeedShare = 0.08;                 // of the scene, per second
 constexpr double kFast = 5;                          // times as fast
 constexpr double kWalkSpeed = 5;                     // metres per second
 constexpr double kStepHeight = 1.0;                  // metres that a walker climbs at once
 constexpr double kArm = 0.3;                         // metres that a walker keeps from a wall
-constexpr double kStride = 0.5;                      // metres of a step of which the ground is asked
+constexpr double kStride = 0.5;                      // step in metres at which the ground is queried
 constexpr double kLeastMap = 1e-6, kMostMap = 100;   // times the size of the scene
 constexpr double kFarAbove = 1e6;                    // metres, over endless ground
 constexpr int kMostStrides = 500;                    // of a walker between two frames: each traces two rays
-constexpr double kFarthest = 1e4;                    // times the size of the scene from the first eye: digits run out
+constexpr double kFarthest = 1e4;  // times the size of the scene from the first eye, because of rounding
 
 dvec3 right_of(const Pose& pose) { return {std::sin(pose.azimuth), -std::cos(pose.azimuth), 0}; }
 
@@ -38,7 +38,7 @@ dvec3 forward_of(const Pose& pose) {
 
 Pose with_heights_times(const Pose& pose, double factor) {
   Pose there = pose;
-  // Those that turn around a point go on to turn around it.
+  // Modes that turn around a point keep turning around it.
   const dvec3 way = pose.mode == MoveMode::orbit ? pose.distance * forward_of(pose) : dvec3(0.0);
   there.eye = pose.eye + way;
   there.eye.z *= factor;
@@ -104,7 +104,7 @@ void Navigator::set_mode(MoveMode mode) {
     const dvec3 at = point();
     pose_.eye = {at.x, at.y, pose_.eye.z};
   } else if (pose_.mode == MoveMode::top) {
-    // From where the picture is about as wide.
+    // From a distance at which the picture is about as wide.
     const dvec3 at(pose_.eye.x, pose_.eye.y, 0);
     pose_.distance = pose_.map_width / width_per_distance;
     pose_.eye = dvec3(at.x, at.y, ground_below({at.x, at.y, high()}).value_or(0)) - pose_.distance * forward_of(pose_);
@@ -219,7 +219,7 @@ void Navigator::stand() {
   if (ground) pose_.eye.z = *ground + kEyeHeight;
 }
 
-// A stride at a time: up to a wall, and never where there is nothing to stand on.
+// In small strides: up to a wall, and never where there is no ground.
 void Navigator::walk(const dvec3& step) {
   const double whole = std::min(length(step), kMostStrides * kStride);
   const dvec3 way = step / length(step);

@@ -17,7 +17,7 @@ namespace scarp::viewer {
 
 enum class MoveMode { orbit, fly, walk, top };
 
-/// Where one stands and looks. Angles in radians: azimuth of the view direction in the world's axes, counterclockwise
+/// Position and view direction. Angles in radians: azimuth of the view direction in the world's axes, counterclockwise
 /// from x; its altitude above the horizon.
 struct Pose {
   MoveMode mode = MoveMode::orbit;
@@ -44,19 +44,19 @@ class Navigator {
  public:
   static constexpr double kEyeHeight = 1.7;  ///< metres above the ground, of a walker
 
-  /// `scene` answers walkers, and must outlive the navigator; `across` are metres that the scene is about.
+  /// `scene` is queried for walkers, and must outlive the navigator; `across` is the extent of the scene in metres.
   Navigator(const Scene& scene, const Camera& first, double fov_deg, double across);
 
   /// The camera of the pose for a picture of this size.
   Camera camera(int width, int height) const;
   const Pose& pose() const { return pose_; }
-  /// Takes over another pose; a walker is put on the ground.
+  /// Sets the pose; a walker is placed on the ground.
   void set_pose(const Pose& pose);
   void set_mode(MoveMode mode);
   /// Metres per second of fly and walk.
   double speed() const { return speed_; }
 
-  // Events. `size` is that of the picture, drags and places are in it, y down.
+  // Events. `size` is that of the picture; drags and positions are in its pixels, y down.
   void key(MoveKey key, bool down) { keys_[static_cast<std::size_t>(key)] = down; }
   void turn(const dvec2& drag, const dvec2& size);
   void shift(const dvec2& drag, const dvec2& size);
@@ -65,7 +65,7 @@ class Navigator {
   void go_to(const dvec3& point);
   void release_keys() { keys_ = {}; }
 
-  /// Moves by what keys are held for `seconds`. Returns whether the pose changed since the last call.
+  /// Applies the held keys for `seconds`. Returns whether the pose changed since the last call.
   bool advance(double seconds);
   bool moving() const;
 
@@ -77,7 +77,7 @@ class Navigator {
   void stand();
 
   const Scene& scene_;
-  WorldBox box_;  // of what a map shows; empty: it has no end
+  WorldBox box_;  // area of a map; empty: unbounded
   Pose pose_;
   dvec3 first_eye_{0.0};
   double across_, speed_;

@@ -52,7 +52,7 @@ struct Parsed {
   }
 };
 
-// What the window writes is none of what it reads.
+// The window never writes to its inputs.
 void keep_inputs(const cli::ViewOptions& options) {
   for (const std::string& output : {options.record, options.screenshot, options.timings}) {
     std::vector<std::string> others = options.typed;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// An input as `scarp view` is asked for it: options, and the declarations that set them.
+// An input of `scarp view`: options, and the declarations that set them.
 //
-// Whatever the window sets is a change of an option's text, which is then read as if it had been typed. So the window
-// cannot show a picture that no command makes.
+// Every setting of the window is a change of an option's text, which is then parsed as if it had been typed. The window
+// therefore cannot show a picture that no command produces.
 #pragma once
 
 #include <memory>
@@ -38,17 +38,18 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
 /// The opening of a file without any option. Throws Error and WrongUsage.
 Opening opening_of(const std::string& file);
 
-/// Another value of an option; nullopt: it is not given. Flags have the value "true".
+/// Changes the value of an option; nullopt removes it. Flags have the value "true".
 struct OptionChange {
   std::string option;
   std::optional<std::string> text;
 };
 
-/// The same input with a change. Other options that have no effect beside it, or cannot be combined with it, rest until
-/// they have again. Throws Error and WrongUsage: no such option, a wrong value, one without effect.
+/// The same input with a change. Other options that lose their effect, or cannot be combined with it, are suspended
+/// until they apply again. Throws Error and WrongUsage for an unknown option, a wrong value, or an option without
+/// effect.
 Opening changed(const Opening& before, const OptionChange& change);
 
-/// The names of the options of which one has another value than the other.
+/// The names of the options whose values differ.
 std::vector<std::string> differences(const Opening& a, const Opening& b);
 
 }  // namespace scarp::viewer

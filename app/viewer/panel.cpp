@@ -41,7 +41,7 @@ void draw_help(bool& open) {
   ImGui::End();
 }
 
-// A slider that moves a number; returns whether it is to be taken over.
+// A slider for a number; returns whether to apply it.
 bool draw_slider(const char* label, Control& control, double& value, double least, double most, bool whole) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (control.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
@@ -81,7 +81,7 @@ bool draw_pair(Control& control) {
   return moved && low < high;
 }
 
-// Returns whether the option has another value.
+// Returns whether the option's value changed.
 bool draw_value(Control& control) {
   switch (control.kind) {
     case ControlKind::flag:

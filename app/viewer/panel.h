@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The panel over the picture: what can be set, what the picture costs, what is under the cursor.
+// The panel over the picture: settings, the cost of the picture, readings under the cursor.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,24 @@
 
 namespace scarp::viewer {
 
-/// What the panel shows and changes.
+/// The state that the panel shows and changes.
 struct PanelState {
   std::vector<Control> controls{};         ///< numbers move in place; a change is an action
-  std::vector<std::string> comparisons{};  ///< what the picture can be compared with
+  std::vector<std::string> comparisons{};  ///< possible comparisons
   std::string compared{};                  ///< in use; empty: nothing
   MoveMode mode = MoveMode::orbit;         ///< a change is an action
   double speed = 0;                        ///< metres per second
-  std::string device{};                    ///< that answers rays
+  std::string device{};                    ///< device that traces rays
   const WorkedPicture* shown = nullptr;    ///< the picture in the window
   const WorkedVerdict* verdict = nullptr;  ///< of the picture in the window
   std::vector<std::string> names{};        ///< of its sides
-  bool times = true;                       ///< how long the picture took, too
+  bool times = true;                       ///< includes the time of the picture
   bool busy = false;
   std::optional<Reading> reading{};
   std::optional<MeasuredLine> line{};
   bool measures = false;  ///< clicks set the ends of a line
   bool help = false;
-  std::string message{};  ///< the last one: saved, copied, failed
+  std::string message{};  ///< the last message: saved, copied, failed
 };
 
 struct PanelActions {
@@ -43,7 +43,7 @@ struct PanelActions {
 /// Draws the panel between ImGui::NewFrame() and ImGui::Render().
 PanelActions draw_panel(PanelState& state);
 
-/// Draws the line between two pictures over a window of this size, and what stands on its sides.
+/// Draws the line between two pictures over a window of this size, and the names of its sides.
 void draw_split(double x, const std::vector<std::string>& names);
 
 }  // namespace scarp::viewer

@@ -13,9 +13,9 @@ namespace scarp::viewer {
 namespace {
 
 constexpr int kLeastRows = 90;
-// No clock resolves less.
+// Below the resolution of any clock.
 constexpr double kLeastSeconds = 1e-6;
-// Of the measured rate: pictures of one view differ in cost.
+// Fraction of the measured rate: pictures of one view differ in cost.
 constexpr double kCaution = 0.8;
 // Between the costs of two stages at rest.
 constexpr int kGrowth = 4;
@@ -142,7 +142,7 @@ void PictureWorker::work() {
   }
 }
 
-// Hands the picture over. Returns whether there is one.
+// Publishes the picture. Returns whether there is one.
 bool PictureWorker::deliver(WorkedPicture worked) {
   const bool failed = !worked.error.empty();
   {
@@ -167,7 +167,7 @@ bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t gene
       settings.height = rows;
       settings.aa = 1, settings.samples = 0;
       most_pixels = std::max(most_pixels, std::int64_t{settings.width} * settings.height);
-      // What is under way while moving is shown; only the end of the window ends it.
+      // A picture in progress while moving is shown; only closing the window cancels it.
       worked.sides.push_back(
           side.render(request.camera(settings.width, settings.height), settings, [&](double) { return !stopped(); }));
     }
@@ -222,7 +222,7 @@ void PictureWorker::judge(const ViewRequest& request, std::uint64_t generation) 
                                          : std::nullopt);
     }
   } catch (const std::exception&) {
-    return;  // interrupted, or a device that is gone: the picture is there
+    return;  // interrupted, or the device is lost: the picture is already complete
   }
   {
     const std::scoped_lock lock(mutex_);

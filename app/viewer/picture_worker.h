@@ -9,8 +9,8 @@
 //
 // A picture may have two sides, such as the same view by two marches. Each stage renders both.
 //
-// Each request has a number, its generation. A newer request ends the work on all but the first stage of the older
-// one, which is shown even if the view goes on to move.
+// Each request has a number, its generation. A newer request cancels all stages of the older one except the first,
+// which is shown even if the view keeps moving.
 #pragma once
 
 #include <condition_variable>
@@ -32,26 +32,26 @@ enum class PictureStage { moving, full, refining, converged };
 
 struct PictureSide {
   PictureSettings settings;  ///< of the converged picture
-  /// Renders a picture; throws Interrupted when the progress asks for it. Called on the worker's thread alone.
+  /// Renders a picture; throws Interrupted if the progress returns false. Called only on the worker's thread.
   std::function<Picture(const Camera& camera, const PictureSettings& settings, const Progress& progress)> render;
-  /// Judges some rays of a camera; nullopt: nothing judges them. Thrown and called as `render`. May be null.
+  /// Judges some rays of a camera; nullopt: not judged. Called, and throws, as `render`. May be null.
   std::function<std::optional<JudgedRays>(const Camera& camera, const Progress& progress)> judge{};
 };
 
 struct ViewRequest {
   std::function<Camera(int width, int height)> camera;
   std::vector<PictureSide> sides;  ///< at least one
-  bool moving = false;             ///< more requests will follow soon: no other stage than the first is begun
+  bool moving = false;             ///< more requests will follow soon: only the first stage is started
 };
 
 struct WorkedPicture {
   std::vector<Picture> sides{};
   PictureStage stage = PictureStage::moving;
   int aa = 1, samples = 0;    ///< of this stage
-  bool large_pixels = false;  ///< one side at least has the look comanche
+  bool large_pixels = false;  ///< at least one side has the look comanche
   std::uint64_t generation = 0;
   double seconds = 0;
-  std::string error{};  ///< why there is no picture
+  std::string error{};  ///< error; empty: there is a picture
 };
 
 struct WorkedVerdict {
@@ -61,7 +61,7 @@ struct WorkedVerdict {
 
 class PictureWorker {
  public:
-  /// `ready` is called on the worker's thread when there is something to take.
+  /// `ready` is called on the worker's thread when a result is available.
   explicit PictureWorker(std::function<void()> ready);
   ~PictureWorker();
   PictureWorker(const PictureWorker&) = delete;
@@ -71,7 +71,7 @@ class PictureWorker {
   std::uint64_t request(ViewRequest request);
   /// The newest picture that was not taken yet.
   std::optional<WorkedPicture> take();
-  /// The newest verdict that was not taken yet.
+  /// Returns the newest verdict not yet taken.
   std::optional<WorkedVerdict> take_verdict();
   /// Whether there is work to do.
   bool busy() const;
@@ -81,8 +81,8 @@ class PictureWorker {
   /// Rows of the first stage: as many as can be rendered in a frame, of at most `height`, by the pixels per second of
   /// the last first stage.
   static int rows_for(double pixels_per_second, int width, int height);
-  /// The settings of the stages at rest, from one sample per pixel to those that are asked for. Each costs at least
-  /// about four times the one before, so all but the last together cost a third of the last.
+  /// The settings of the stages at rest, from one sample per pixel to the requested ones. Each costs at least about
+  /// four times the previous one, so all except the last together cost a third of the last.
   static std::vector<PictureSettings> refinement_of(const PictureSettings& settings);
 
  private:
@@ -102,7 +102,7 @@ class PictureWorker {
   std::optional<WorkedVerdict> verdict_;
   std::uint64_t generation_ = 0;
   bool stop_ = false, busy_ = false;
-  double pixels_per_second_ = 4e6;  // until it was measured; of the worker's thread alone
+  double pixels_per_second_ = 4e6;  // until measured; used only by the worker's thread
   std::thread thread_;
 };
 

@@ -30,7 +30,7 @@ struct Presenter::Impl {
   VkFence done = VK_NULL_HANDLE;
   DeviceMemory texture, staging, readback;
   int width = 0, height = 0;  // of the texture
-  bool uploads = false;       // the texture is to be filled from the staging buffer
+  bool uploads = false;       // the texture must be filled from the staging buffer
   bool has_imgui = false;
 
   explicit Impl(GLFWwindow* window) : vulkan(window) {}

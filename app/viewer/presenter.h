@@ -16,8 +16,8 @@ namespace scarp::viewer {
 
 class Presenter {
  public:
-  /// `device`: "auto" or part of a device's name. With `validation`, objections of the validation layer are counted and
-  /// printed. Throws Error naming what is missing: loader, device, layer.
+  /// `device`: "auto" or part of a device's name. With `validation`, messages of the validation layer are counted and
+  /// printed. Throws Error naming the missing part: loader, device, layer.
   Presenter(GLFWwindow* window, const std::string& device, bool validation);
   ~Presenter();
   Presenter(const Presenter&) = delete;
@@ -25,14 +25,14 @@ class Presenter {
 
   /// Replaces the picture, which fills the window.
   void set_image(const Image& image);
-  /// ImGui::NewFrame() comes after this.
+  /// Call before ImGui::NewFrame().
   void begin_frame();
-  /// Shows the picture and what ImGui::Render() has made. With `seen`, also returns what was presented. Returns false
-  /// if there is nothing to show on, as in a minimised window. Throws Error if the device is lost.
+  /// Shows the picture and the output of ImGui::Render(). With `seen`, also returns the presented image. Returns false
+  /// if there is no surface to show it on, as with a minimised window. Throws Error if the device is lost.
   bool present(Image* seen = nullptr);
 
   std::string device_name() const;
-  /// Number of objections of the validation layer.
+  /// Number of messages of the validation layer.
   int objections() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is under the cursor, by one ray in double precision, as text; and whether two points see one another.
+// Readings under the cursor, by one ray in double precision, as text; and the line of sight between two points.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,10 @@
 
 namespace scarp::viewer {
 
-/// The coordinates besides metres in which the window shows places, as far as the input's georeference allows.
+/// The coordinates, besides metres, in which the window shows positions, if the input is georeferenced.
 struct ReadingFrames {
   explicit ReadingFrames(const cli::PlaceRaster& raster);
-  std::unique_ptr<CoordinateFrame> map{}, lonlat{};  ///< null: it allows none
+  std::unique_ptr<CoordinateFrame> map{}, lonlat{};  ///< null: not georeferenced
 };
 
 struct Reading {
@@ -26,13 +26,13 @@ struct Reading {
   std::vector<std::string> lines{};  ///< "x 1203.4 m, y 880.1 m, height 512.3 m"
 };
 
-/// Follows the ray through (x, y) of the camera's picture. Nullopt if it meets nothing. `scene` is on the CPU. Heights
-/// in the text are divided by `exaggeration`.
+/// Traces the ray through (x, y) of the camera's picture. Returns nullopt if it hits nothing. `scene` is on the CPU.
+/// Heights in the text are divided by `exaggeration`.
 std::optional<Reading> read_under(const Scene& scene, const Camera& camera, const dvec2& at,
                                   const ReadingFrames& frames, double exaggeration);
 
-/// A line between two points of surfaces: its length, slope, the profile of the ground below it, and whether its ends
-/// see one another from `above` metres over the surface.
+/// Measures a line between two surface points: its length, slope, the profile of the ground below it, and whether its
+/// ends see each other from `above` metres over the surface.
 struct MeasuredLine {
   double flat = 0, rise = 0;  ///< metres
   bool sees = false;

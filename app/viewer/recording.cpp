@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kFirst = "scarp-view";
 constexpr std::array<std::string_view, 6> kKinds = {"move", "button", "key", "wheel", "option", "compare"};
 constexpr int kLongestSide = 16384;
-constexpr double kMostPlace = 1e6;  // pixels or steps: no mouse is farther away
+constexpr double kMostPlace = 1e6;  // pixels or steps: limit of the cursor position
 
 // "march NAME", "look NAME", or nothing.
 bool is_comparison(const std::string& text) {

@@ -9,7 +9,7 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr double kReach = 6;  // pixels beside the line at which it is taken
+constexpr double kReach = 6;  // distance in pixels at which the line can be grabbed
 
 }  // namespace
 

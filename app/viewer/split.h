@@ -7,7 +7,7 @@
 
 namespace scarp::viewer {
 
-/// The nearest pixels of an image, in another size.
+/// Scales an image by nearest pixels.
 Image stretched(const Image& image, int width, int height);
 
 /// The left picture up to a column, and the right one from there on. Both have the same size.
@@ -19,7 +19,7 @@ class SplitLine {
   double share() const { return share_; }
   /// The column of a picture of this width at which the right side begins, 0..width.
   int column(int width) const;
-  /// Whether a place in a window of this size is on the line.
+  /// Whether a position in a window of this size is on the line.
   bool is_at(const dvec2& place, const dvec2& size) const;
   void drag_to(double x, double width);
 

@@ -32,8 +32,7 @@ std::vector<std::string> marches_for(cli::InputKind kind) {
   return names;
 }
 
-// Rays through pixels that are spread evenly over the picture: the sequence R2 of additive recurrence, by the plastic
-// number.
+// Rays through pixels spread evenly over the picture: the additive recurrence R2, based on the plastic number.
 std::vector<Ray> sampled_rays(const Camera& camera) {
   constexpr double kStepX = 0.75487766624669276, kStepY = 0.56984029099805327;
   std::vector<Ray> rays;
@@ -137,7 +136,7 @@ void Subject::compare(const std::string& with) {
   }
 }
 
-// As `scarp render` makes it.
+// As in `scarp render`.
 PictureSide Subject::picture_side(const Side& side, int width, int height) {
   auto shown = std::make_shared<cli::RenderOptions>(*side.options);
   shown->picture = for_window(shown->picture, width, height);
@@ -154,13 +153,13 @@ PictureSide Subject::picture_side(const Side& side, int width, int height) {
     cli::look_through(stage.there(), camera, settings.look == Look::shaded ? settings.aa : 1);
     return render_picture(stage.scene(), camera, settings, progress);
   };
-  // Coarser voxels are others in every picture, and the look comanche has rays of its own.
+  // Coarser voxels differ in every picture, and the look comanche has its own rays.
   if (side.opened->stage.input().coarse_voxels || picture.settings.look == Look::comanche) return picture;
   picture.judge = [opened = side.opened, options](const Camera& seen,
                                                   const Progress& progress) -> std::optional<JudgedRays> {
     Camera camera = seen;
     cli::RenderOptions judged = *options;
-    judged.picture.look = Look::error;  // rays end where the judge ends
+    judged.picture.look = Look::error;  // rays end where the judge's rays end
     opened->stage.finish(camera, judged);
     const Scene& scene = opened->stage.scene();
     if (!opened->judges) opened->judges = scene.judge();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the window shows: an input with its options, and beside it, if one compares, the same input with one other
-// option: another march, or another look.
+// The content of the window: an input with its options and, for comparisons, the same input with another march or look
+// beside it.
 #pragma once
 
 #include <memory>
@@ -27,25 +27,25 @@ class Subject {
   const PictureSettings& settings() const { return main_.settings; }
   /// The camera of the options.
   const Camera& first_camera() const { return first_camera_; }
-  /// Where rays are answered: a device's name, or "the CPU".
+  /// Where rays are traced: a device's name, or "the CPU".
   const std::string& device() const { return device_; }
 
-  /// Changes an option. Returns whether the input was opened again: then stage() is another one. If it throws Error,
-  /// nothing has changed: also for options of the window itself, kWindowOptions.
+  /// Changes an option. Returns whether the input was reopened, which replaces stage(). If it throws Error, nothing has
+  /// changed: also for options of the window itself, kWindowOptions.
   bool change(const OptionChange& change);
 
-  /// Opens the input again, as after a change of its file. If it throws Error, nothing has changed.
+  /// Reopens the input, as after a change of its file. If it throws Error, nothing has changed.
   void reopen();
 
-  /// What can be shown beside: "march naive", "look steps".
+  /// The possible comparisons: "march naive", "look steps".
   std::vector<std::string> comparisons() const;
   /// Shows it beside; empty: nothing. If it throws Error, nothing has changed.
   void compare(const std::string& with);
   const std::string& compared() const { return compared_; }
-  /// "march max-mip" beside "march naive": the main picture, in the words of compared().
+  /// The main picture, in the terms of compared(): "march max-mip" beside "march naive".
   std::string comparable() const;
 
-  /// The pictures for a window of this size: that of the input, and that beside it.
+  /// The pictures for a window of this size: the input's, and the comparison's.
   std::vector<PictureSide> sides(int width, int height) const;
   /// The inputs with their options, in the same order.
   std::vector<const Opening*> openings() const;
@@ -53,13 +53,13 @@ class Subject {
   std::vector<Control> controls(const std::optional<StepScale>& steps) const;
 
  private:
-  // The stage is the worker's, once it was opened; the options say how the inputs were opened.
+  // The stage belongs to the worker once opened; the options record how the inputs were opened.
   struct Opened {
     Opened(Opening of, cli::RenderOptions options, ImageSize size)
         : opening(std::move(of)), stage(opening.kind, std::move(options), size) {}
     Opening opening;
     cli::RenderStage stage;
-    std::optional<Scene> judges{};  // once they were asked
+    std::optional<Scene> judges{};  // once requested
   };
   struct Side {
     Opening opening;

@@ -9,7 +9,7 @@ namespace scarp::viewer {
 namespace {
 
 constexpr std::uint64_t kForever = ~std::uint64_t{0};
-constexpr int kAttempts = 5;  // to get an image of a window that changes
+constexpr int kAttempts = 5;  // attempts to get an image of a window that is changing
 
 }  // namespace
 

@@ -16,7 +16,7 @@ class Swapchain {
     VkImage image;
     VkImageView view;
     VkFramebuffer framebuffer;
-    VkSemaphore rendered;  ///< signalled by what draws into it
+    VkSemaphore rendered;  ///< signalled by the commands that draw into it
   };
 
   explicit Swapchain(VulkanDevice& of) : device_(of) {}
@@ -34,7 +34,7 @@ class Swapchain {
   VkFormat format() const { return format_.format; }
   VkExtent2D extent() const { return extent_; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(targets_.size()); }
-  /// Draws over what is in the image.
+  /// Draws over the contents of the image.
   VkRenderPass pass() const { return pass_; }
   const VkSemaphore& acquired() const { return acquired_; }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<const char*, 4> kStageNames = {"moving", "full", "refining", "converged"};
 
-// The clock of other programs.
+// A clock shared with other programs.
 double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }

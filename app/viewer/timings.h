@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When events came and pictures were presented, as a table for bench/view.sh.
+// Times of events and presented pictures, as a table for bench/view.sh.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ class Timings {
   Timings(const Timings&) = delete;
   Timings& operator=(const Timings&) = delete;
 
-  /// An event came when `generation` was the last that was requested: pictures of later ones carry it.
+  /// Records an event while `generation` was the last requested one: pictures of later generations include it.
   void event(std::uint64_t generation);
-  /// A picture was presented for the first time.
+  /// Records that a picture was presented for the first time.
   void present(const WorkedPicture& shown);
 
  private:

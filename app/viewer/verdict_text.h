@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The judgement of some rays of a picture, in words.
+// The verdict on some rays of a picture, as text.
 #pragma once
 
 #include <optional>

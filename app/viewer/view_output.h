@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What leaves the window: pictures, commands that make them again, and places of a path.
+// Output of the window: pictures, the commands that reproduce them, and positions of a path.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace scarp::viewer {
 
 /// The command that writes the picture of `pose` in a window of this size in pixels to `output`. All its positions are
-/// local; `places` converts that of a mesh.
+/// local; `places` converts the position of a mesh.
 std::string render_command(const Opening& opening, const cli::Places& places, const Pose& pose, int width, int height,
                            const std::string& output);
 

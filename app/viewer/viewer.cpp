@@ -39,13 +39,13 @@ namespace {
 
 constexpr double kRest = 0.15;          // seconds without a change until the picture is completed
 constexpr double kDoubleClick = 0.35;   // seconds between two clicks
-constexpr double kClickPixels = 4;      // a longer way is a drag
+constexpr double kClickPixels = 4;      // a longer movement is a drag
 constexpr double kPlayStep = 1.0 / 60;  // seconds of a recording's own time per step
-constexpr double kSignalWait = 0.5;     // seconds between two looks for Ctrl-C
-constexpr int kRedraws = 3;             // frames that Dear ImGui needs to come to rest after an event
+constexpr double kSignalWait = 0.5;     // seconds between two checks for Ctrl-C
+constexpr int kRedraws = 3;             // frames that Dear ImGui needs to settle after an event
 constexpr int kBookmarks = 9;
 
-// What a drag with the left button moves.
+// The object that a drag with the left button moves.
 enum class Dragged { view, sun, line };
 
 class Viewer {
@@ -94,9 +94,9 @@ class Viewer {
     return inputs.empty() ? "Scarp" : std::filesystem::path(inputs.front()).filename().string() + " - Scarp";
   }
 
-  // Goes over to another input, from its first view.
+  // Switches to another input, at its first view.
   void show_first_view(std::unique_ptr<Subject> subject) {
-    std::swap(subject_, subject);  // the one before lives until nothing refers to it
+    std::swap(subject_, subject);  // the previous one lives until nothing refers to it
     navigate(subject_->first_camera());
     first_ = navigator_->pose();
   }
@@ -112,7 +112,7 @@ class Viewer {
     note_change();
   }
 
-  // The picture and the panel are others.
+  // The picture and the panel have changed.
   void note_change() {
     settings_changed_ = true;
     redraws_ = kRedraws;
@@ -130,7 +130,7 @@ class Viewer {
 
   // --- what is set --------------------------------------------------------------------------------------------------
 
-  // If it fails, as when the file is gone, the window goes on with what it has.
+  // If it fails, for example because the file is gone, the window keeps its current state.
   void change(const OptionChange& change) {
     attempt([&] { return subject_->change(change); });
   }
@@ -140,7 +140,7 @@ class Viewer {
       return true;
     });
   }
-  // `changed` returns whether the input was opened again: the view stays.
+  // `changed` returns whether the input was reopened; the view stays.
   void attempt(const std::function<bool()>& changed) {
     const double height = subject_->stage().exaggeration();
     const Pose pose = navigator_->pose();
@@ -365,8 +365,8 @@ class Viewer {
       const double now = seconds();
       step(now, now - before, waits ? 0.0 : now - before);
       before = now;
-      // New pictures at once. The rest of the window changes no faster than they do: a present by a CPU driver takes
-      // the processors from the worker.
+      // Shows new pictures at once. The rest of the window is not updated more often than pictures: presenting with a
+      // CPU driver takes processors from the worker.
       const double wait = drawn_at_ + 1 / PictureWorker::kFramesPerSecond - now;
       if (redraws_ > 0 && (unpresented_ || wait <= 0)) {
         --redraws_;
@@ -381,7 +381,7 @@ class Viewer {
     }
   }
 
-  // The view after `since` more seconds: asks for pictures, takes them.
+  // Advances the view by `since` seconds: requests pictures, and takes finished ones.
   void step(double now, double, double since) {
     int across = 0, down = 0;
     glfwGetFramebufferSize(glfw_->get(), &across, &down);
@@ -430,14 +430,14 @@ class Viewer {
   bool is_complete() const {
     return shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_;
   }
-  // Not by the picture in the window: recordings end at the same view, however long pictures take.
+  // Independent of the displayed picture: recordings end at the same view, however long pictures take.
   bool compares() const { return !subject_->compared().empty(); }
 
   void show_sides() {
     if (!shown_) return;
     std::vector<Image> images;
     for (const Picture& side : shown_->sides) {
-      // Large pixels have sharp edges; a picture beside them has another size.
+      // Large pixels have sharp edges; a picture beside them has a different size.
       images.push_back(shown_->large_pixels ? stretched(side.image, width_, height_) : side.image);
     }
     if (images.size() > 1) {
@@ -453,7 +453,7 @@ class Viewer {
     try {
       return read_under(stage.given_scene(), *camera_, at, *frames_, stage.exaggeration());
     } catch (const Error&) {
-      return {};  // fields that the device alone answers
+      return {};  // fields available only on the device
     }
   }
 
@@ -496,7 +496,7 @@ class Viewer {
     if (actions.compare) compare(*actions.compare);
   }
 
-  // Goes over to a file that was dropped on the window, if it can be opened.
+  // Switches to a file that was dropped on the window, if it can be opened.
   void open_file(const std::string& file) {
     redraws_ = kRedraws;
     try {
@@ -510,8 +510,8 @@ class Viewer {
     }
   }
 
-  // Errors are seen even if the panel was hidden; the last good picture stays. `line` is that of a recording which
-  // asked for what failed; 0: none did. Recordings end there.
+  // Errors are shown even if the panel was hidden; the last good picture stays. `line` is the line of a recording that
+  // caused the error; 0: none. Recordings end there.
   void fail(const std::string& message, int line) {
     if (line > 0) throw Error(fmt::format("'{}', line {}: {}", options_.play, line, message));
     panel_.message = message;
@@ -521,7 +521,7 @@ class Viewer {
 
   // --- what leaves the window ---------------------------------------------------------------------------------------
 
-  // Of two sides both.
+  // Saves both sides if there are two.
   void save_picture() {
     saves_ = false;
     redraws_ = kRedraws;
@@ -564,7 +564,7 @@ class Viewer {
 
   // --- recordings ---------------------------------------------------------------------------------------------------
 
-  // Steps of one length, whatever the time they take; then the picture is waited for.
+  // Steps of constant length, however long they take; then waits for the picture.
   void play() {
     const std::vector<WindowEvent>& events = played_->events;
     std::size_t next = 0;
@@ -585,7 +585,7 @@ class Viewer {
       draw(nullptr);
       if (render_failed_ && !worker_->busy()) throw Error(panel_.message);
     }
-    step(play_seconds_, kPlayStep, 0);  // takes the verdict, which the worker leaves last
+    step(play_seconds_, kPlayStep, 0);  // takes the verdict, which the worker produces last
     Image seen;
     for (int i = 0; i < kRedraws; ++i) draw(&seen);
     if (!options_.screenshot.empty()) write_png(options_.screenshot, {seen.rgb.data(), seen.width, seen.height});
@@ -595,7 +595,7 @@ class Viewer {
     ImGuiIO& io = ImGui::GetIO();
     if (event.kind == WindowEvent::Kind::button && event.code >= 0 && event.code < IM_ARRAYSIZE(io.MouseDown))
       io.MouseDown[event.code] = event.down;
-    // A drag or a click may have been in vain when it was recorded.
+    // A drag or a click may have had no effect when it was recorded.
     const bool may_fail = event.kind == WindowEvent::Kind::move || event.kind == WindowEvent::Kind::button;
     played_line_ = may_fail ? 0 : event.line;
     take(event);
@@ -618,7 +618,7 @@ class Viewer {
   PanelState panel_;
   std::optional<WorkedPicture> shown_;
   std::optional<WorkedVerdict> verdict_;
-  std::optional<Camera> camera_;  // of the view as it is, at the window's size
+  std::optional<Camera> camera_;  // of the current view, at the window's size
   std::uint64_t generation_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double play_seconds_ = 0, changed_at_ = 0, drawn_at_ = -1, last_click_ = -1, way_ = 0;

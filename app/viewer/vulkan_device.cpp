@@ -121,7 +121,7 @@ void VulkanDevice::choose_device(const std::string& choice) {
     names += (names.empty() ? "" : ", ") + std::string(about.deviceName);
     std::uint32_t found;
     if ((choice != "auto" && !contains(about.deviceName, choice)) || !find_family(one, found)) continue;
-    // CPU devices only where there is no other.
+    // CPU devices only if there is no other.
     if (physical &&
         (about.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU))
       continue;

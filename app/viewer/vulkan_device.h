@@ -35,13 +35,13 @@ class VulkanDevice {
   VulkanDevice(const VulkanDevice&) = delete;
   VulkanDevice& operator=(const VulkanDevice&) = delete;
 
-  /// `choice`: "auto" or part of a device's name. With `validation`, the validation layer's objections are counted and
-  /// printed. Throws Error naming what is missing: loader, driver, device, layer.
+  /// `choice`: "auto" or part of a device's name. With `validation`, messages of the validation layer are counted and
+  /// printed. Throws Error naming the missing part: loader, driver, device, layer.
   void open(const std::string& choice, bool validation);
   /// Replaces a lost surface. Its swapchain must have been destroyed.
   void reopen_surface();
 
-  /// Replaces `of` by a buffer that is mapped.
+  /// Replaces `of` by a mapped buffer.
   void make_buffer(DeviceMemory& of, VkDeviceSize bytes, VkBufferUsageFlags usage) const;
   /// Replaces `of` by an image of RGBA bytes that are copied to and from.
   void make_image(DeviceMemory& of, std::uint32_t width, std::uint32_t height) const;

@@ -24,8 +24,8 @@ class Glfw {
 /// Ends before the window.
 class Imgui {
  public:
-  /// With `listens`, takes the window's events after the callbacks that are set. The font and the panels have the
-  /// scale of the window's screen.
+  /// With `listens`, receives the window's events after the installed callbacks. The font and the panels are scaled for
+  /// the window's screen.
   Imgui(GLFWwindow* window, bool listens);
   ~Imgui();
   Imgui(const Imgui&) = delete;

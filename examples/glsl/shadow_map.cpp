@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A plain Vulkan program that knows nothing of Scarp but its shader texts: it makes a field of heights and a pyramid of
-// their maxima, lets shadow_map.comp ask max-mip for each cell whether it sees the sun, and writes the shadow map.
+// A plain Vulkan program that uses nothing of Scarp except its shader sources: it makes a field of heights and a
+// pyramid of their maxima, runs shadow_map.comp, which calls max-mip for each cell to find out whether it sees the sun,
+// and writes the shadow map.
 //   shadow_map shadow_map.spv shadows.pgm
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,7 @@ Buffer make_buffer(const vk::raii::PhysicalDevice& physical, const vk::raii::Dev
   made.buffer = device.createBuffer({{}, bytes, vk::BufferUsageFlagBits::eStorageBuffer});
   const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();
   const vk::PhysicalDeviceMemoryProperties memory = physical.getMemoryProperties();
-  // Every device has a kind of memory that the host sees and that a buffer may lie in.
+  // Every device has a memory type that is host-visible and allowed for buffers.
   constexpr auto kSeen = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
   std::uint32_t type = 0;
   while (!(needs.memoryTypeBits >> type & 1) || (memory.memoryTypes[type].propertyFlags & kSeen) != kSeen) ++type;
@@ -93,8 +94,7 @@ Buffer make_buffer(const vk::raii::PhysicalDevice& physical, const vk::raii::Dev
   return made;
 }
 
-// Runs the shader once for each cell; shadows[row * kCells + col] is 1 where the sun is hidden. Nothing where there is
-// no device.
+// Runs the shader once for each cell; shadows[row * kCells + col] is 1 where the sun is hidden. Empty without a device.
 std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& shader, const std::vector<float>& heights,
                                const std::vector<float>& maxima, const Push& push) {
   const vk::raii::Context context;

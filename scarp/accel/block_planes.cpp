@@ -15,7 +15,7 @@ namespace scarp {
 namespace {
 
 // The slopes' range, in mean height differences in blocks of 2 x 2 cells. A smaller range has finer steps but cuts off
-// more slopes (decisions.md).
+// more slopes (doc/dev/decisions/accel.md).
 constexpr double kSteepest = 0.5;
 // Codes of tilt over half a block: floats stay accurate.
 constexpr double kMostTilt = 0x1p15;

@@ -51,7 +51,7 @@ class BlockPlanes {
   void update(const HeightField& field, const Blocks& blocks, const CellBox& changed);
 
   bool exist() const { return exist_; }
-  /// Heights of planes and of rays are compared as these codes; that of a maximum is maximum * scale() + shift().
+  /// Plane and ray heights are compared as these codes; the code of a maximum is maximum * scale() + shift().
   const HeightCode& code() const { return code_; }
   float scale() const { return scale_; }
   float shift() const { return shift_; }
@@ -59,7 +59,8 @@ class BlockPlanes {
   /// The steepest slope that blocks can have, in codes per cell along either axis.
   float steepest() const { return kMostSteps * unit_; }
 
-  /// Height of a block's plane in sample units; x and y in cells from the middle of the full block, east and south.
+  /// Returns the height of a block's plane in sample units; x and y are cells from the centre of the full block, east
+  /// and south.
   double height(std::uint32_t block, int level, double x, double y) const;
 
  private:

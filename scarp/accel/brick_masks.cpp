@@ -24,7 +24,7 @@ BrickMasks::BrickMasks(const VoxelGrid& grid) {
     ivec3 cell = brick;
     for (Level& level : levels_) {
       std::uint64_t& mask = level.masks.at(level.index(cell >> 2));
-      // Where the cell was there before, it is in all coarser levels.
+      // If the cell was present before, it is present in all coarser levels.
       if (mask & bit(cell)) break;
       mask |= bit(cell);
       cell = cell >> 2;

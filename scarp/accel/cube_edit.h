@@ -3,7 +3,7 @@
 //
 // A distance changes only if the box of the edit is at most as far away as the nearest solid voxel was. These voxels
 // are searched from the box outwards: a step towards it lowers both distances by one, so that one beyond another that
-// keeps its distance keeps its own. They begin anew at 255; one pass with rising and one with falling coordinates then
+// keeps its distance keeps its own. They restart at 255; one pass with rising and one with falling coordinates then
 // spread distances among them and from their neighbours. Source of the passes: A. Rosenfeld, J. Pfaltz, "Distance
 // functions on digital pictures", Pattern Recognition 1968. Cost: the rows of these voxels, whatever the grid contains.
 #pragma once

@@ -14,16 +14,16 @@
 namespace scarp {
 namespace {
 
-// Of a buffer that several grids share.
+// Size of a buffer that several grids share.
 constexpr std::uint64_t kSharedBytes = std::uint64_t{64} << 20;
 constexpr std::uint64_t kAlign = 16;
 
-// Entries of a page begin at such a multiple of words, which leaves room for a few more voxels.
+// Entries of a page start at a multiple of this many words, which leaves room for a few more voxels.
 constexpr std::uint32_t kSlotWords = 8;
 
 std::uint64_t aligned(std::uint64_t bytes) { return (bytes + kAlign - 1) / kAlign * kAlign; }
 std::uint32_t slot_words(std::size_t words64) {
-  // One more is readable after the last.
+  // One extra entry is readable after the last.
   const auto words = static_cast<std::uint32_t>(2 * words64 + 1);
   return (words + kSlotWords - 1) / kSlotWords * kSlotWords;
 }
@@ -153,7 +153,7 @@ DeviceVoxels::DeviceVoxels(const Device& device, std::span<const MarchedGrid> gr
   if (!layout_.empty()) upload(*header_, 0, layout_.data(), layout_.size() * sizeof(layout_[0]));
 }
 
-// Blocks go into one buffer, or several where they are larger than one may be.
+// Blocks go into one buffer, or into several if they exceed its limit.
 void DeviceVoxels::copy_all(std::span<Image> images) {
   const std::uint64_t most = device_.description().max_allocation_bytes;
   struct Copy {
@@ -226,7 +226,7 @@ void DeviceVoxels::place(std::size_t index, const MarchedGrid& parts) {
   copy_all({&image, 1});
 }
 
-// Finds room for a page's entries; false: there is none.
+// Finds room for a page's entries; returns false if there is none.
 bool DeviceVoxels::grow(Grid& grid, const MarchedGrid& parts, std::size_t stored) {
   const std::uint32_t needs = slot_words(parts.grid->packed_entries(stored).words.size());
   if (stored >= grid.slots.size()) grid.slots.resize(stored + 1);

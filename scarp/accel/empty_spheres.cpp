@@ -39,7 +39,7 @@ void EmptySpheres::update(const VoxelGrid& grid, const VoxelBox& changed) {
     build(grid, {rows, edit.region, &box, true});
     return;
   }
-  // In a window that is too small, nothing is found nearer than it is: the results bound the window that is enough.
+  // A window that is too small never underestimates distances, so its results determine a sufficient window.
   const auto window = [&](int farthest) { return intersection(edit.region.grown(farthest + 2), grid.box()); };
   const int found = build(grid, {window(edit.most), edit.region, &box});
   if (found > edit.most) build(grid, {window(found), edit.region, &box});

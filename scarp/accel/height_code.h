@@ -17,7 +17,7 @@ struct HeightCode {
 
   /// Returns the height of a code in sample units. Builders and readers of codes use exactly this expression.
   double height(std::uint16_t code) const { return base + step * code; }
-  /// Returns a number that is higher than the code of a height by one, for rays in codes.
+  /// Returns the code of a height plus one, for rays in codes.
   float code_over(double height) const { return static_cast<float>((height - base) * per_step + 1); }
 };
 

@@ -58,7 +58,7 @@ uint guess_code(Ground ground, uint key, float beyond) {
   return min(uint(clamp(place, 0.0, 65535.0)), kPyramidCodes - 1u);
 }
 
-// Returns the least code whose ceiling is not below the key.
+// Returns the smallest code whose ceiling is not below the key.
 uint code_above(Ground ground, uint key) {
   uint guess = guess_code(ground, key, 1.0), low = 0u, high = kPyramidCodes - 1u;
   if (key <= ceiling(guess)) {

@@ -71,7 +71,7 @@ class MaxPyramid {
   /// Upper bound of the height difference within any cell, in code steps; up to 65535 with holes. After edits it may
   /// exceed that of a rebuild.
   int cell_relief() const { return shared_->cell_relief; }
-  /// HeightField::edits() at the last update; while the field has more, queries may miss what is there.
+  /// HeightField::edits() at the last update; if the field has more, queries may lose hits.
   std::uint64_t edits() const { return shared_->edits; }
 
  private:

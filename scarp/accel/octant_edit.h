@@ -5,7 +5,7 @@
 //
 // A side thus changes only if a neighbour ahead changes, or in the box of the edit. Rows are visited from the box
 // backwards; each is computed where the rows ahead of it have changed, and on along x while that changes anything.
-// Outside the box, old sides of 0 tell solid voxels. Cost: the values that change, and those beside them.
+// Outside the box, old sides of 0 identify solid voxels. Cost: the values that change, and those beside them.
 #pragma once
 
 #include "scarp/accel/voxel_bytes.h"

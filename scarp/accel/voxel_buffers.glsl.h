@@ -58,8 +58,8 @@ struct ScarpVoxelTurn {
   uint ties[16];
 };
 
-/// A node of the hierarchy over the objects, as BoxTree has it: four boxes relative to the middle of all, and their
-/// children, nodes or kScarpBoxLeaf and an object.
+/// A node of BoxTree's hierarchy over the objects: four boxes relative to the centre of all, and their children, each a
+/// node or kScarpBoxLeaf with an object.
 struct ScarpBoxNode {
   vec4 low_x;
   vec4 low_y;

@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-// They decide what the marks of a grid are, its accelerator.
+// They determine the marks of a grid, its accelerator.
 const uint kScarpVoxelPlanes = 0u;
 const uint kScarpVoxelSpheres = 1u;
 const uint kScarpVoxelCubes = 2u;

@@ -130,7 +130,7 @@ Shade BilinearGround::shade(const SunRay& sun, Node node) const {
   return occluded_max_mip(target(), ray) ? Shade::self_shaded : Shade::cast_shadow;
 }
 
-// What blocks a ray strictly: one that starts on the surface, or above it.
+// Returns what blocks a ray strictly; the ray starts on or above the surface.
 Hit BilinearGround::block(Ray ray) const {
   const Hit hit = march_max_mip(target(), ray);
   if (!hit || ray.start == RayStart::on_surface || hit.wall) return hit;
@@ -162,8 +162,8 @@ LineOfSight BilinearGround::line_of_sight(const SightEnd& from, const SightEnd& 
     if (on_ground && first) start_in(*first, ray);
     return ray;
   };
-  // Both ends may be on the ground, and a ray knows that of its start alone: one from each end meets the other half
-  // way. The answer is the same for the way back.
+  // Both ends may be on the ground, but a ray only knows the surface at its start: a ray from each end covers half of
+  // the line. The result is symmetric.
   Ray forth = ray_from(line.from(), line.to(), eye, target, line.eye() == line.ground_at_eye()),
       back = ray_from(line.to(), line.from(), target, eye, line.target() == line.ground_at_target());
   forth.t_max = back.t_max = 0.5;
@@ -171,7 +171,7 @@ LineOfSight BilinearGround::line_of_sight(const SightEnd& from, const SightEnd& 
   if (!hit) {
     const Hit from_target = block(back);
     if (!from_target) return result;
-    // The first obstruction, as the observer sees it.
+    // The first obstruction as seen by the observer.
     forth.t_max = 1 - from_target.t;
     hit = block(forth);
     if (!hit) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shadows and lines of sight over the bilinear surface of a field, by exact rays (`max-mip`, march/height/max_mip.h),
-// in place of ground that is known at crossings of grid lines alone (sight.h).
+// instead of ground defined only at crossings of grid lines (sight.h).
 //
 // A ray is blocked where it is strictly below the surface, by more than rounding; a ray that grazes the surface passes.
 // Cells with a missing sample are holes: rays pass through them, but not through the ground at their rims. Rays that

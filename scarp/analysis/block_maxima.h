@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The highest sample of every block of a field: sweeps skip blocks below the horizon, lines of sight those below them.
 //
-// MaxPyramid is not enough here: it ignores the cells of a hole, and the side between two of them counts in `crossings`
-// if its samples exist.
+// MaxPyramid is not sufficient here: it ignores cells with a hole, whose sides count in `crossings` if their samples
+// exist.
 #pragma once
 
 #include <vector>

@@ -37,7 +37,7 @@ class HorizonBins {
 
   /// Returns a lower bound over [begin, end] within the range of the bins; infinity if that is empty.
   double minimum(double begin, double end) const {
-    // A bin more to each side covers the rounding.
+    // One extra bin on each side covers the rounding.
     const int first = static_cast<int>(std::clamp((begin - low_) / step_ - 1, 0.0, kBins + 0.0));
     const int last = static_cast<int>(std::clamp((end - low_) / step_ + 1, -1.0, kBins - 1.0));
     double minimum = std::numeric_limits<double>::infinity();

@@ -22,7 +22,7 @@ HorizonEnvelope::HorizonEnvelope(const HorizonJudge& judge) : judge_(judge) {
   nothing.line.s0 = -kInfinity;
   pieces_.push_back(nothing);
   nothing.begin = kInfinity;
-  nothing.line.from = {-1, -2};  // not one with the piece before it
+  nothing.line.from = {-1, -2};  // not merged with the previous piece
   pieces_.push_back(nothing);
 }
 
@@ -102,7 +102,7 @@ HorizonEnvelope::Comparison HorizonEnvelope::compare(const HorizonSegment& segme
 }
 
 void HorizonEnvelope::put(const Piece& piece) {
-  // What the last piece had of its own has no width.
+  // The last piece's own part has no width.
   if (merged_.back().begin == piece.begin) merged_.pop_back();
   merged_.push_back(piece);
 }
@@ -140,7 +140,8 @@ void HorizonEnvelope::put_new(const HorizonSegment& segment, std::size_t i, doub
 void HorizonEnvelope::put_crossing(const HorizonSegment& segment, std::size_t i, double begin, double end,
                                    const Comparison& left, const Comparison& right) {
   const double bound = std::max(left.bound, right.bound), change = right.difference - left.difference;
-  // Both differences are off by at most `bound`, so the crossing by as much over the difference of the slopes.
+  // Both differences have errors of at most `bound`, so the crossing has an error of `bound` over the difference of the
+  // slopes.
   double at = begin - left.difference * ((end - begin) / change);
   double blur = end - begin;
   if (std::abs(change) > 4 * bound) {
@@ -151,7 +152,7 @@ void HorizonEnvelope::put_crossing(const HorizonSegment& segment, std::size_t i,
   const bool new_first = left.sign > 0;
   const double old_slack = pieces_[i].slack;
   if (at == begin || at == end) {
-    // One of the two has no width in doubles: the other may be lower than it there.
+    // One of the two has no width in doubles: the other may be lower there.
     const bool new_remains = new_first == (at == end);
     if (new_remains) {
       put_new(segment, i, begin, std::max(old_slack, 4 * bound));
@@ -180,7 +181,7 @@ void HorizonEnvelope::resolve(const HorizonSegment& segment, std::size_t i, doub
   if (!left_above && !right_above) {
     put_old(i, begin, slack);
   } else if ((left_above && right.sign != -1) || (right_above && left.sign != -1)) {
-    // Slack of the old piece goes where the new one is above it by more.
+    // The old piece's slack disappears where the new one is above it by more.
     const Piece& old = pieces_[i];
     const bool clears = std::min(left.difference - left.bound, right.difference - right.bound) > old.slack;
     put_new(segment, i, begin, std::max(slack, clears ? 0.0 : old.slack));
@@ -193,7 +194,7 @@ void HorizonEnvelope::merge(const std::vector<HorizonSegment>& segments) {
   if (segments.empty()) return;
   merged_.clear();
   merged_.push_back(pieces_.front());
-  std::size_t i = 0;  // the piece that contains where we are; it is in merged_
+  std::size_t i = 0;  // the piece at the current position; it is in merged_
   const auto copy_to = [&](std::size_t last) {
     merged_.insert(merged_.end(), pieces_.begin() + static_cast<std::ptrdiff_t>(i + 1),
                    pieces_.begin() + static_cast<std::ptrdiff_t>(last + 1));
@@ -203,10 +204,10 @@ void HorizonEnvelope::merge(const std::vector<HorizonSegment>& segments) {
     const HorizonSegment& segment = segments[n];
     if (!(segment.begin < segment.end)) continue;
     const std::size_t first = find(segment.begin, i);
-    // A piece that begins where the segment does is put with it.
+    // A piece that begins at the start of the segment is merged with it.
     const std::size_t copied = pieces_[first].begin == segment.begin ? first - 1 : first;
     if (copied > i) {
-      // Not copied but put: the piece before may be the same edge, or have no width.
+      // Added by put() instead of copied: the previous piece may be the same edge, or have no width.
       put_old(i + 1, pieces_[i + 1].begin, 0);
       ++i;
       copy_to(copied);

@@ -12,7 +12,7 @@
 // Pieces keep the line of their edge, however often others cut them: rounding does not accumulate. Heights are compared
 // in doubles with a bound of their rounding. Where that is not sure, the end of an edge and another edge are compared
 // exactly, from the samples. At an implicit vertex that is not possible: a piece that may be lower there than what it
-// replaced remembers by how much (`slack`), and targets that near it are left to the caller.
+// replaced remembers by how much (`slack`), and targets that close to it are left to the caller.
 //
 // Source: H. J. Haverkort and L. Toma, "A comparison of I/O-efficient algorithms for visibility computation on massive
 // grid terrains", arXiv 1810.01946, 2018, model R3 (there in doubles alone). Cost: a merge copies the pieces once and
@@ -37,7 +37,7 @@ struct HorizonLine {
   double u0 = 0;
   double s0 = 0;  ///< -infinity: no ground
   double slope = 0;
-  double error = 0;  ///< bound of what rounding does to s at any u within the edge
+  double error = 0;  ///< bound of the rounding of s at any u within the edge
   HorizonSample from{-1, -1}, to{-1, -1};
 
   double at(double u) const { return s0 + slope * (u - u0); }

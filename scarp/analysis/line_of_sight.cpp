@@ -54,8 +54,8 @@ SightLine::SightLine(const HeightField& field, const SightEnd& from, const Sight
 namespace {
 
 // Looks for the obstruction and the least clearance, piece by piece along the line, outwards. Pieces are skipped if the
-// line passes above all their nodes by more than the least clearance so far: what is there can neither block the line
-// nor be nearer to it.
+// line passes above all their nodes by more than the least clearance so far: they can neither block the line nor reduce
+// the clearance.
 class Search {
  public:
   Search(const SightLine& line, const BlockMaxima* maxima) : line_(line) {

@@ -26,7 +26,7 @@ HeightField rows_of(const HeightField& field, const RowBand& band) {
   });
 }
 
-// Computes a map of the rows that matter, by compute(field, number of its first row), and returns the band of it.
+// Computes a map of the relevant rows by compute(field, number of its first row), and returns its band.
 template <class Compute>
 auto band_of(const HeightField& field, const RowBand& matter, const RowBand& band, const Compute& compute) {
   auto map = compute(rows_of(field, matter), matter.first);
@@ -108,7 +108,7 @@ std::vector<double> least_visible_rows(const HeightField& field, Node observer, 
 std::vector<std::uint16_t> observer_count_rows(std::span<const Viewpoint> views, const RowBand& band,
                                                const Progress& progress) {
   if (views.empty() || band == all_rows(views.front().ground().field())) return observer_count(views, progress);
-  // Each observer has rows of its own that matter.
+  // Each observer has its own relevant rows.
   std::vector<std::uint16_t> counts;
   for (const Viewpoint& view : views) {
     const auto codes = viewshed_rows(view.ground().field(), view.observer(), view.settings(), band, progress);

@@ -33,7 +33,7 @@ RowBand row_band(int rows, int part, int parts);
 /// Throws Error for an empty band, and one that is not inside the field.
 void require_band(const HeightField& field, const RowBand& band);
 
-/// Rows of viewshed(). Throws as it does, and as require_band(); so do those below.
+/// Rows of viewshed(). Throws as it does, and as require_band(); the functions below do the same.
 std::vector<Seen> viewshed_rows(const HeightField& field, Node observer, const ViewshedSettings& settings,
                                 const RowBand& band, const Progress& progress = {});
 

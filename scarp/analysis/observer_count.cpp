@@ -13,7 +13,7 @@
 namespace scarp {
 namespace {
 
-// Returns 0 for nodes that an observer may see, and what the others are.
+// Returns 0 for nodes that an observer may see, and the codes of the others.
 std::vector<std::uint16_t> uncounted(std::span<const Viewpoint> views) {
   const SightGround& ground = views.front().ground();
   const int cols = ground.field().cols(), rows = ground.field().rows();

@@ -8,7 +8,7 @@
 
 namespace scarp {
 
-/// One point of a profile: an end, or a crossing that counts.
+/// One point of a profile: an end, or a crossing with ground.
 struct ProfilePoint {
   double along = 0;         ///< 0 at the start, 1 at the end
   double distance = 0;      ///< from the start, metres

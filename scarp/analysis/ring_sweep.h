@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sweeps over rings of samples, outwards from an observer or from the sun, with a horizon that rises: what viewsheds
-// (viewshed_sector.cpp) and shadows (shadow_sweep.cpp) share. They differ in the projection of samples to (u, s).
+// Sweeps over rings of samples, outwards from an observer or from the sun, with a rising horizon: shared by viewsheds
+// (viewshed_sector.cpp) and shadows (shadow_sweep.cpp). They differ in the projection of samples to (u, s).
 //
 //      previous ring    Q ----- o ----- o       s = f(height, ring), u = g(side, ring), both linear along an edge
 //                       |       |       |
@@ -104,12 +104,12 @@ class RingSweep {
   HorizonEnvelope horizon_;
   SweepStatistics statistics_;
   std::vector<int> uncertain_;            // samples whose spoke may be above the horizon, in no order
-  std::map<double, HorizonSample> lone_;  // by u: the highest sample there that no edge of a ring ends in
+  std::map<double, HorizonSample> lone_;  // by u: the highest sample there at which no edge of a ring ends
 
   int ring_ = 0;  // the ring at work
   SideRange range_{};
   const double* now_ = nullptr;       // heights of the ring
-  const double* previous_ = nullptr;  // and of the one before
+  const double* previous_ = nullptr;  // heights of the previous ring
 
  private:
   Projection& self() { return static_cast<Projection&>(*this); }
@@ -136,7 +136,7 @@ class RingSweep {
     }
   }
 
-  // Finds the blocks that may rise above the horizon: of the others, neither samples nor edges do.
+  // Finds the blocks that may rise above the horizon. In all others, neither samples nor edges do.
   void find_active(int first, int last) {
     const SideRange a = self().sides_of(first), b = self().sides_of(last);
     const SideRange range{std::min(a.begin, b.begin), std::max(a.end, b.end)};
@@ -146,7 +146,7 @@ class RingSweep {
     if (may_skip) bins_.update(horizon_);
     for (int block = range.begin / kStrip; block * kStrip < range.end; ++block) {
       if (may_skip && self().is_below(bins_, first, last, block)) continue;
-      // Edges to the next block's first sample lie in both.
+      // Edges to the next block's first sample belong to both.
       const SideRange active{std::max(block * kStrip - 1, range.begin), std::min((block + 1) * kStrip + 1, range.end)};
       if (!active_.empty() && active_.back().end >= active.begin) {
         active_.back().end = active.end;
@@ -322,8 +322,8 @@ class RingSweep {
     return heights[side] != kNoGround && (side == 0 || heights[side - 1] == kNoGround) &&
            (side + 1 == frame_.sides() || heights[side + 1] == kNoGround);
   }
-  // Spokes whose outer end is below the horizon lie below it, but where their inner end is not known to: an edge of the
-  // previous ring is missing there on the spoke's side, or the projection has a reason.
+  // Spokes whose outer end is below the horizon lie below it, unless their inner end may be above: an edge of the
+  // previous ring is missing there on the spoke's side, or the projection says so.
   void find_uncertain_spokes(const SideRange& range) {
     if (grid_.has_holes || frame_.sides() == 1) {
       for (int side = range.begin; side < range.end; ++side) {
@@ -407,7 +407,7 @@ class RingSweep {
 
   HorizonBins bins_;
   std::vector<SideRange> active_;  // samples of the strip that are not skipped
-  std::ptrdiff_t stride_;          // an odd number of lines of the cache: rings do not displace one another
+  std::ptrdiff_t stride_;          // an odd number of cache lines, so that rings do not evict one another
   std::vector<double> heights_;    // of the strip and the ring before it
   std::vector<int> risen_;         // samples of the ring that may be above the horizon, in order
   std::vector<char> clear_;        // for those: whether the whole edge to the next sample is above the horizon

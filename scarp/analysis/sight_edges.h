@@ -32,7 +32,7 @@ class SightEdges : public HorizonJudge {
   }
   double position(HorizonSample sample) const override { return sight_u(frame_, sample); }
 
-  /// The terms of an edge against the line of sight to a sample, but for the sample's height `r`. The sample is at u
+  /// The terms of an edge against the line of sight to a sample, without the sample's height `r`. The sample is at u
   /// within the edge.
   CrossingTerms edge_terms(const HorizonLine& edge, HorizonSample sample) const;
   /// The terms of a sample that lies on the line of sight to another.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One ray at a time: lines of sight between nodes and rays to the sun, for any subset of nodes. Cost: one look per
-// crossing, about |columns| + |rows| between the ends.
+// One ray at a time: lines of sight between nodes and rays to the sun, for any subset of nodes. Cost: one comparison
+// per crossing, about |columns| + |rows| between the ends.
 #pragma once
 
 #include "scarp/analysis/shadow.h"

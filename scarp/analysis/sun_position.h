@@ -30,7 +30,7 @@ struct SunPosition {
   double altitude = 0;  ///< radians above the horizon; negative at night
 };
 
-/// The sun at one time, for many places: what does not depend on the place is computed once.
+/// The sun at one time, for many places: computes everything independent of the place once.
 class SunAtTime {
  public:
   /// Throws Error for a time out of ERFA's range.

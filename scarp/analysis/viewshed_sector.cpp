@@ -117,11 +117,11 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
     return true;
   }
 
-  // Not those in the observer's ring and outside the part.
+  // Excludes spokes in the observer's ring and outside the part.
   bool is_inner_known(int side) const {
     return x_previous_ > 0 && frame_.y(side) >= low_ * x_previous_ && frame_.y(side) <= high_ * x_previous_;
   }
-  // Those from the observer's ring, and those whose inner end is outside the part.
+  // Spokes from the observer's ring, and those whose inner end is outside the part.
   void find_more_spokes(const SideRange& range) {
     if (x_previous_ == 0) {
       for (int side = range.begin; side < range.end; ++side) uncertain_.push_back(side);
@@ -203,7 +203,7 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
   static constexpr double kCut = 2;  // beyond the sector: where spokes from the observer's ring are cut
 
   std::ptrdiff_t index(Node node) const { return static_cast<std::ptrdiff_t>(node.row) * grid_.cols + node.col; }
-  // Whether the answer for a node with a sample is asked for.
+  // Whether the result of a node with a sample is needed.
   bool is_asked(Node node) const {
     if (maps_.codes) return maps_.codes[index(node)] == Seen::hidden;
     return !view_.has_limits() || view_.in_range(node, view_.target(*view_.ground().lowered(node)));

@@ -22,12 +22,12 @@ struct SectorPart {
 struct SectorMaps {
   Seen* codes = nullptr;    ///< nodes that are visible, if they are `hidden` before
   double* least = nullptr;  ///< nodes that are not NaN before: their least visible height
-  /// Of nodes that are visible, each one more. Other sweeps may add to the same map at the same time.
+  /// Adds one for each visible node. Other sweeps may add to the same map at the same time.
   std::uint16_t* counts = nullptr;
   const BlockMaxima* maxima = nullptr;  ///< of the field, for `codes` and `counts`; null: no block is skipped
 };
 
-/// Adds one to the count of a node, whatever other threads add.
+/// Atomically adds one to the count of a node.
 inline void add_visible(std::uint16_t& count) { std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed); }
 
 SweepStatistics sweep_sector(const Viewpoint& view, const SectorPart& part, const SectorMaps& maps);

@@ -44,14 +44,14 @@ class VisibleLine {
     const SightEnd &from = line.from(), &to = line.to();
     axes_[0] = axis_crossings(from.col, to.col, from.row, to.row);
     axes_[1] = axis_crossings(from.row, to.row, from.col, to.col);
-    // A place is a sum of two roundings of numbers below the field's sides, and a factor with two.
+    // A position has two roundings of numbers below the field's sides, and a factor with two more.
     place_error_ = 4 * kMachineEpsilon * std::max(grid.cols, grid.rows);
-    // Each of at most eight operations is off by half a unit of terms no larger than these.
+    // Each of at most eight operations has an error of half a unit of terms no larger than these.
     ends_error_ = 8 * kMachineEpsilon * (std::abs(line.eye()) + std::abs(line.target()));
   }
 
   bool is_visible() {
-    // Middles of pieces first: most lines are blocked, and most of these in several places.
+    // Tests the middles of pieces first: most lines are blocked, and most of these in several places.
     near_.clear();
     if (!look(0, pieces_.length(), BlockMaxima::kCoarse)) return false;
     for (const SightBox& box : near_)

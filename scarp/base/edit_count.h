@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts edits of fields, so that what was built from a field can tell whether it is out of date.
+// Counts edits of fields, so that structures built from a field can detect that they are out of date.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@
 namespace scarp {
 
 /// Number of edits of all fields in this process: while it does not change, no field does. Scenes compare it before
-/// every query, and look at their own fields only when it changed.
+/// every query and check their own fields only if it changed.
 extern std::atomic<std::uint64_t> edits_of_all_fields;
 
 /// Number of edits of one field. Copies start from the same number.

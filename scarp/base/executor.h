@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Threads of the caller: whatever Scarp does on many threads runs where the caller wants it.
+// Lets the caller supply the threads that Scarp's parallel work runs on.
 //
 //   struct Jobs final : scarp::Executor {
 //     void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) override {

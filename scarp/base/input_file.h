@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all readers check before they open a file.
+// The check that all readers make before they open a file.
 #pragma once
 
 #include <string>

@@ -110,7 +110,7 @@ void run_on(Executor& executor, std::int64_t count, std::int64_t grain, Pieces& 
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body,
                   const Progress& progress) {
   if (count <= 0) return;
-  // A single piece runs here: no other thread need wake.
+  // A single piece runs here, without waking another thread.
   if (count <= grain && !progress) return body(0, count);
   Pieces pieces(count, body, progress);
   Executor* const executor = current_executor();

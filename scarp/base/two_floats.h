@@ -4,8 +4,8 @@
 
 namespace scarp {
 
-/// A double rounded to float, as a double. It goes through memory: where g++ 12 converts two doubles at once (-O2 and
-/// above), it takes the way to float and back for nothing and drops it.
+/// A double rounded to float, as a double. The conversion goes through memory: where g++ 12 converts two doubles at
+/// once (-O2 and above), it removes a conversion to float and back.
 inline double as_float(double value) {
   const volatile float rounded = static_cast<float>(value);
   return static_cast<double>(rounded);

@@ -48,14 +48,15 @@ class DistanceField {
   /// Returns the material of the solid whose surface is nearest by value(); 0 if that solid has no material.
   int material(const dvec3& position) const;
 
-  /// Returns the analytic gradient of value(). At a crease it is that of one side. Where it is undefined (at the centre
-  /// of a sphere), returns finite differences over the corners of a tetrahedron.
+  /// Returns the analytic gradient of value(). At a crease it is the gradient of one side. Where it is undefined (at
+  /// the centre of a sphere), returns finite differences over the corners of a tetrahedron.
   dvec3 gradient(const dvec3& position) const;
   /// Returns the outward unit normal: the direction of the gradient.
   dvec3 normal(const dvec3& position) const;
 
   /// Returns bounds along origin + t * direction for t in [t0, t1], within kDistanceReach. If `rates` is
-  /// false, rate_low and rate_high are wide bounds: over grounds, tight ones cost as much as all other bounds together.
+  /// false, rate_low and rate_high are wide bounds: over grounds, tight rates cost as much as all other bounds
+  /// together.
   DistanceSegment along(const dvec3& origin, const dvec3& direction, double t0, double t1, bool rates = true) const;
 
  private:

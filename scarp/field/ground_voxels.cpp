@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// Tops of columns, and what they tell of the columns of each brick.
+// Tops of columns, with summaries for each brick.
 class Columns {
  public:
   Columns(const ivec3& size, std::span<const std::int32_t> tops)

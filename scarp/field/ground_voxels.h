@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ground made of voxels, column by column: large grids without a look at each voxel.
+// Builds voxel ground column by column: large grids without visiting each voxel.
 #pragma once
 
 #include <cstdint>

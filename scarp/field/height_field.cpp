@@ -340,7 +340,7 @@ dvec3 HeightField::shading_normal_inside(const SampleGrid<T>& grid, Cell cell, d
   return normal_of_slopes(sum);
 }
 
-// Of slopes in sample units per cell, rows southwards.
+// Slopes are in sample units per cell, rows southwards.
 dvec3 HeightField::normal_of_slopes(const dvec2& slopes) const {
   const double metres = settings_.scale * settings_.exaggeration;
   return normalize(dvec3(-slopes.x * metres * per_cell_x_, slopes.y * metres * per_cell_y_, 1.0));

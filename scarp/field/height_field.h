@@ -161,14 +161,16 @@ class HeightField {
     double u, v;
   };
   std::optional<Place> place(double x, double y) const;
-  /// Returns the same place in a cell with ground, if it is on the rim of its cell, a hole, and that of a cell with
-  /// ground: of those before, to the west, the north or both, the first, otherwise of those behind.
+  /// If the position is on the rim of a hole, returns it as a position in an adjacent cell with ground: the first of
+  /// those to the west, the north and the north-west that have ground, otherwise one of those to the east and the
+  /// south. All other positions are returned unchanged.
   Place ground_at(const Place& place) const;
 
-  /// Cells by which rounding may move a position from a grid line that it is on, for a field of so many cells along the
-  /// axis. A world coordinate turned into grid units takes 3 roundings (the cell as 1 / size, the product, the
-  /// difference), a ray at a time 3 more, and the coordinates of a caller, col * cell, 1: together 7 of the position,
-  /// or of the number of cells, each 2^-53. With as many for the line's own time, that is below 16.
+  /// Returns the distance, in cells, by which rounding may move a position off the grid line that it is on, for a field
+  /// with this many cells along the axis. A world coordinate turned into grid units takes 3 roundings (the cell as 1 /
+  /// size, the product, the difference), a ray at a time 3 more, and the coordinates of a caller, col * cell, 1:
+  /// together 7 of the position, or of the number of cells, each 2^-53. With as many for the line's own time, that is
+  /// below 16.
   static double rounding_of_line(double position, int cells) {
     constexpr double kUnit = 0x1p-53, kRoundings = 16;
     return kRoundings * kUnit * (std::abs(position) + cells);
@@ -188,7 +190,7 @@ class HeightField {
   /// borders and holes), interpolated bilinearly.
   dvec3 shading_normal(Cell cell, double u, double v) const;
 
-  /// Asks for the samples that shading_normal() of this cell reads. The cell must exist.
+  /// Prefetches the samples that shading_normal() reads for this cell. The cell must exist.
   void prefetch_around(Cell cell) const;
 
   /// Overwrites a rectangle of samples and returns the cells that changed, for updates of accelerators. `stride` counts
@@ -201,7 +203,7 @@ class HeightField {
   /// inside the field, an infinite sample or a border that is no longer shared; in the last two cases the field must
   /// not be used until another call succeeds.
   CellBox samples_changed(const SampleRect& rect);
-  /// Number of calls of set_samples() that succeeded and of samples_changed(), through all copies.
+  /// Number of successful set_samples() calls plus all samples_changed() calls, over all copies.
   std::uint64_t edits() const { return state_->edits.value(); }
   /// Returns the owner passed to view(), or null if there is none.
   const std::weak_ptr<const void>* memory() const { return state_->memory ? &*state_->memory : nullptr; }

@@ -48,8 +48,8 @@ class HeightFunction {
 
   /// Returns the height in metres at a position within kFunctionReach.
   double value(double x, double y, FunctionUse use = FunctionUse::march) const;
-  /// Returns the gradient (dh/dx, dh/dy), in metres per metre. At a crease (absolute, minimum, ...) it is that of one
-  /// side.
+  /// Returns the gradient (dh/dx, dh/dy), in metres per metre. At a crease (absolute, minimum, ...) it is the gradient
+  /// of one side.
   dvec2 gradient(double x, double y, FunctionUse use = FunctionUse::normal) const;
 
   /// Returns bounds over a rectangle within kFunctionReach.

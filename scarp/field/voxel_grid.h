@@ -32,7 +32,7 @@ namespace scarp {
 class VoxelGrid {
  public:
   static constexpr int kMaxSide = 16384;
-  /// Limit of what makes or reads grids voxel by voxel.
+  /// Maximum side for code that makes or reads grids voxel by voxel.
   static constexpr int kMaxModelSide = 2048;
   static constexpr int kBrick = 4;
   static constexpr int kMaxEntryBits = 24;
@@ -87,14 +87,14 @@ class VoxelGrid {
   /// Masks of the stored pages, for vector code: that of brick_index() i is first_masks()[i / kPageBricks] + i %
   /// kPageBricks. All empty pages share one.
   std::span<const std::uint64_t> masks() const { return masks_; }
-  /// An index of masks() per page, then one more that is readable.
+  /// One index of masks() per page, followed by one extra readable entry.
   std::span<const std::uint32_t> first_masks() const { return first_mask_.values(); }
-  /// first_masks() as a table: of grids with more than 2^33 voxels it is in chunks.
+  /// first_masks() as a table, which is stored in chunks for grids with more than 2^33 voxels.
   const SparseTable<std::uint32_t>& page_table() const { return first_mask_; }
   /// Masks of the voxels with an entry, as masks(); the same memory if no entry was dropped.
   std::span<const std::uint64_t> coloured_masks() const { return entry_masks(); }
-  /// Entries of a page as they are stored, for shaders: entry_bits() each from the lowest bit on, and how many come
-  /// before each 4 bricks. `stored` is the page's index in masks(), in pages.
+  /// Stored entries of a page, for shaders: packed in entry_bits() each from the lowest bit up, with the number of
+  /// entries before each group of 4 bricks. `stored` is the page's index in masks(), in pages.
   struct PackedEntries {
     std::span<const std::uint64_t> words;
     std::span<const std::uint16_t> rank_from;
@@ -111,9 +111,9 @@ class VoxelGrid {
       }
     }
   }
-  /// Pages of a grid of this size.
+  /// Number of pages of a grid of this size.
   static std::int64_t pages_of(const ivec3& size);
-  /// Bytes of a grid of this size with `pages` pages that are not empty, and of the entries of `solid` voxels.
+  /// Size in bytes of a grid with `pages` non-empty pages and entries for `solid` voxels.
   static std::int64_t bytes_of(const ivec3& size, std::int64_t pages, std::int64_t solid, int entry_bits);
   /// Bit of a voxel in the mask of its brick.
   static int bit_of(const ivec3& voxel) { return (voxel.x & 3) | (voxel.y & 3) << 2 | (voxel.z & 3) << 4; }

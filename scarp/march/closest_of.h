@@ -43,7 +43,7 @@ struct ClosestPair {
 inline ClosestPair closest_of_segments(const dvec3& p, const dvec3& d, const dvec3& q, const dvec3& e) {
   const dvec3 r = p - q, n = cross(d, e);
   const double dd = dot(d, d), ee = dot(e, e), de = dot(d, e), dr = dot(d, r), er = dot(e, r);
-  // By the cross product: the difference dd ee - de de has no digits left where the segments are almost parallel.
+  // Uses the cross product: the difference dd ee - de de loses all digits for nearly parallel segments.
   const double square = dot(n, n);
   double s = square > 0 ? std::clamp(dot(cross(e, r), n) / square, 0.0, 1.0) : 0.0;
   double t = ee > 0 ? (de * s + er) / ee : 0.0;

@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// What pairs of floats lose of a coordinate: scarp_two_line() of march/two_float.glsl.h.
+// Rounding of a coordinate in pairs of floats: scarp_two_line() of march/two_float.glsl.h.
 constexpr double kPair = 0x1p-43;
 
 void split(const dvec3& value, glsl::vec3& high, glsl::vec3& low) {
@@ -48,7 +48,7 @@ DeviceFunctionRay device_function_ray(const HeightFunction& function, const Sing
   pack(result, ray, part.t_enter, part.t_exit);
   const dvec3 begin = ray.at(part.t_enter), end = ray.at(part.t_exit);
   const double farthest = std::max({std::abs(begin.x), std::abs(begin.y), std::abs(end.x), std::abs(end.y)});
-  // Of the height, and of the ray's own.
+  // Rounding of the height, and of the ray itself.
   result.ray.rounding = static_cast<float>(
       (rounding.at(farthest) + kPair * (std::abs(begin.z) + std::abs(end.z - begin.z))) * (1 + 0x1p-20));
   return result;
@@ -63,13 +63,13 @@ DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingle
   double t_enter = ray.t_min, t_exit = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::max(box.low[axis], -kDistanceReach), high = std::min(box.high[axis], kDistanceReach);
-    // More than what the quotients below round.
+    // More than the rounding of the quotients below.
     const double o = ray.origin[axis], d = ray.direction[axis];
     const double slack = 0x1p-50 * (std::abs(o) + std::max(std::abs(low), std::abs(high)));
     clip_to_range(low - slack, high + slack, o, d, t_enter, t_exit);
   }
   if (!(t_exit >= ray.t_min)) return result;
-  // That it begins in the box is known; by how much rounding may have it outside is not.
+  // It is known to start in the box, but rounding may place it slightly outside.
   if (ray.start == RayStart::on_surface) t_enter = ray.t_min;
   if (!(t_enter <= t_exit) || !std::isfinite(t_exit)) return result;
   pack(result, ray, t_enter, t_exit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays over terrain functions and against distance fields as the marches in single precision want them
-// (march/ray_states.glsl.h), and their answers back.
+// Converts rays over terrain functions and against distance fields to the form of the marches in single precision
+// (march/ray_states.glsl.h), and their results back.
 //
 //   Ray, double ──▶ clipped to where the field can be met, two floats per number ──▶ march in floats ──▶ Hit
 #pragma once
@@ -16,18 +16,18 @@ struct DeviceFunctionRay {
   glsl::ScarpFunctionRay ray{};
   double begin = 0;      ///< t = begin + time * per_time
   double per_time = 1;   ///< a power of two
-  bool marches = false;  ///< whether there is anything to march: else `known` is the answer
+  bool marches = false;  ///< whether there is anything to march; otherwise `known` is the result
   HitStatus known = HitStatus::miss;
 };
 
-/// `ray` must be valid (validate() of march/height/queries.h), `reach` metres at most it is followed.
+/// `ray` must be valid (validate() of march/height/queries.h); it is followed for at most `reach` metres.
 DeviceFunctionRay device_function_ray(const HeightFunction& function, const SingleRounding& rounding, const Ray& ray,
                                       FunctionUse use, double reach);
 
-/// The same against a distance field: clipped to its box. `rounding` of the ray is that where it begins.
+/// The same against a distance field: clipped to its box. `rounding` of the ray is the one at its start.
 DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingleRounding& rounding, const Ray& ray);
-/// By how much more values are off per metre of such a ray: values are, and positions that are rounded to floats, by
-/// which values change by a metre per metre.
+/// Growth of the error of values per metre of such a ray: of the values themselves, and of positions rounded to floats,
+/// which change values by a metre per metre.
 double shape_ray_growth(const ShapeSingleRounding& rounding);
 
 /// Rays of RayRuns (ray_runs_vk.h) whose states travel with them.
@@ -38,7 +38,7 @@ struct FunctionRays {
   static Hit none() { return glsl::scarp_function_miss(); }
   static bool under_way(const Hit& hit) { return hit.status == glsl::kScarpFunctionUnderWay; }
   static void go_on(Ray& ray, const Hit& hit) { ray.state = hit.state; }
-  /// The answer of a run, with the costs of the runs before.
+  /// The result of a run, with the costs of earlier runs.
   static void add(const Hit& answer, Hit& hit) {
     const std::uint32_t bounds = hit.bounds, heights = hit.heights;
     hit = answer;
@@ -50,7 +50,7 @@ struct FunctionRays {
   }
 };
 
-/// The answer that belongs to a ray.
+/// Returns the result for a ray.
 Hit hit_from_device(const Ray& ray, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the settings of naive, fixed-step, relaxed and lipschitz as shaders have them.
+// Private to the station: the settings of naive, fixed-step, relaxed and lipschitz in the layout of shaders.
 #pragma once
 
 #include <string_view>
@@ -16,7 +16,7 @@ static_assert(glsl::kScarpRefineNone == static_cast<glsl::uint>(Refinement::none
               glsl::kScarpRefineBisect == static_cast<glsl::uint>(Refinement::bisect));
 
 /// Returns device settings of the march with this name. The step of fixed-step is in cells. `slope` is the slope bound
-/// for lipschitz, whose proven factor is reduced by the share `rounding`. A unit of clearance is `unit` metres.
+/// for lipschitz, whose proven factor is reduced by the fraction `rounding`. A unit of clearance is `unit` metres.
 inline glsl::ScarpSampling device_sampling(std::string_view march, const MarchSettings& all, double slope,
                                            double rounding, double unit) {
   const auto f = [](double value) { return static_cast<float>(value); };

@@ -22,7 +22,7 @@ Hit fixed_step_over(const Probe& probe, const MarchSettings& all, MarchStats& st
   SamplePoint before{probe.t_enter, 0, on_surface};
   for (int i = on_surface ? 1 : 0;; ++i) {
     if (i == settings.max_steps) return exhausted_at(before.t);
-    // Counted, not summed up, while steps are equal.
+    // Computed from the count, not accumulated, while steps are equal.
     double t = probe.t_enter + i * stride;
     if (share > 0 && i > 0) t = before.t + std::max(stride, share * (before.t - ray.t_min));
     t = std::min(t, probe.t_exit);

@@ -17,7 +17,8 @@ SCARP_FN ScarpSampling scarp_fixed_step(float step, uint refinement, int max_ste
   return scarp_sampling(kScarpFixedStep, step, 0.0f, 0.0f, max_steps, refinement);
 }
 
-/// The time of point number state.steps; the last point is at way.last. Counted, not summed up, while steps are equal.
+/// The time of point number state.steps; the last point is at way.last. Computed from the count, not accumulated, while
+/// steps are equal.
 SCARP_FN float scarp_fixed_step_time(ScarpWay way, ScarpSampling settings, ScarpMarchState state) {
   float s = float(state.steps) * way.stride;
   if (settings.least > 0.0f && state.steps > 0)

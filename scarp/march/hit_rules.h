@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which hits on a field count: those on which side of its surface, and those that a filter accepts.
+// Selects the hits that count: by the side of the surface, and by a filter.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ enum class Sides : std::uint8_t {
   both,
 };
 
-/// Returns whether a hit counts; where it does not, the ray continues as if the surface had a hole there. Called for
-/// some or all hits in the ray's range, not always in order of t; possibly from several threads at once.
+/// Returns whether a hit counts; otherwise the ray continues as if the surface had a hole there. Called for some or all
+/// hits in the ray's range, not always in order of t; possibly from several threads at once.
 using HitFilter = std::function<bool(const Hit&)>;
 
 struct HitRules {

@@ -32,8 +32,7 @@ Hit lipschitz_over(const Probe& probe, const LipschitzSettings& settings, const 
     const double limit = settings.tolerance * (t - ray.t_min), least = probe.least_step_under(t);
     ground.take(point, sunk, !sunk && free > std::max(limit, least));
     if (ground.comes_in() && probe.solid()) return wall(probe.hit(t, sample));
-    // A ray that enters may have touched the edge of the ground, which is a hit: just above, or at the corner of a
-    // hole.
+    // A ray that enters may have touched the edge of the ground, which is a hit, just above or at the corner of a hole.
     const bool approximate = shrink.guarantee == Guarantee::approximate;
     const bool unsure = ground.comes_in() && (free <= least || (step > 0 && !approximate));
     if (sunk && (unsure || !ground.is_under())) {

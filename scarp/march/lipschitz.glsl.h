@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz` for shaders: the march of lipschitz.h in single precision. Guarantee: conservative, as there, but for
+// `lipschitz` for shaders: the march of lipschitz.h in single precision. Guarantee: conservative, as there, except for
 // rounding (doc/dev/numerics.md, "Single precision"); over functions rounding is counted. Without
 // ScarpSampling::proven: approximate.
 //
@@ -19,7 +19,7 @@ SCARP_FN ScarpSampling scarp_lipschitz(float shrink, float tolerance, int max_st
 }
 
 /// Returns the status of the point at state.s, over ground if `valid`; or kScarpMiss, and moves to the next: no further
-/// than `until`, and over a hole there.
+/// than `until`, and over a hole to `until`.
 SCARP_FN int scarp_lipschitz_turn(ScarpWay way, ScarpSampling settings, bool valid, float clearance, float until,
                                   SCARP_INOUT(ScarpMarchState) state) {
   int status = kScarpMiss;
@@ -33,7 +33,7 @@ SCARP_FN int scarp_lipschitz_turn(ScarpWay way, ScarpSampling settings, bool val
   float least = scarp_least_under(way, state.s);
   scarp_mark_under(comes_in, valid, clearance, !sunk && free > max(limit, least), state);
   bool under = (state.phase & kScarpUnder) != 0u;
-  // A ray that enters may have touched the edge of the ground, which is a hit: just above, or at the corner of a hole.
+  // A ray that enters may have touched the edge of the ground, which is a hit, just above or at the corner of a hole.
   bool proven = settings.proven != 0u;
   bool unsure = comes_in && (free <= least || (!first && proven));
   if (comes_in && way.solid) {
@@ -44,7 +44,7 @@ SCARP_FN int scarp_lipschitz_turn(ScarpWay way, ScarpSampling settings, bool val
   } else if (valid && under) {
     next = min(state.s + max(free, least), until);
   } else if (valid) {
-    // Less by what the sum may round up. A step that is too short to advance is a hit.
+    // Reduced by the rounding of the sum. A step that is too short to advance is a hit.
     next = state.s + (free - 1.1920928955078125e-7f * (state.s + free));
     if (free <= limit || !(next > state.s)) status = kScarpHit;
     next = min(next, until);

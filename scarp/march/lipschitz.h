@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz`: sphere tracing of a height field. The vertical distance h to the ground is no distance, but with a bound
-// c on the ground's slope h / sqrt(1 + c^2) is one that nothing is nearer than, and a step by it is safe.
+// `lipschitz`: sphere tracing of a height field. The vertical distance h overestimates the distance to the ground, but
+// with a bound c on the ground's slope no ground is nearer than h / sqrt(1 + c^2), so a step of that length is safe.
 //
 //            o  h above the ground: the nearest ground can rise towards the ray by c per metre, and no more,
 //           /|\                     so a ball of radius h / sqrt(1 + c^2) is free of it
 //          / | \      shrink = 1 / sqrt(1 + c^2)
 //    _____/__|__\____
 //
-// c is slope_bound() of the field, the certified slope of the function, or given (settings.lipschitz.shrink). Across a
-// hole there is no such bound: the ground may stand at any height on its far side. So no step leaves the largest block
-// of the pyramid round the point that has no hole, and over a hole a step goes to the edge of its cell.
+// c is slope_bound() of the field, the certified slope of the function, or given (settings.lipschitz.shrink). This
+// bound does not hold across a hole: the ground may have any height on its far side. Steps therefore stay within the
+// largest hole-free block of the pyramid around the point; over a hole a step ends at the edge of its cell.
 //
-// Guarantee: conservative. A hit is reported above the ground, within the tolerance; where the ray comes too close to
-// advance, it is exhausted. A ray that starts on the surface steps off it by one cell without a test. A ray that starts
+// Guarantee: conservative. A hit is reported above the ground, within the tolerance; a ray that comes too close to
+// advance is exhausted. A ray that starts on the surface steps off it by one cell without a test. A ray that starts
 // below the ground is `below`. A ray that enters below it through the border is followed (sampling.h) with the same
 // factor; it may skip stretches above the ground that are shorter than 2^-12 of a cell. A ray that enters below the
 // ground from a hole is exhausted, because it may have touched the rim.
@@ -45,8 +45,8 @@ std::string lipschitz_caveat(const LipschitzSettings& settings, double slope);
 /// Throws Error when both are missing.
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr);
-/// The same over a terrain function, within settings.function.reach; rounding counts, and off the surface it steps by
-/// 2^-10 of the way out.
+/// The same over a terrain function, within settings.function.reach; rounding counts, and rays that start on the
+/// surface first step by 2^-10 of the exit distance.
 Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
 

@@ -12,12 +12,12 @@ namespace scarp {
 /// from t_min.
 struct NaiveSettings {
   double step_factor = 0.7;     ///< of the vertical distance h, > 0
-  double min_step = 1.0 / 512;  ///< least step, as a share of the ray's length to the field's border, > 0
+  double min_step = 1.0 / 512;  ///< minimum step as a fraction of the ray's length to the field's border, > 0
   double tolerance = 0.001;     ///< height above ground that counts as a hit, per unit of distance, >= 0
   int max_steps = 1024;         ///< >= 1
 };
 
-/// `fixed-step`: a sample every `step`, a hit where one is no longer above the ground.
+/// `fixed-step`: one sample every `step`; hits at the first sample that is no longer above the ground.
 struct FixedStepSettings {
   double step = 0.5;        ///< cells, their shorter side, > 0
   bool interpolate = true;  ///< whether Refinement::none means `secant` here
@@ -55,33 +55,33 @@ struct SphereTraceSettings {
   int max_steps = 1024;     ///< >= 1
 };
 
-/// What naive, fixed-step and relaxed do with their last interval: from the sample before, where the test for a hit
-/// failed, to the one where it holds.
+/// How naive, fixed-step and relaxed refine their last interval: from the last sample where the hit test failed to the
+/// first where it holds.
 enum class Refinement : std::uint8_t {
   none,    ///< the hit is the last sample
-  secant,  ///< where the straight line through the two clearances meets the test's limit
+  secant,  ///< where the straight line through the two clearances crosses the limit of the test
   bisect,  ///< the interval is halved by the test
 };
 
 /// "none", "secant", "bisect".
 std::string_view name_of(Refinement refinement);
-/// Throws Error listing the names when there is no such refinement.
+/// Throws Error listing the names if the refinement is unknown.
 Refinement find_refinement(std::string_view name);
 
 /// Settings that naive, fixed-step and relaxed share.
 struct SamplingSettings {
   Refinement refinement = Refinement::none;
   int halvings = 24;  ///< of `bisect`, 1..60
-  /// Metres off the ground that count as a hit of naive and relaxed at any distance, >= 0. Rays of naive that start on
-  /// the surface begin within it: they hit only what is deeper below the ground.
+  /// Height in metres that counts as a hit for naive and relaxed at any distance, >= 0. Naive rays that start on the
+  /// surface start within it: they hit only where they are deeper below ground.
   double tolerance = 0;
 };
 
-/// Settings of marches over terrain functions alone, which have no cells to measure by and no end.
+/// Settings that apply only to marches over terrain functions, which have neither cells nor an end.
 struct FunctionMarchSettings {
-  double reach = std::numeric_limits<double>::infinity();  ///< of all: metres that a ray is followed, > 0
-  double step = 5;                                         ///< of fixed-step, in the place of its cells: metres, > 0
-  double step_share = 0;  ///< of fixed-step: steps are at least this share of the distance travelled, >= 0
+  double reach = std::numeric_limits<double>::infinity();  ///< all marches: maximum length of a ray in metres, > 0
+  double step = 5;                                         ///< fixed-step: step in metres, in place of cells, > 0
+  double step_share = 0;  ///< fixed-step: minimum step as a fraction of the distance travelled, >= 0
 };
 
 struct MarchSettings {
@@ -96,13 +96,13 @@ struct MarchSettings {
   SphereTraceSettings sphere_trace;
 };
 
-/// The refinement of fixed-step: its own `interpolate` is a secant.
+/// The refinement of fixed-step: `interpolate` means a secant.
 inline Refinement refinement_of_fixed_step(const MarchSettings& settings) {
   if (settings.sampling.refinement != Refinement::none) return settings.sampling.refinement;
   return settings.fixed_step.interpolate ? Refinement::secant : Refinement::none;
 }
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const MarchSettings& settings);
 
 }  // namespace scarp

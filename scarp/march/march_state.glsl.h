@@ -19,7 +19,7 @@ const int kScarpDoubtful = -1;  ///< of a first pass: to be marched by the secon
 /// Later than any time.
 const float kScarpNever = 1.0e30f;
 
-/// Where an interrupted march is. For a ray that has not begun, steps and phase are 0.
+/// State of an interrupted march. For a ray that has not started, steps and phase are 0.
 struct ScarpMarchState {
   float s;       ///< time
   float before;  ///< this and h_before depend on the march

@@ -17,7 +17,7 @@ Hit naive_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) 
   const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
   const bool on_surface = probe.ray().start == RayStart::on_surface;
   const double near = all.sampling.tolerance * probe.per_metre();
-  // Rays from the surface begin within the tolerance: they step over it, and hit what is deeper.
+  // Rays from the surface start within the tolerance: they step over it, and hit only deeper ground.
   const double least = std::max(settings.min_step * (probe.t_exit - start), on_surface ? near : 0.0);
   const auto limit = [&](double t) {
     const double share = settings.tolerance * (t - start);

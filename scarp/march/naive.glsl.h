@@ -15,7 +15,7 @@ SCARP_FN ScarpSampling scarp_naive(float step_factor, float min_step, float tole
   return scarp_sampling(kScarpNaive, step_factor, min_step, tolerance, max_steps, kScarpRefineNone);
 }
 
-/// The least step, a time; also the first step off the surface.
+/// The minimum step, a time; also the first step off the surface.
 SCARP_FN float scarp_naive_least(ScarpWay way, ScarpSampling settings) {
   return max(settings.least * (way.travelled + way.exit), scarp_start_margin(way, settings));
 }
@@ -38,7 +38,7 @@ SCARP_FN int scarp_naive_turn(ScarpWay way, ScarpSampling settings, bool valid, 
   } else if (stops && (state.phase & kScarpUnder) == 0u) {
     status = kScarpHit;
   } else {
-    // Over a hole only the least step is known.
+    // Over a hole only the minimum step is known.
     float by_height = valid ? settings.factor * abs(clearance * way.per_clearance) : 0.0f;
     scarp_step_to(state.s + max(by_height, scarp_naive_least(way, settings)), valid, clearance, state);
   }

@@ -7,8 +7,8 @@
 
 namespace scarp {
 
-/// Shortens [t_enter, t_exit] to where o + d t is in [low, high], but for the rounding of two quotients; empty
-/// (t_enter > t_exit) where that is nowhere.
+/// Shortens [t_enter, t_exit] to the part where o + d t is in [low, high], up to the rounding of two quotients; empty
+/// (t_enter > t_exit) if there is none.
 inline void clip_to_range(double low, double high, double o, double d, double& t_enter, double& t_exit) {
   if (d == 0) {
     if (!(o >= low && o <= high)) t_exit = -std::numeric_limits<double>::infinity();

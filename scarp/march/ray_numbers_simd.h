@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays into arrays of their numbers, for those who compute on many at once.
-// Read once for each instruction set.
+// Converts rays to arrays of their numbers, for vector code. Compiled once per instruction set.
 #if defined(SCARP_MARCH_RAY_NUMBERS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_RAY_NUMBERS_SIMD_H
 #undef SCARP_MARCH_RAY_NUMBERS_SIMD_H
@@ -18,7 +17,7 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-// The eight numbers that a ray begins with.
+// The first eight numbers of a ray.
 constexpr std::size_t kRayNumbers = 8;
 static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(double) &&
               offsetof(Ray, t_min) == 6 * sizeof(double) && offsetof(Ray, t_max) == 7 * sizeof(double));
@@ -45,7 +44,7 @@ HWY_INLINE void load_ray_numbers(const RayAt& ray, std::size_t count, double* co
       hn::StoreU(hn::ConcatUpperUpper(d4, cd13, ab13), d4, to[half + 3] + i);
     }
   }
-  if (count % 4 == 0) return;  // as compilers know where the count is a constant
+  if (count % 4 == 0) return;  // which compilers know if the count is a constant
 #endif
   for (; i < count; ++i) {
     for (std::size_t number = 0; number < kRayNumbers; ++number) to[number][i] = numbers_of(i)[number];

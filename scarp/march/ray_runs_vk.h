@@ -19,7 +19,7 @@
 
 namespace scarp {
 
-/// Throws Error unless a batch has as many answers and costs (or none) as rays.
+/// Throws Error unless a batch has as many results and costs (or none) as rays.
 inline void require_room(std::size_t rays, std::size_t hits, std::size_t costs) {
   if (rays != hits || (costs != 0 && rays != costs))
     throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays, hits, costs));
@@ -33,7 +33,8 @@ std::string names_of(const Table& table) {
   return names;
 }
 
-/// The slices of a batch. What a kind of ray is on the host (Prepared), on the device (Ray), and its answer (Hit).
+/// The slices of a batch, by the types of a ray on the host (Prepared) and on the device (Ray), and of its result
+/// (Hit).
 template <class Kind>
 class RaySlices {
  public:
@@ -43,12 +44,12 @@ class RaySlices {
   const std::vector<PassTime>& passes() const { return passes_; }
 
  protected:
-  /// Throws Error: a slice out of its range.
+  /// Throws Error for a slice out of range.
   RaySlices(const Device& device, std::uint32_t rays_at_once) : slice_(checked(rays_at_once)), commands_(device) {}
 
   static constexpr std::int64_t kRaysPerPiece = 1024;
 
-  // body(i) for each i below count, on all threads: the same one for each kRaysPerPiece.
+  // Calls body(i) for each i below count, on all threads, kRaysPerPiece at a time.
   template <class Body>
   static void for_each(std::size_t count, const Body& body) {
     parallel_for(static_cast<std::int64_t>(count), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -56,8 +57,8 @@ class RaySlices {
     });
   }
 
-  // For each i below count, on all threads: prepare(i) returns a Prepared, answer(i, prepared, hit) takes the answer,
-  // which means nothing for rays that do not march. `march` sets found_ from prepared_, the rays of one slice.
+  // For each i below count, on all threads: prepare(i) returns a Prepared, answer(i, prepared, hit) receives the
+  // result, which is undefined for rays that do not march. `march` sets found_ from prepared_, the rays of one slice.
   template <class Prepare, class Answer, class March>
   void ask_in_slices(std::size_t count, const Prepare& prepare, const Answer& answer, const March& march) {
     passes_.clear();
@@ -83,7 +84,7 @@ class RaySlices {
   std::uint32_t slice_;
   Commands commands_;
   std::vector<PassTime> passes_;
-  // Of one slice, by ray.
+  // The current slice, by ray.
   std::vector<Prepared> prepared_;
   std::vector<Hit> found_;
 
@@ -106,13 +107,13 @@ class RayRuns : public RaySlices<Kind> {
 
   static constexpr std::uint32_t kThreads = 64;  // of a workgroup
 
-  /// Throws Error: a slice out of its range, no memory on the device.
+  /// Throws Error for a slice out of range, or if the device lacks memory.
   RayRuns(const Device& device, std::uint32_t rays_at_once)
       : RaySlices<Kind>(device, rays_at_once),
         rays_(device, std::uint64_t{slice_} * sizeof(Ray), "rays"),
         answers_(device, std::uint64_t{slice_} * sizeof(Hit), "hits") {}
 
-  /// `prepare` and `answer` as RaySlices has them; `batch` is the shader's push constants, with rays, hits and count.
+  /// `prepare` and `answer` as in RaySlices; `batch` is the shader's push constants, with rays, hits and count.
   template <class Batch, class Prepare, class Answer>
   void ask(const ComputePipeline& pipeline, Batch batch, std::size_t count, const Prepare& prepare,
            const Answer& answer) {
@@ -127,7 +128,7 @@ class RayRuns : public RaySlices<Kind> {
   using RaySlices<Kind>::prepared_;
   using RaySlices<Kind>::found_;
 
-  // A run has the rays that are under way only.
+  // A run contains only the rays that are under way.
   template <class Batch>
   void march(const ComputePipeline& pipeline, Batch& batch) {
     open_.clear();
@@ -158,7 +159,7 @@ class RayRuns : public RaySlices<Kind> {
   }
 
   DeviceBuffer rays_, answers_;
-  // Of one run, with rays under way only: themselves, their indices and answers.
+  // The rays under way in one run, their indices and results.
   std::vector<Ray> packed_;
   std::vector<std::size_t> open_;
   std::vector<Hit> answered_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rays on their way to marches in single precision over terrain functions and distance fields, and their answers. The
-// host makes rays in double (device_function_ray.h): clipped to where the field can be met, every number as two floats,
-// times counting from there.
+// Rays for the marches in single precision over terrain functions and distance fields, and their results. The host
+// prepares rays in double (device_function_ray.h): clipped to the part that can hit the field, every number as two
+// floats, with times counting from there.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_RAY_STATES_GLSL_H
@@ -12,7 +12,7 @@
 
 SCARP_GLSL_BEGIN
 
-const uint kScarpFromSurface = 1u;  ///< ScarpFunctionRay::flags: begins on the surface, above it by definition
+const uint kScarpFromSurface = 1u;  ///< ScarpFunctionRay::flags: starts on the surface, above it by definition
 
 /// A ray, metres.
 struct ScarpFunctionRay {
@@ -21,9 +21,9 @@ struct ScarpFunctionRay {
   vec3 direction;  ///< 1 to 2 long
   vec3 direction_low;
   float exit;       ///< the last time, included
-  float travelled;  ///< time from the begin of the ray's range to its origin here
+  float travelled;  ///< time from the start of the ray's range to its origin here
   float speed;      ///< length of the direction
-  float rounding;   ///< metres by which clearances as computed may be off
+  float rounding;   ///< error bound of computed clearances, in metres
   uint flags;       ///< kScarpFromSurface and so on
   ScarpMarchState state;
 };
@@ -34,16 +34,16 @@ const int kScarpFunctionBelow = kScarpBelow;
 const int kScarpFunctionExhausted = kScarpExhausted;
 const int kScarpFunctionUnderWay = 4;  ///< not done: march the same ray again, from `state`
 
-/// The answer; time means something for hits and exhausted.
+/// The result; time is defined for hits and exhausted.
 struct ScarpFunctionHit {
   int status;
   float time;
-  uint bounds;   ///< of segments that were asked for
-  uint heights;  ///< that were looked at
+  uint bounds;   ///< number of bounds of segments
+  uint heights;  ///< number of heights
   ScarpMarchState state;
 };
 
-/// A miss at no cost: what marches begin with.
+/// A miss without cost: the initial state of marches.
 SCARP_FN ScarpFunctionHit scarp_function_miss() {
   ScarpFunctionHit hit;
   hit.status = kScarpFunctionMiss;
@@ -57,7 +57,7 @@ SCARP_FN ScarpFunctionHit scarp_function_miss() {
   hit.state.phase = 0u;
   return hit;
 }
-/// Puts a status and its time into an answer.
+/// Sets the status and time of a result.
 SCARP_FN void scarp_function_tell(int status, float s, SCARP_INOUT(ScarpFunctionHit) hit) {
   hit.status = status;
   hit.time = s;

@@ -37,7 +37,7 @@ Hit relaxed_over(const Probe& probe, const MarchSettings& all, MarchStats& stats
       const double met = std::copysign(limit(t), before.h);
       return refined_hit(probe, all.sampling, all.sampling.refinement, before, point, sample, met, stops, stats);
     } else if (point.h < 0 && step == 0) {
-      // Below at the first sample: the way back would leave the ray's range.
+      // Below at the first sample: stepping back would leave the ray's range.
       return on_surface ? probe.hit(t, sample) : below();
     } else {
       t = std::max(t + settings.step_factor * point.h, probe.t_enter);

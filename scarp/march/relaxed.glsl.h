@@ -35,7 +35,7 @@ SCARP_FN int scarp_relaxed_turn(ScarpWay way, ScarpSampling settings, bool valid
     next = state.s + max(settings.factor * abs(above), scarp_least_under(way, state.s));
   else if (valid && scarp_relaxed_stops(way, settings, state.s, clearance))
     status = kScarpHit;
-  else if (valid && clearance < 0.0f && state.steps == 0)  // going back would leave the ray's range
+  else if (valid && clearance < 0.0f && state.steps == 0)  // stepping back would leave the ray's range
     status = way.from_surface ? kScarpHit : kScarpBelow;
   else if (valid)
     next = max(state.s + settings.factor * above, 0.0f);

@@ -6,8 +6,8 @@
 //
 //   state.s ──▶ probe: clearance, or nothing over a hole ──▶ turn ──▶ hit, or the next state.s
 //
-// What is called at each turn returns at its end only: an early return becomes a loop of one turn, and some drivers
-// limit the turns of all loops (vk/loop_turns.glsl.h).
+// Functions called in each turn return only at their end: an early return becomes a loop of one turn, and some drivers
+// limit the iterations of all loops (vk/loop_turns.glsl.h).
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_SAMPLING_GLSL_H
@@ -18,7 +18,7 @@
 
 SCARP_GLSL_BEGIN
 
-// Which march.
+// The march.
 const uint kScarpNaive = 0u;
 const uint kScarpFixedStep = 1u;
 const uint kScarpRelaxed = 2u;
@@ -33,10 +33,11 @@ const uint kScarpRefineBisect = 2u;
 struct ScarpSampling {
   uint march;       ///< kScarpNaive and so on
   float factor;     ///< naive, relaxed: of the vertical distance; lipschitz: shrink factor; fixed-step: cells or metres
-  float least;      ///< naive: least step, a share of the ray's length; fixed-step: share of the distance travelled
+  float least;      ///< naive: minimum step, as a fraction of the ray's length; fixed-step: fraction of the distance
+                    ///< travelled
   float tolerance;  ///< distance off the ground that counts as a hit, per unit of distance; fixed-step ignores it
-  float height;     ///< naive, relaxed: sample units or metres off the ground that are a hit at any distance
-  int max_steps;    ///< most points, >= 1; then kScarpExhausted
+  float height;     ///< naive, relaxed: height in sample units or metres that is a hit at any distance
+  int max_steps;    ///< maximum number of points, >= 1; then kScarpExhausted
   uint refinement;  ///< of the last interval, kScarpRefineNone and so on; lipschitz ignores it
   int halvings;     ///< for kScarpRefineBisect
   uint proven;      ///< lipschitz: 0 if steps of `factor` may pass through the ground; points below it are then hits
@@ -58,24 +59,24 @@ SCARP_FN ScarpSampling scarp_sampling(uint march, float factor, float least, flo
   return settings;
 }
 
-/// A ray as the marches see it; all members are times, except as noted. Clearances are in the field's own unit.
+/// A ray in the form of the marches; all members are times, except as noted. Clearances are in the field's own unit.
 struct ScarpWay {
-  float exit;           ///< when it leaves the field or its range ends: naive's least step is a share of it
-  float last;           ///< of the last point, included: exit, or before, where nothing more is to be met
+  float exit;           ///< when it leaves the field or its range ends: naive's minimum step is a fraction of it
+  float last;           ///< of the last point, inclusive: exit, or earlier if nothing more can be hit
   float travelled;      ///< from the start of the ray's range to time 0
-  float per_clearance;  ///< time in which the ray goes as far as a unit of clearance is high
+  float per_clearance;  ///< time in which the ray travels one unit of clearance
   float rounding;       ///< error bound of clearances, in their unit
   float blind;          ///< the first step off the surface, and a step over a hole
   float stride;         ///< of fixed-step
   bool from_surface;
-  bool from_outside;  ///< comes in through the border
-  bool solid;         ///< there is rock under the sheet
+  bool from_outside;  ///< enters through the border
+  bool solid;         ///< the ground is solid
 };
 
 // Bits of ScarpMarchState::phase. `before` and `h_before` are the time and clearance of the previous point.
 const uint kScarpKnown = 1u;       ///< the previous point was over ground
 const uint kScarpWasAbove = 2u;    ///< the last point over ground was above it
-const uint kScarpBeganBelow = 4u;  ///< the first one was under it
+const uint kScarpBeganBelow = 4u;  ///< the first one was below it
 const uint kScarpUnder = 8u;       ///< the ray has entered below the ground, and has not emerged since
 
 /// The height around the ground, as a time, within which rays of naive from the surface begin; 0 without a tolerance
@@ -92,7 +93,7 @@ SCARP_FN float scarp_hit_limit(ScarpWay way, ScarpSampling settings, float s) {
 }
 
 /// Returns whether the ray enters below the ground at the point at state.s, through the border or from a hole. That is
-/// no hit: the ray continues, and hits where it later crosses the ground from above.
+/// not a hit: the ray continues, and hits where it later crosses the ground from above.
 SCARP_FN bool scarp_comes_in_under(ScarpWay way, bool valid, float clearance, ScarpMarchState state) {
   bool unseen_before = (state.phase & kScarpKnown) == 0u && (state.steps > 0 || way.from_outside);
   return valid && clearance < -way.rounding && unseen_before;

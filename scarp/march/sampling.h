@@ -28,12 +28,12 @@ inline Hit below() {
   hit.status = HitStatus::below;
   return hit;
 }
-/// A hit of a wall at the rim of solid ground.
+/// A hit on a wall at the rim of solid ground.
 inline Hit wall(Hit hit) {
   hit.wall = true;
   return hit;
 }
-/// The answer of a march that has reached its step limit.
+/// The result of a march that has reached its step limit.
 inline Hit exhausted_at(double t) {
   Hit hit;
   hit.status = HitStatus::exhausted;
@@ -77,9 +77,9 @@ class Underground {
   bool comes_in_ = false, under_ = false, entered_below_ = false;
 };
 
-/// Returns the hit between `before`, where the test stops(t, clearance) fails, and `last`, where it holds: nearer to
-/// where it begins to hold. The secant takes that for a clearance of `limit`. The hit stays at `last` if `before` is
-/// over a hole, or the result is.
+/// Returns the hit between `before`, where the test stops(t, clearance) fails, and `last`, where it holds: closer to
+/// where it starts to hold. The secant assumes a clearance of `limit` there. The hit stays at `last` if `before` or the
+/// refined point is over a hole.
 template <class Probe, class Stops>
 Hit refined_hit(const Probe& probe, const SamplingSettings& settings, Refinement how, const SamplePoint& before,
                 const SamplePoint& last, const typename Probe::Sample& sample, double limit, const Stops& stops,

@@ -16,7 +16,8 @@ constexpr double kUnit = 0x1p-53;
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // When a point that starts outside, q from the centre, enters a ball or, with q and m square to its axis, a cylinder.
-// By the place where it is closest: the difference of squares of a long way and a small radius has no digits left.
+// Computed at the point of closest approach: the difference of squares of a long path and a small radius would lose all
+// digits.
 // Source: E. Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems (2019).
 double enter_round(const dvec3& q, const dvec3& m, double radius) {
   const double square = dot(m, m), closest = -dot(q, m) / square;
@@ -90,7 +91,7 @@ void validate(const Capsule& capsule, const dvec3& motion) {
 std::optional<double> sweep_time(const Capsule& capsule, const dvec3& motion, const Triangle& triangle, double last) {
   const auto& [a, b, c] = triangle;
   const dvec3 d = capsule.b - capsule.a;
-  // The motion starts near the triangle, so that squares of long ways do not hide its size.
+  // The motion starts near the triangle, so that squares of long paths do not cancel its size.
   const double square = dot(motion, motion);
   double begin = 0;
   if (square > 0) {
@@ -144,7 +145,7 @@ double sweep_bound(const Capsule& capsule, const dvec3& motion, const dvec3& low
     const double wide = capsule.radius + 16 * kUnit *
                                              (std::abs(a) + std::abs(b) + std::abs(m) + capsule.radius +
                                               std::abs(low[axis]) + std::abs(high[axis]));
-    // Where the lower end may be, of the segment's two.
+    // Possible positions of the segment's lower end.
     const double lowest = low[axis] - wide - std::max(0.0, b - a), highest = high[axis] + wide + std::max(0.0, a - b);
     if (m == 0) {
       if (!(a >= lowest && a <= highest)) return kNever;
@@ -154,7 +155,7 @@ double sweep_bound(const Capsule& capsule, const dvec3& motion, const dvec3& low
     begin = std::max(begin, in), end = std::min(end, out);
   }
   if (!(begin <= end)) return kNever;
-  // The ball around the box: of a small box far nearer to the truth than a box around the capsule.
+  // The ball around the box: for a small box much tighter than a box around the capsule.
   const dvec3 centre = 0.5 * (low + high), d = capsule.b - capsule.a;
   const double rounding = 64 * kUnit * (length(capsule.a) + length(d) + length(motion) + length(low) + length(high));
   const double reach = capsule.radius + 0.5 * length(high - low) + rounding;

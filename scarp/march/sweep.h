@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sphere or a capsule that moves along a segment: when it first touches a triangle.
+// When a sphere or capsule that moves along a segment first touches a triangle.
 //
 //       ( )===( )              the capsule is the points within `radius` of its segment a..b
 //     ---->                    it touches the triangle when its centre line is within `radius` of it; so a point, a,
@@ -24,7 +24,7 @@ struct Capsule {
 
 /// The first contact of a moving capsule.
 struct Contact {
-  double t = 0;       ///< share of the motion, 0..1; 0: it touches or overlaps where it starts
+  double t = 0;       ///< fraction of the motion, 0..1; 0: it touches or overlaps at the start
   dvec3 point{0.0};   ///< where it touches
   dvec3 normal{0.0};  ///< unit, from the point towards the centre line; if that meets the surface, the surface's normal
                       ///< towards the side that the motion comes from
@@ -39,8 +39,8 @@ std::optional<double> sweep_time(const Capsule& capsule, const dvec3& motion, co
 /// Returns the contact with a triangle that is touched at t.
 Contact contact_at(const Capsule& capsule, const dvec3& motion, const Triangle& triangle, double t);
 
-/// The share of the motion from which on the capsule may touch a box; infinity if it does not up to `last`. Not later
-/// than the first contact.
+/// Returns the fraction of the motion from which the capsule may touch a box; infinity if it does not up to `last`. Not
+/// later than the first contact.
 double sweep_bound(const Capsule& capsule, const dvec3& motion, const dvec3& low, const dvec3& high, double last);
 
 }  // namespace scarp

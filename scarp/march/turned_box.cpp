@@ -11,7 +11,7 @@ namespace scarp {
 void validate(const TurnedBox& box) {
   bool good = box.half.x >= 0 && box.half.y >= 0 && box.half.z >= 0 && std::isfinite(length(box.half)) &&
               std::isfinite(length(box.centre));
-  // Many roundings of turns that were multiplied, and no shear that could be meant.
+  // Allows many roundings of multiplied rotations, but no intentional shear.
   constexpr double kRigid = 1e-9;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j <= i; ++j) good = good && std::abs(dot(box.turn[i], box.turn[j]) - (i == j ? 1 : 0)) <= kRigid;

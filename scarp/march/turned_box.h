@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A box in any rotation, and whether it meets a triangle or an upright box: no axis separates them. Source: S.
-// Gottschalk, M. C. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996; T. Akenine-Möller, "Fast 3D triangle-box overlap
-// testing", JGT 6(1), 2001. Exact to rounding; a touch is an overlap.
+// A rotated box, and its overlap test with a triangle or an axis-aligned box (separating axes). Source: S. Gottschalk,
+// M. C. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996; T. Akenine-Möller, "Fast 3D triangle-box overlap testing", JGT 6(1),
+// 2001. Exact to rounding; a touch is an overlap.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -19,7 +19,7 @@ struct TurnedBox {
 /// Throws Error unless a box is finite, none of its sides is negative and `turn` is a rotation.
 void validate(const TurnedBox& box);
 
-/// Returns whether a box and a triangle, or an upright box, both closed, have a point in common.
+/// Returns whether a box and a triangle or an axis-aligned box, both closed, overlap.
 bool overlaps(const TurnedBox& box, const Triangle& triangle);
 bool overlaps(const TurnedBox& box, const dvec3& low, const dvec3& high);
 

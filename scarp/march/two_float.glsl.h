@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Numbers of twice a float's precision, as sums of two floats: for the few places where a float would not do.
+// Numbers with twice the precision of a float, as sums of two floats, for the few places where a float is not
+// sufficient.
 //
 //   value = high + low,  |low| <= half a unit in the last place of high: 48 bits
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays whose directions are so long or short that their squares or inverses are no numbers are marched as rays of usual
-// length: brought near 1 by a power of two, which rounds nothing; t goes back by the same.
+// Rays whose directions are so long or short that their squares or reciprocals overflow are marched at usual length:
+// scaled near 1 by a power of two, which is exact; t is scaled back by the same factor.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@
 
 namespace scarp {
 
-/// The length of the longest component: what the following go by.
+/// The absolute value of the longest component, which the functions below use as the length.
 inline double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Far from where doubles end.
+/// Far from the limits of doubles.
 constexpr double kShortestUsual = 0x1p-500, kLongestUsual = 0x1p500;
 inline bool is_usual(double longest) { return longest > kShortestUsual && longest < kLongestUsual; }
 
-/// Whether there is a direction at all: neither zero nor infinite nor NaN.
+/// Whether the direction is valid: neither zero nor infinite nor NaN.
 inline bool is_direction(double longest) { return longest > 0 && std::isfinite(longest); }
 
-/// Whether validate() accepts the ray's numbers; marches need not end for others.
+/// Whether validate() accepts the ray's numbers; for others, marches may not terminate.
 inline bool is_followable(const Ray& ray) {
   const double origin = longest_of(ray.origin);
   const bool numbers =
@@ -31,7 +31,7 @@ inline bool is_followable(const Ray& ray) {
 }
 
 /// The ray with its direction divided by 2^exponent, and its range multiplied; its t are 2^exponent times those of
-/// `ray`. Its range ends where the t of `ray` are no longer finite: what is farther is missed.
+/// `ray`. The range is cut where t of `ray` would overflow: hits beyond are missed.
 inline Ray scaled_down(const Ray& ray, int exponent) {
   Ray scaled = ray;
   for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
@@ -40,7 +40,7 @@ inline Ray scaled_down(const Ray& ray, int exponent) {
   return scaled;
 }
 
-/// The closest hit of a ray whose longest component is not usual: `march` takes the ray at usual length.
+/// Returns the closest hit of a ray of unusual length: calls `march` with the ray scaled to usual length.
 template <class March>
 Hit at_usual_length(const Ray& ray, double longest, const March& march) {
   if (!is_direction(longest)) return {};

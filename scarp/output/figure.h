@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws what explains a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
+// Draws the annotations of a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
 //
 //     +-----------------------------------------+     A title
 //     |               A title              N    |        84°W    83°W
@@ -76,7 +76,7 @@ struct FigureLabel {
   std::string text{};
 };
 
-/// Where title, legend, scale bar, north arrow and labels of the graticule stand.
+/// Position of title, legend, scale bar, north arrow and labels of the graticule.
 enum class FigureLayout : std::uint8_t {
   on,      ///< on the picture
   beside,  ///< on white margins around the picture; only lines and contour labels are drawn over its pixels
@@ -115,8 +115,8 @@ bool is_figure_text(const std::string& text);
 /// Throws Error if a picture of this size is too small for the figure.
 void require_room(const Figure& figure, int width, int height);
 
-/// Draws a figure. The result has the size of the picture if the layout is `on`. Omits labels of ticks that would
-/// touch, but never that of the last. Throws Error if the picture is too small for the figure.
+/// Draws a figure. The result has the size of the picture if the layout is `on`. Omits tick labels that would overlap,
+/// but never the last one. Throws Error if the picture is too small for the figure.
 FigureImage draw_figure(const RgbView& picture, const Figure& figure);
 
 /// Writes a PDF of one page: the picture at `dots_per_inch`, > 0, and the figure as lines and text. Writes the

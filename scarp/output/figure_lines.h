@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a figure draws into the picture itself: graticule and labels of contour lines.
+// The parts of a figure drawn into the picture itself: graticule and labels of contour lines.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct FigureMargins {
 FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule, double width,
                                 double height);
 
-/// Draws into the picture in `frame`. `taken`: where nothing else may be written; grows.
+/// Draws into the picture in `frame`. `taken` holds the occupied areas, and grows.
 void draw_graticule(const FigurePen& pen, const Figure& figure, const FigureRect& frame,
                     std::vector<FigureRect>& taken);
 /// `pen` of figure_label_height().

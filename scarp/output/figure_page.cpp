@@ -59,7 +59,7 @@ void FigurePage::place_on(const FigurePen& pen, int width, int height) {
   }
   if (figure_.north) {
     FigurePanel panel = arrow_panel(pen, *figure_.north);
-    const double x = right(panel) + 2 * pad;  // its square has room of its own
+    const double x = right(panel) + 2 * pad;  // its square includes padding
     free_width -= 2 * (panel.width + pad);    // on both sides: the title is centred
     place(std::move(panel), x, pad, 0);
   }

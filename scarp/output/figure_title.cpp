@@ -74,7 +74,7 @@ FigurePanel arrow_panel(const FigurePen& measure, double north) {
   panel.draw = [north](const FigurePen& pen, double x, double y) {
     cairo_t* cr = pen.cr();
     const double unit = pen.text(), middle = kArrowSide / 2 * unit;
-    // The letter is beyond the tip; both together are centred.
+    // The letter is beyond the tip; both are centred together.
     const double back = (kLetter + 0.5 - kTip) / 2 * unit;
     cairo_save(cr);
     cairo_translate(cr, x + middle - back * std::sin(north), y + middle + back * std::cos(north));

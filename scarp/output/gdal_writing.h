@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the writers through GDAL share.
+// Shared by the writers that use GDAL.
 #pragma once
 
 #include <cpl_conv.h>
@@ -29,7 +29,7 @@ class GdalWriting {
   std::string first_;
 };
 
-/// Throws Error unless the picture has 1 to `most_side` pixels from side to side.
+/// Throws Error unless the picture has 1 to `most_side` pixels per side.
 void require_size(const RgbView& picture, int most_side, const std::string& path, const char* format);
 
 }  // namespace scarp

@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// Where the pixels of a map lie.
+/// Georeference of a map.
 struct MapPlace {
   /// Map coordinates of the upper left corner of a pixel, in CRS units: x = m[0] + col*m[1] + row*m[2],
   /// y = m[3] + col*m[4] + row*m[5].

@@ -49,7 +49,8 @@ bool write_rows(const Png& to, std::FILE* file, const RgbView& picture, Failure&
   png_set_IHDR(to.png, to.info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(to.png, to.info, PNG_sRGB_INTENT_PERCEPTUAL);
-  // A seventh less time for a picture than with libpng's defaults, in files up to 5 % larger: doc/dev/decisions.md.
+  // A seventh less time for a picture than with libpng's defaults, in files up to 5 % larger:
+  // doc/dev/decisions/output.md.
   png_set_filter(to.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_set_compression_level(to.png, 3);
   png_write_info(to.png, to.info);
@@ -58,7 +59,7 @@ bool write_rows(const Png& to, std::FILE* file, const RgbView& picture, Failure&
   return true;
 }
 
-// Returns what went wrong; empty: nothing.
+// Returns the error; empty if there is none.
 std::string write_file(const std::string& path, const RgbView& picture) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
   if (!file) return std::strerror(errno);

@@ -98,7 +98,7 @@ class Drawing {
     cairo_stroke(cr_);
   }
 
-  // Filled down to the axis, with the surface in the colour of what the observer has of it.
+  // Filled down to the axis, with the surface coloured by its visibility to the observer.
   void ground() const {
     const auto& points = figure_.points;
     const double floor = box_.y + box_.height;

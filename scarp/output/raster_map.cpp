@@ -25,7 +25,7 @@ GDALDataType type_of(const MapBand& band) {
   return kTypes[band.samples.index()];
 }
 
-// The samples where they are, as a dataset in memory.
+// The samples in place, as an in-memory dataset.
 GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path) {
   auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   GDALDatasetUniquePtr dataset(driver->Create("", map.cols, map.rows, 0, GDT_Byte, nullptr));
@@ -84,12 +84,12 @@ CPLStringList options_of(const RasterMap& map) {
   } else if (map.driver == "COG") {
     for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
-    // Means of codes are no codes.
+    // Averages of codes are not codes.
     options.SetNameValue("RESAMPLING", map.bands[0].classes.empty() ? "AVERAGE" : "NEAREST");
   }
   for (const std::string& option : map.creation_options) {
     const std::string name = name_of_option(option);
-    // A predictor fits few of the other compressions.
+    // Few of the other compressions support a predictor.
     if (EQUAL(name.c_str(), "COMPRESS")) options.SetNameValue("PREDICTOR", nullptr);
     options.SetNameValue(name.c_str(), option.c_str() + name.size() + 1);
   }
@@ -101,8 +101,8 @@ int CPL_STDCALL report(double done, const char*, void* progress) {
   return !call || call(done) ? TRUE : FALSE;
 }
 
-// Files beside the main one, which have its temporary name and other extensions: moved, or removed. Files that were
-// there before belong to others, such as a picture of the same name in the making.
+// Files beside the main one, which have its temporary name and other extensions: moved, or removed. Files that existed
+// before belong to other programs, such as a picture of the same name being written.
 class SideFiles {
  public:
   SideFiles(const std::string& temporary, const std::string& path)

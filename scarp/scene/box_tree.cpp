@@ -17,7 +17,7 @@ constexpr int kUnbalanced = 32;  // levels after which ranges are halved
 // Roundings in float on the way from a coordinate to a difference: less than 4 units of 2^-24 of the largest one.
 constexpr double kPadding = 0x1p-21;
 
-// A beam has one longest axis, along which no ray is much slower than along another, and no wider slopes than this.
+// The rays of a beam share their longest axis, along which their speeds are similar; slopes are limited to this.
 constexpr double kSteepestOfBeam = 4, kWidestBeam = 0.5;
 
 }  // namespace
@@ -43,7 +43,7 @@ struct BoxTree::Builder {
     return range;
   }
 
-  // Where to part a range: at the best of the bins' borders along the longest side of its centres, or in halves.
+  // Where to split a range: at the best of the bins' borders along the longest side of its centres, or in halves.
   std::uint32_t split(const Range& whole, int depth) {
     WorldBox centres;
     for (std::uint32_t i = whole.begin; i < whole.end; ++i) {
@@ -101,7 +101,8 @@ struct BoxTree::Builder {
     std::array<Range, kWide> parts{whole};
     int count = 1;
     while (count < kWide) {
-      // The largest part that one node cannot hold; else one that the places left can hold without a node of its own.
+      // The largest part that does not fit in one node; otherwise one that fits in the remaining places without its own
+      // node.
       int largest = -1;
       const auto free = static_cast<std::uint32_t>(kWide - count);
       for (int i = 0; i < count; ++i) {
@@ -190,7 +191,7 @@ bool BoxTree::clip(const Ray& ray, double& t_in, double& t_out) const {
     t_in = std::max(t_in, std::min(a, b));
     t_out = std::min(t_out, std::max(a, b));
   }
-  // The box is padded: a ray that rounding keeps out touches nothing.
+  // The box is padded: a ray that misses it by rounding touches nothing.
   return t_in <= t_out;
 }
 
@@ -222,7 +223,7 @@ std::optional<BoxTree::Beam> BoxTree::beam(const Rays& rays) const {
     if (!(steep - flat <= kWidestBeam && steep <= kSteepestOfBeam && flat >= -kSteepestOfBeam)) return {};
     Beam::Axis& axis = beam.axes[i];
     axis.low = static_cast<float>(bounds.low[i]), axis.high = static_cast<float>(bounds.high[i]);
-    // Flatter rays than can be told from level ones count as both.
+    // Rays too flat to be distinguished from level ones count as both.
     const auto per = [](double slope) { return slope * kSteepest < 1 ? kSteepest : static_cast<float>(1 / slope); };
     axis.per_up = per(steep), axis.per_down = per(-flat);
     const double flattest = std::max(flat, -steep);

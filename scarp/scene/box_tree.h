@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A hierarchy of boxes: which of many objects a ray may meet, or which may be nearest to anything else, about from the
-// nearest on.
+// A hierarchy of boxes: finds the objects that a ray may hit, or that may be nearest to something else, roughly nearest
+// first.
 //
-// Four children to a node, so that one test looks at four boxes. Boxes are kept in float, relative to the middle of all
-// and larger than they are by more than what is rounded on the way: a ray is never kept from a box that it touches.
-// Rays begin where they come into the box around everything, so it does not matter from how far away they come.
+// Four children to a node, so that one test looks at four boxes. Boxes are stored in float, relative to the centre of
+// all, and padded by more than the rounding error: a ray never misses a box that it touches. Rays start where they
+// enter the outer box, so their distance to it does not matter.
 //
-// Rays that go about the same way are a beam, which walks the hierarchy once for all of them: an interval of origins
-// and one of slopes per axis, and a box is met when the beam's earliest way in is no later than its latest way out.
+// Rays of similar direction form a beam, which traverses the hierarchy once for all of them: an interval of origins and
+// one of slopes per axis; a box is hit if the beam's earliest entry is not later than its latest exit.
 //
 // Sources: H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of
 // incoherent rays", EGSR 2008; T. Ize, "Robust BVH ray traversal", JCGT 2013; I. Wald, "On fast construction of
@@ -39,34 +39,34 @@ class BoxTree {
   /// The same over boxes[i] for each i of `objects` alone. box() is `reach` times as wide as the boxes, >= 1.
   BoxTree(std::span<const WorldBox> boxes, std::vector<std::uint32_t> objects, double reach = 1);
 
-  /// Rays side by side, at most Beam::kRays of them; up to 7 numbers beyond them are read, but do not count.
+  /// A group of at most Beam::kRays rays; up to 7 numbers beyond them are read and ignored.
   struct Rays {
     std::size_t count;
     std::array<const double*, 3> origin, direction;
     const double *t_min, *t_max;
   };
-  /// Rays that go about the same way.
+  /// Rays of similar direction.
   struct Beam;
-  /// The rays as a beam; nothing when they go apart.
+  /// Returns the rays as a beam; nullopt if they diverge.
   std::optional<Beam> beam(const Rays& rays) const;
-  /// Calls visit(object) for each object whose box a ray of the beam may meet before the beam's end, about from the
-  /// nearest on; visit returns where it ends from then on, or a negative number: here and now.
+  /// Calls visit(object) for each object whose box a ray of the beam may hit before the beam's end, roughly nearest
+  /// first. visit returns the new end of the beam, or a negative number to stop.
   template <class Visit>
   void traverse(const Beam& beam, const Visit& visit) const;
 
-  /// Calls visit(object) for each object whose box the ray may meet at or before t_max; visit returns the t_max from
-  /// then on, no larger than before.
+  /// Calls visit(object) for each object whose box the ray may hit at or before t_max; visit returns the new t_max, no
+  /// larger than before.
   template <class Visit>
   void traverse(const Ray& ray, const Visit& visit) const;
 
-  /// Calls visit(object) for each object whose box may hold something no worse than `end`, about from the best on.
-  /// bound(box) returns the best that a box can hold: a time, a distance, >= 0; infinity for nothing. visit returns
-  /// `end` from then on, no larger than before, or a negative number: here and now.
+  /// Calls visit(object) for each object whose box may contain something no worse than `end`, roughly best first.
+  /// bound(box) returns the best possible value in a box: a time or a distance, >= 0; infinity for none. visit returns
+  /// the new `end`, no larger than before, or a negative number to stop.
   template <class Bound, class Visit>
   void search(double end, const Bound& bound, const Visit& visit) const;
 
   bool empty() const { return nodes_.empty(); }
-  /// The tree as devices read it. A node has 112 bytes: four boxes (low x, y, z, high x, y, z; four floats each,
+  /// The tree in the layout of devices. A node has 112 bytes: four boxes (low x, y, z, high x, y, z; four floats each,
   /// relative to `middle`) and their children. `box` is the padded box around everything.
   struct Parts {
     std::span<const std::byte> nodes;
@@ -117,10 +117,10 @@ class BoxTree {
     return static_cast<float>(box.high[axis] - middle_[axis] + padding_);
   }
 
-  // Where a ray comes into the box around everything, and where it leaves it; false: it passes it.
+  // Computes where a ray enters and leaves the outer box; returns false if it misses it.
   bool clip(const Ray& ray, double& t_in, double& t_out) const;
 
-  // The nearest child is to be on top.
+  // The nearest child must be on top.
   template <class Met, class Near, class Number>
   static void push(const Node& node, const Met& met, const Near& near, StackOf<Number>& stack, std::size_t& size) {
     const std::size_t first = size;
@@ -134,9 +134,9 @@ class BoxTree {
 
   // Trees with more padding may have numbers that are infinite in float.
   static constexpr double kMostPadding = 0x1p100;
-  // What a product and a difference in float round, with room: Ize has 2 * 3 units for a factor.
+  // Rounding of a product and a difference in float, with a margin: Ize uses 2 * 3 units for a factor.
   static constexpr float kRounding = 1 + 0x1p-20f;
-  // Steeper than any direction that can be told from one along a side.
+  // Steeper than any direction distinguishable from one along a side.
   static constexpr float kSteepest = 0x1p60f;
 
   std::vector<Node> nodes_;
@@ -148,12 +148,12 @@ class BoxTree {
 struct BoxTree::Beam {
   static constexpr std::size_t kRays = 64;
 
-  /// Lengths along the beam: (t - start) * per_t of each ray; per_t is 0 for those that pass the box around everything.
+  /// Lengths along the beam: (t - start) * per_t of each ray; per_t is 0 for rays that miss the outer box.
   alignas(16) std::array<double, kRays> start, per_t;
-  std::uint64_t inside = 0;  ///< a bit for each ray that comes into the box around everything
+  std::uint64_t inside = 0;  ///< a bit for each ray that enters the outer box
   float end;                 ///< of the ray that ends last
 
-  /// Where the beam ends when the rays do so.
+  /// End of the beam, from the ends of its rays.
   float end_of(std::span<const double> t_max) const;
 
  private:
@@ -162,8 +162,8 @@ struct BoxTree::Beam {
   struct Axis {
     Way way;                 // of all its rays
     float low, high;         // of the origins
-    float per_up, per_down;  // length per distance for the steepest rays that go there
-    float per_least;         // for the flattest ones, where all go one way
+    float per_up, per_down;  // length per distance for the steepest rays in this direction
+    float per_least;         // for the flattest rays, if all have the same sign
   };
   std::array<Axis, 3> axes;
 };
@@ -207,7 +207,7 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
   const std::array<double, 3> direction{d.x, d.y, d.z}, from{start.x, start.y, start.z};
   const double longest = std::max({0.0, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
 
-  // From here on in float, the longest component of the direction being 1, t counting from the border.
+  // From here on in float; the longest component of the direction is 1, and t counts from the border.
   std::array<float, 3> origin, inwards, outwards;
   std::array<bool, 3> down;
   const double per_longest = 1 / longest;

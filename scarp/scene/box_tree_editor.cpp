@@ -12,8 +12,8 @@ namespace {
 constexpr double kWorstArea = 2;           // of that when it was built
 constexpr std::uint64_t kEditsPerBox = 8;  // building costs about as much as one or two edits per box
 constexpr std::uint64_t kFewEdits = 64;
-// A tree's numbers reach that far from its middle, relative to its boxes when it was built: something that flies away
-// has it built again each time it has gone twice as far.
+// A tree's numbers reach this far from its centre, relative to its boxes when it was built: an object that moves away
+// causes a rebuild each time its distance has doubled.
 constexpr double kReach = 2;
 
 }  // namespace
@@ -110,7 +110,7 @@ void BoxTreeEditor::rebuild(std::span<const WorldBox> boxes, std::vector<std::ui
 }
 
 bool BoxTreeEditor::needs_rebuild() const {
-  // Boxes as large as numbers go have no area: their trees are built again each time.
+  // Boxes near the limits of numbers have no finite area: their trees are rebuilt each time.
   return lost_ || !(area_ <= kWorstArea * area_built_) || edits_ > edits_allowed_;
 }
 
@@ -149,7 +149,7 @@ void BoxTreeEditor::clear(const Slot& slot) {
   tree_.nodes_[slot.node].clear(slot.index);
 }
 
-// What inserting into a node adds to the area of the nodes below it, at least.
+// Lower bound of the area that inserting into a node adds to the nodes below it.
 double BoxTreeEditor::least_below(std::uint32_t node, const Box& leaf) const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < BoxTree::kWide; ++i) {
@@ -192,7 +192,7 @@ void BoxTreeEditor::pair(const Slot& slot, const Box& leaf, std::uint32_t object
   put(slot, around(old, leaf), node);
 }
 
-// What the root has moves to a new node, the only child of the root beside the object.
+// The root's children move to a new node, the only child of the root besides the object.
 void BoxTreeEditor::put_above_root(const Box& leaf, std::uint32_t object) {
   const Box all = box_of(0);
   const std::uint32_t node = new_node();
@@ -209,7 +209,7 @@ void BoxTreeEditor::put_above_root(const Box& leaf, std::uint32_t object) {
   put({0, 1}, leaf, BoxTree::kLeaf | object);
 }
 
-// From a node whose children changed up to the first that stays as it was.
+// From a node whose children changed up to the first that does not change.
 void BoxTreeEditor::refit(std::uint32_t node) {
   while (node != 0) {
     const Slot slot = parent_[node];

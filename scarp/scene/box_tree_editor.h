@@ -7,9 +7,9 @@
 //
 // Boxes are rounded outwards as in a new tree, so that edits never lose a hit. Each edit costs a path through the tree.
 //
-// Many edits make a tree slower than a new one. It is to be built again (needs_rebuild) when the expected number of
-// nodes that a ray visits may have doubled, by the surface area of all nodes; after 8 edits per box, by which the
-// cost of building it is spread thinly; when a box leaves the reach of the tree's numbers; and when it is too deep.
+// Many edits make a tree slower than a new one. It must be rebuilt (needs_rebuild) when the expected number of nodes
+// that a ray visits may have doubled, by the surface area of all nodes; after 8 edits per box, by which the cost of
+// building it is spread thinly; when a box leaves the reach of the tree's numbers; and when it is too deep.
 //
 // Source: J. Goldsmith, J. Salmon, "Automatic creation of object hierarchies for ray tracing", IEEE Computer Graphics
 // and Applications 7(5), 1987 (insertion by surface area). Cost: 8 bytes per node and 4 per box.
@@ -40,7 +40,7 @@ class BoxTreeEditor {
   bool needs_rebuild() const;
 
  private:
-  // As nodes have it.
+  // In the form of nodes.
   struct Box {
     std::array<float, 3> low, high;
 

@@ -10,7 +10,8 @@
 namespace scarp {
 namespace {
 
-// A picture with fewer rays than one in so many pixels is not worth drawing; nor has the device room for more pixels.
+// A picture with fewer rays than one in this many pixels is not worth drawing, and the device has no room for more
+// pixels.
 constexpr std::uint64_t kMostPixelsPerRay = 4, kMostPixels = std::uint64_t{1} << 21;
 constexpr std::int64_t kRaysPerPiece = 4096;
 // Rounding of the rays' numbers, relative to their largest.
@@ -29,7 +30,7 @@ class Pixels {
     off_ = kRounding * (1 + length(picture.origin));
   }
 
-  /// Of parallel rays, how far their origins may be from those of the picture's form.
+  /// For parallel rays, the maximum distance of their origins from those of the picture's form.
   double off() const { return off_; }
 
   PixelOf of(const Ray& ray) const {
@@ -82,7 +83,7 @@ std::optional<CameraBatch> camera_batch(const VoxelPicture& picture, std::span<c
   batch.picture.direction += static_cast<double>(low.col) * picture.right + static_cast<double>(low.row) * picture.down;
   batch.picture.origin +=
       static_cast<double>(low.col) * picture.origin_right + static_cast<double>(low.row) * picture.origin_down;
-  // t is to be no less than in the form.
+  // t must be no less than in the form.
   if (picture.parallel()) batch.picture.origin += 2 * pixels.off() * picture.direction;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (cells[i].col >= 0) {

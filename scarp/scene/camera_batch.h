@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: which rays of a batch are those of a camera, laid out as the part of its picture that they
-// are of.
+// Private to the station: finds the rays of a batch that belong to a camera, arranged as their part of the picture.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +16,11 @@ struct CameraBatch {
   static constexpr std::uint32_t kNone = 0xffff'ffff;
 
   VoxelPicture picture;             ///< the part
-  std::vector<std::uint32_t> ray;   ///< of each pixel, row by row; kNone: there is none
+  std::vector<std::uint32_t> ray;   ///< ray of each pixel, row by row; kNone: no ray
   std::vector<std::size_t> others;  ///< rays that are not in it
 };
 
-/// Returns nothing if few rays are the camera's, or they are scattered over its picture.
+/// Returns nullopt if few rays are the camera's, or they are scattered over its picture.
 std::optional<CameraBatch> camera_batch(const VoxelPicture& picture, std::span<const Ray> rays);
 
 }  // namespace scarp

@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-// How many of the four columns along an axis hold a voxel; children are bits x + 2 y + 4 z.
+// Number of the four columns along an axis that contain a voxel; children are bits x + 2 y + 4 z.
 int columns(unsigned children, int axis) {
   constexpr std::array<unsigned, 3> kFirst = {0b01010101, 0b00110011, 0b00001111};
   const auto a = static_cast<std::size_t>(axis);
@@ -33,7 +33,7 @@ bool open(const VoxelGrid& grid, const ivec3& voxel) {
   return false;
 }
 
-// Of 8 bits, by the sRGB standard's curve.
+// Converts 8 bits by the sRGB standard's curve.
 double linear(std::uint8_t value) {
   const double v = value / 255.0;
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);

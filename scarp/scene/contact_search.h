@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: sweeps, overlaps and closest points over many objects, for BoxTree::search(). Answers do not
-// depend on the order of the search: they are those of each object alone.
+// Private to the station: sweeps, overlaps and closest points over many objects, for BoxTree::search(). Results do not
+// depend on the order of the search: they equal those of each object alone.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace scarp {
 
-/// What placing points and boxes rounds, relative to their coordinates, with room.
+/// Rounding of placed points and boxes, relative to their coordinates, with a margin.
 inline constexpr double kPlacing = 0x1p-47;
 
-/// Of two objects at the same time or distance that with the lower index counts.
+/// At the same time or distance, the object with the lower index counts.
 inline bool is_before(double a, std::uint32_t a_object, double b, std::uint32_t b_object) {
   return a < b || (a == b && a_object < b_object);
 }
@@ -27,7 +27,7 @@ inline double overlap_bound(const TurnedBox& box, const WorldBox& other) {
   return overlaps(box, other.low - wide, other.high + wide) ? 0 : std::numeric_limits<double>::infinity();
 }
 
-/// The distance of p from a box, and how far boxes may be that hold something at a distance.
+/// The distance of p from a box, and the maximum distance of boxes that may contain something at a distance.
 inline double distance_bound(const dvec3& p, const WorldBox& box) { return length(min(max(p, box.low), box.high) - p); }
 inline double reach_of(const dvec3& p, double distance) { return distance + kPlacing * (distance + length(p)); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts and closest points with what of the field they are on.
+// Contacts and closest points, with the part of the field that they are on.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// Where on a field. Members that name a kind of field are set only for that kind, as those of Hit.
+/// A position on a field. Members that name a kind of field are set only for that kind, as in Hit.
 struct FieldPlace {
   Cell cell{};             ///< height fields and tiles
   ivec3 voxel{-1};         ///< voxels

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: where shadow rays of terrain functions begin, on the CPU and on devices.
+// Private to the station: where shadow rays of terrain functions start, on the CPU and on devices.
 #pragma once
 
 #include "scarp/base/ray.h"
@@ -7,8 +7,8 @@
 
 namespace scarp {
 
-/// The surface that throws shadows may have other octaves than the one that is seen (FunctionUse): a ray that begins on
-/// a surface is moved to that of the shadows, above or below the point that was seen.
+/// The surface that casts shadows may have different octaves from the visible one (FunctionUse): a ray that starts on a
+/// surface is moved to the shadow-casting one, above or below the visible point.
 inline Ray on_shadow_surface(const HeightFunction& function, const Ray& ray) {
   Ray r = ray;
   if (ray.start == RayStart::on_surface) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A grid on a lattice of voxels that others share: turned by quarter turns and moved by whole voxels.
+// Placement of a grid on a lattice shared with other grids: quarter turns and whole-voxel offsets.
 #pragma once
 
 #include <glm/common.hpp>

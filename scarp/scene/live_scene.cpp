@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Edits change the objects of a scene and note which; update() then brings what the scene derives from its objects up
-// to date: once per call of edit(), however often an object was moved.
+// Edits change the objects of a scene and record which; update() then updates the scene's derived data, once per call
+// of edit(), however often an object was moved.
 #include "scarp/scene/live_scene.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 namespace scarp {
 namespace {
 
-// In the place of removed objects and fields.
+// Placeholder for removed objects and fields.
 class Nothing final : public SceneField {
  public:
   std::string_view kind() const override { return "nothing"; }
@@ -44,7 +44,7 @@ bool touches_side(const WorldBox& inner, const WorldBox& outer) {
 }  // namespace
 
 struct LiveScene::State {
-  // What the scene derives from a field, and the number of objects that have it.
+  // The scene's data derived from a field, and the number of objects that use it.
   struct Field {
     std::optional<WorldBox> box, extent;
     bool batches = false, backdrop = false;
@@ -78,10 +78,10 @@ struct LiveScene::State {
   std::unordered_map<const SceneField*, std::uint32_t> index_of;
   std::vector<std::uint32_t> free_fields;
   std::vector<Object> objects;
-  std::vector<WorldBox> boxes;  // of objects; empty for those without an end
+  std::vector<WorldBox> boxes;  // of objects; empty for unbounded ones
   std::vector<std::uint32_t> free_objects;
   std::uint32_t nothing = 0;  // the field of removed objects
-  std::uint32_t others = 0;   // objects that are no backdrops
+  std::uint32_t others = 0;   // objects that are not backdrops
 
   std::set<std::uint32_t> unbounded;
   std::set<std::pair<double, std::uint32_t>> batched;  // by size, the largest first, as in Scene
@@ -270,7 +270,7 @@ void LiveScene::State::update_boxes(std::uint32_t index) {
   if (object.batched) batched.emplace(-half_area(boxes[index]), index);
 }
 
-// As Scene's constructor does. Returns the objects that are there now or were before.
+// As Scene's constructor does. Returns the objects that exist now or did before.
 std::vector<std::uint32_t> LiveScene::State::choose_beside_tree() {
   std::vector<std::uint32_t> affected = std::move(scene.beside_tree_);
   for (const std::uint32_t object : affected) objects[object].beside_tree = false;

@@ -16,11 +16,11 @@
 //   });
 //
 // The number of an object is its index in Scene::objects() and that in Hit::object. It does not change while the object
-// exists. Later objects take the numbers of removed ones; until then those are objects that no ray meets.
+// exists. Later objects reuse the numbers of removed ones; until then no ray hits those numbers.
 //
-// Queries have the answers of a new scene of the same objects. Only the hierarchy's boxes on the way to an object are
-// updated: a move in a scene of 10,000 objects takes about 5 us. When edits have made the hierarchy worse
-// (box_tree_editor.h), an edit builds it again, at about 1 us per object, spread over at least 8 edits per object.
+// Queries return the same results as a new scene of the same objects. Only the hierarchy's boxes on the way to an
+// object are updated: a move in a scene of 10,000 objects takes about 5 us. When edits have degraded the hierarchy
+// (box_tree_editor.h), an edit rebuilds it, at about 1 us per object, spread over at least 8 edits per object.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ class LiveScene {
  public:
   /// A scene without objects.
   LiveScene();
-  /// Takes over the objects of a scene, under their numbers. Throws Error if it is on a device.
+  /// Takes over the objects of a scene and their numbers. Throws Error if it is on a device.
   explicit LiveScene(const Scene& scene);
   /// No Reading may exist; asserted in debug builds.
   ~LiveScene();
@@ -77,7 +77,7 @@ class LiveScene {
     void move(std::uint32_t object, const Placement& placement);
     /// Sets the mask of an object (SceneObject::mask). Throws Error if it does not exist or the mask is 0.
     void set_mask(std::uint32_t object, std::uint32_t mask);
-    /// Removes an object, and its field unless another object has it. Throws Error if it does not exist.
+    /// Removes an object, and its field unless another object uses it. Throws Error if it does not exist.
     void remove(std::uint32_t object);
 
    private:
@@ -88,9 +88,9 @@ class LiveScene {
 
   /// Calls `change` while no query runs, and returns the new epoch: queries see all of its edits at once. Inside it,
   /// fields of this scene may be edited by their own functions (Terrain::set_samples(), Voxels::edit(), ...); the scene
-  /// finds out which were. Fields built by scene_heights(field) alone are built again as a whole: edit a Terrain
-  /// instead. If `change` throws, its edits before that remain, and the exception is rethrown. Thread-safe; `change`
-  /// must not call edit() or read().
+  /// detects which were. Fields built by scene_heights(field) alone are rebuilt completely: edit a Terrain instead. If
+  /// `change` throws, its edits before that remain, and the exception is rethrown. Thread-safe; `change` must not call
+  /// edit() or read().
   std::uint64_t edit(const std::function<void(Editor&)>& change);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What surfaces of a scene look like, as plain data; render/surface/surface_colour.h makes colours of it.
+// Materials of a scene's surfaces, as plain data; render/surface/surface_colour.h computes colours from them.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace scarp {
 
-/// An index beyond all lists of materials: the colours that a field has of its own.
+/// An index beyond all lists of materials: the field's own colours.
 constexpr std::uint32_t kOwnMaterial = ~std::uint32_t{0};
 
-/// What the field itself says: a voxel's palette entry; else a neutral earth.
+/// The field's own colour: a voxel's palette entry, otherwise a neutral earth.
 struct OwnColour {};
 
 /// One colour, sRGB, 0..1.

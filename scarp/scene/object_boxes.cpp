@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-// How far a turn may be from orthogonal: many roundings, and no shear that could be meant.
+// Tolerance for the orthogonality of a rotation: many roundings, but no intentional shear.
 constexpr double kRigid = 1e-9;
 
 bool is_rigid(const glm::dmat3& turn) {

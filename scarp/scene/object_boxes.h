@@ -9,14 +9,13 @@
 
 namespace scarp {
 
-/// So many of the objects that like batches, those with the largest boxes, are queried for all rays; the tree finds the
-/// others.
+/// This many batch-friendly objects, those with the largest boxes, are queried for all rays; the tree finds the others.
 inline constexpr std::size_t kMostBesideTree = 4;
 
 /// Throws Error naming the object unless its placement is a rotation with a finite origin and a scale above 0.
 void require_placement(const Placement& placement, std::size_t object);
 
-/// The box around a field's box in its place; empty if that is.
+/// The box around a placed field's box; empty if that is.
 WorldBox world_box(const Placement& placement, const WorldBox& box);
 
 }  // namespace scarp

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// An ordered pattern in space, for voxels of which a share is solid: of every four along an axis one has the rank 0,
-// one 1, one 2, one 3. So with k ranks solid, k of every four voxels along any axis are. The pattern is moved at random
-// from 4 x 4 x 4 to 4 x 4 x 4, or large areas would show stripes. (Ordered dithering after B. Bayer, 1973, in space.)
+// An ordered pattern in space, for voxels of which a fraction is solid: every four voxels along an axis have the ranks
+// 0, 1, 2 and 3, so with k ranks solid, k of every four voxels along any axis are solid. The pattern is shifted
+// randomly in each block of 4 x 4 x 4; otherwise large areas would show stripes. (Ordered dithering after B. Bayer,
+// 1973, in space.)
 #pragma once
 
 #include <cstdint>

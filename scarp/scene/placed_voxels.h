@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxel models and the places where they stand: what scene_voxels() makes a field of, and what readers return.
+// Voxel models with their placements: the input of scene_voxels(), and the result of readers.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@
 
 namespace scarp {
 
-/// Where a model stands: p_field = world_from_grid * p_grid + origin.
+/// Placement of a model: p_field = world_from_grid * p_grid + origin.
 struct VoxelPlace {
   std::uint32_t model = 0;          ///< index of the models
-  glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times a scale: the metres of a voxel's side, > 0
+  glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times the side of a voxel in metres, > 0
   dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
 };
 
 /// Models are shared with the caller. After an edit of a model, scenes that contain it throw Error until they are built
-/// again; LiveScene (live_scene.h) takes edits.
+/// again; LiveScene (live_scene.h) supports edits.
 struct PlacedVoxels {
   std::vector<std::shared_ptr<const VoxelModel>> models{};
   std::vector<VoxelPlace> places{};
@@ -35,7 +35,7 @@ WorldBox world_box(const VoxelPlace& place, const VoxelBox& box);
 /// The box around all solid voxels; empty if there are none.
 WorldBox world_box(const PlacedVoxels& voxels);
 
-/// How readers make models of files.
+/// Options of readers for the models of files.
 struct VoxelFileOptions {
   std::string_view march{};      ///< of voxel_marches(); empty: see file_voxel_march()
   bool surface_colours = false;  ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside

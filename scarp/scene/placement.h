@@ -23,7 +23,7 @@ struct Placement {
   dvec3 world_from_field(const dvec3& p) const { return scale * (turn * p) + origin; }
   dvec3 world_from_normal(const dvec3& n) const { return turn * n; }
   dvec3 field_from_world(const dvec3& p) const { return ((p - origin) * turn) / scale; }
-  /// An identity rounds nothing.
+  /// An identity is exact.
   Ray field_from_world(const Ray& ray) const {
     Ray local = ray;
     local.origin = ((ray.origin - origin) * turn) / scale;  // v * M is transpose(M) * v
@@ -32,11 +32,11 @@ struct Placement {
   }
 
   bool identity() const { return turn == glm::dmat3(1.0) && scale == 1 && origin == dvec3(0.0); }
-  /// Whether up is up: turned about z at most. Rounding takes some 2^-50 from the cosine; a tilt of 2^-20 counts.
+  /// Whether z stays up: rotated about z only. Rounding takes some 2^-50 from the cosine; a tilt of 2^-20 counts.
   bool upright() const { return turn[2].z >= 1 - 0x1p-41; }
 };
 
-/// First `inner`, then `outer`.
+/// Applies `inner`, then `outer`.
 inline Placement placed(const Placement& outer, const Placement& inner) {
   return {outer.turn * inner.turn, outer.scale * inner.scale, outer.world_from_field(inner.origin)};
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Thickness below the lowest point, as shares of the relief and of the shorter side.
+// Thickness below the lowest point, as fractions of the relief and of the shorter side.
 constexpr double kOfRelief = 0.15;
 constexpr double kOfSide = 0.03;
 
@@ -113,7 +113,7 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     if (!has_holes) return {};
     crossed = next[0] <= next[1] ? 0 : 1;
     t = next[crossed];
-    // Under the surface without a wall before: the ray came through the surface, and has met it there.
+    // Below the surface without a wall before: the ray came through the surface, and hit it there.
     if (heights && under_edge(*heights, cell, local, crossed, step[crossed] > 0, t)) return {};
     from_outside = !heights;
     cell[crossed] += step[crossed];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The plinth below a terrain model, as if it were cut out of a block: vertical walls from its border, and from the
-// edges of its holes, down to a common base. The surface itself is a sheet; walls are a matter of pictures and no part
-// of any march.
+// edges of its holes, down to a common base. The surface itself is a sheet; walls exist only in pictures and are not
+// part of any march.
 //
 //        __/\_            A ray that comes from outside (or from over a hole) into a valid cell, below the edge of the
 //   ____/     \___        surface and above the base, meets a wall there. Cells are walked one after another; a field
@@ -16,7 +16,7 @@
 
 namespace scarp {
 
-/// Height of the base that suits a field: below its lowest point by a share of its size.
+/// Default height of the base: below the field's lowest point by a fraction of its size.
 double plinth_base(const HeightField& field);
 
 class Plinth {
@@ -28,12 +28,12 @@ class Plinth {
     double t;        ///< in lengths of the ray's direction
     VoxelFace face;  ///< the side of the wall that the ray comes from
   };
-  /// The first wall that the ray meets from outside within its range. The surface may be met before it; a ray that
-  /// meets the surface between two walls is followed no further, nor is one that begins in the rock or comes into it
+  /// Returns the first wall that the ray hits from outside within its range. The surface may be hit before it. Rays
+  /// that hit the surface between two walls are not followed further, nor are rays that start in the solid or enter it
   /// through the base.
   std::optional<Wall> intersect(const Ray& ray) const;
 
-  /// Of the base, in sample units.
+  /// Height of the base, in sample units.
   double base_sample() const { return base_sample_; }
 
  private:

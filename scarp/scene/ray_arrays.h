@@ -19,7 +19,7 @@ namespace scarp {
 /// A batch of rays. All spans have the same length; those of t_min, t_max and the start may be empty.
 struct RayArrays {
   std::span<const float> origin_x, origin_y, origin_z;           ///< metres
-  std::span<const float> direction_x, direction_y, direction_z;  ///< any length but zero; t counts in it
+  std::span<const float> direction_x, direction_y, direction_z;  ///< any length except zero; the unit of t
   std::span<const float> t_min{};                                ///< empty: 0
   std::span<const float> t_max{};                                ///< empty: infinity
   /// Cells on whose ground the rays start, as in HitArrays; a negative column: the ray starts free. Empty: all do. Both
@@ -28,8 +28,8 @@ struct RayArrays {
   std::span<const std::uint32_t> start_object{};  ///< objects of these cells; empty: object 0
 };
 
-/// The members of hits to write: spans as long as the rays, or empty. Without a hit, t is infinite, the normal
-/// zero, and all others are 0, except cells, which are -1.
+/// The members of hits to write: spans as long as the rays, or empty. For a miss, t is infinite, cells are -1, and
+/// everything else is 0.
 struct HitArrays {
   std::span<float> t{};
   std::span<HitStatus> status{};

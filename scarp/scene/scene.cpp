@@ -66,7 +66,7 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
   }
   std::vector<WorldBox> boxes(objects_.size());
   std::vector<std::uint32_t> in_tree;
-  std::vector<std::pair<double, std::uint32_t>> batched;  // by how much there is of them
+  std::vector<std::pair<double, std::uint32_t>> batched;  // by their count
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const auto& [field, material, placement, mask] = objects_[i];
     in_place_.push_back(placement.identity());
@@ -130,7 +130,7 @@ void Scene::require_memory() const {
   }
 }
 
-// What a few objects decide: unbounded ones, backdrops, height fields, and one that is alone.
+// The special objects: unbounded ones, backdrops, height fields, and a single one.
 void Scene::find_special() {
   endless_ = wraps_ = false;
   walls_end_ = -std::numeric_limits<double>::infinity();
@@ -249,7 +249,7 @@ Hit Scene::accepted_hit(const StartedRay& ray, std::uint32_t object, const Ray& 
     hit.object = object;
     return rules.accept(ray.ray, hit);
   };
-  // A free ray by `own`, as the march of the field has it.
+  // A free ray by `own`, as the march of the field expects it.
   return field_of(object).accepted_hit(own, ray.from_on(object), {rules.sides, rules.accept ? &accept : nullptr},
                                        stats);
 }
@@ -300,7 +300,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
   bool any_hit = false;
   for (const std::uint32_t object : beside_tree_) {
     if (!sees(rules, objects_[object])) continue;
-    // Without hits so far, free rays are those of an object in its place.
+    // Without earlier hits, free rays need no limit.
     std::span<const Ray> asked = rays;
     if (any_hit || !in_place_[object] || !all_free(rays, from)) {
       locals.resize(rays.size());
@@ -323,7 +323,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
 
 void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked,
                               const SceneRules* rules) const {
-  // The tree first: what it blocks need not be followed over the ground.
+  // The tree first: rays that it blocks need not be followed over the ground.
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     blocked[i] = tree_blocks({rays, from, i, rules});

@@ -38,12 +38,12 @@ struct SceneObject {
   std::uint32_t mask = 1;  ///< not 0; queries with a mask (Scene::query()) see the object if both share a bit
 };
 
-/// Which objects and hits count in a query.
+/// Selects the objects and hits that count in a query.
 struct SceneRules {
   std::uint32_t mask = ~std::uint32_t{0};  ///< objects count whose mask shares a bit with it
   Sides sides = Sides::above;              ///< of height fields and tiles; all other objects are hit from outside
-  /// Returns whether a hit counts; where it does not, the ray goes on. Called with the ray of the query for some or all
-  /// hits on its way, not always in order of t; in batches from many threads at once. Null: all hits count.
+  /// Returns whether a hit counts; the ray continues behind hits that do not. Called with the ray of the query for some
+  /// or all hits on its way, not always in order of t; in batches from many threads at once. Null: all hits count.
   std::function<bool(const Ray&, const Hit&)> accept{};
 };
 
@@ -74,8 +74,8 @@ struct SceneDetail {
 /// Objects with closest-hit and any-hit queries over all of them. Immutable. Thread-safe, except with a back end.
 ///
 /// After an edit of a field (HeightField::set_samples(), VoxelModel::edit(), ...), all ray queries throw Error until
-/// the scene is built again: its boxes are those from before. They also throw after the memory of a field was freed, if
-/// the field knows its owner (HeightField::view()). LiveScene (live_scene.h) takes edits, also during queries.
+/// the scene is built again: its bounding boxes are out of date. They also throw after the memory of a field was freed,
+/// if the field knows its owner (HeightField::view()). LiveScene (live_scene.h) supports edits, also during queries.
 ///
 /// Ray::start states how a ray starts: `free`, or `on_surface` of the object Ray::start_object. `from` overrides it:
 /// the ray starts on the surface of that hit of this scene. In batches `from` is empty or as long as `rays`; rays whose
@@ -97,8 +97,8 @@ class Scene {
   /// all other scenes. A plinth does not count.
   const DeviceTerrain* device_terrain() const;
 
-  /// Returns the closest hit; `miss` for a ray whose numbers cast() refuses. Without a hit, the status is `exhausted`
-  /// if a march reached its limit, else `below` if the ray starts below the ground of an object and never emerges, else
+  /// Returns the closest hit; `miss` for a ray that cast() would reject. Without a hit, the status is `exhausted` if a
+  /// march reached its limit, else `below` if the ray starts below the ground of an object and never emerges, else
   /// `miss`. Objects whose bounding boxes the ray misses are not queried, so a ray that starts below bounded ground may
   /// also return `miss`; within() tests whether a point is below ground. If a march reaches its limit, hits on other
   /// objects are still found. Overwrites `stats` if not null; back ends set only its steps.
@@ -117,16 +117,16 @@ class Scene {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
-  /// Returns the queries by rules: masks, sides, a filter. See scene_query.h.
+  /// Returns queries restricted by rules: mask, sides, filter. See scene_query.h.
   SceneQuery query(SceneRules rules) const&;
   SceneQuery query(SceneRules rules) && = delete;  ///< the query refers to the scene
 
   /// Returns the surface at a hit of this ray: position, normals, material, colour.
   SceneSurface surface(const Ray& ray, const Hit& hit) const;
-  /// Asks for the memory that surface() of this hit will read.
+  /// Prefetches the memory that surface() reads for this hit.
   void prefetch_surface(const Hit& hit) const { field_of(hit.object).prefetch_surface(hit); }
 
-  /// Returns SceneSurface::material of a hit, alone.
+  /// Returns only SceneSurface::material of a hit.
   std::uint32_t material(const Ray& ray, const Hit& hit) const;
 
   /// Returns the surface of the first object that contains a point; see SceneField::within().
@@ -153,7 +153,7 @@ class Scene {
   std::uint32_t terrain_object() const { return terrain_object_; }
   /// Returns the side of the smallest cell or voxel of all objects, in metres; 0 if none has cells or voxels.
   double cell_side() const;
-  /// Returns the same objects with the marches that judge others (SceneField::judge()). The result has no back end.
+  /// Returns the same objects with reference marches (SceneField::judge()). The result has no back end.
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
@@ -164,7 +164,7 @@ class Scene {
   const WorldBox& box() const { return box_; }
   /// Whether an object is unbounded.
   bool endless() const { return endless_; }
-  /// Whether a height field wraps round: rays need a finite t_max.
+  /// Whether a height field wraps: rays then need a finite t_max.
   bool wraps() const { return wraps_; }
   /// Memory use in bytes of the objects and the hierarchy over them, without the fields.
   std::size_t bytes() const;
@@ -236,8 +236,8 @@ class Scene {
   std::uint32_t sole_object_ = 0, terrain_object_ = 0;
   const HeightField* terrain_ = nullptr;
 
-  // Fields that can be edited, and their number of edits when the scene was built; those whose memory has an owner;
-  // those that have no contacts.
+  // Editable fields with their number of edits when the scene was built; fields whose memory has an owner; fields
+  // without contacts.
   struct Editable {
     std::uint32_t field;
     std::uint64_t edits;

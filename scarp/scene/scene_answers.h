@@ -24,7 +24,7 @@ struct Scene::StartedRay {
   StartedRay(std::span<const Ray> rays, From hits, std::size_t i, const SceneRules* scene_rules = nullptr)
       : ray(rays[i]), own(hits.empty()), from(own ? nullptr : hits[i]), rules(scene_rules) {}
 
-  /// The same start of another ray, which must exist as long.
+  /// The same start for another ray, which must outlive the result.
   StartedRay with(const Ray& other) const {
     StartedRay started(other, from, rules);
     started.own = own;
@@ -39,15 +39,15 @@ inline std::uint8_t frame_of(const Placement& placement) {
   return static_cast<std::uint8_t>(VoxelTies(transpose(placement.turn)).bits);
 }
 
-/// Whether placements may turn the direction into no number. Such a ray is 2^kShorter times shorter, and its t longer.
+/// Whether placements may make the direction overflow. Such a ray is shortened by 2^kShorter, which lengthens its t.
 constexpr int kShorter = 100;
 inline bool is_too_long(const Ray& ray) { return !(longest_of(ray.direction) < 0x1p900); }
-/// Whether one of the rays is such, or has numbers that cast() refuses: then each is followed by itself.
+/// Whether one of the rays is such, or one that cast() rejects: then each is traced individually.
 inline bool any_odd(std::span<const Ray> rays) {
   return std::any_of(rays.begin(), rays.end(), [](const Ray& ray) { return is_too_long(ray) || !is_followable(ray); });
 }
 
-/// Whether a query by rules, or without, sees an object.
+/// Whether a query, with or without rules, sees an object.
 inline bool sees(const SceneRules* rules, const SceneObject& object) {
   return !rules || (rules->mask & object.mask) != 0;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Batches of a scene whose rays a back end answers: many rays over one field at a time.
+// Batches of a scene whose rays a back end traces: many rays over one field at a time.
 //
 //   all rays ──▶ one ground beside the tree after the other, each ray no further than its nearest hit so far
 //   hierarchy ──▶ pairs of a ray and an object whose box it meets, sorted by field ──▶ one call per field
 //
-// The hierarchy cannot shorten rays on the way, as it does for single ones: all boxes up to the ground are asked. Rays
-// of a scene of one field at the origin go to the back end as they are.
+// The hierarchy cannot shorten rays along the way, as it does for single rays: all boxes up to the ground are tested.
+// Rays of a scene of one field at the origin go to the back end as they are.
 #include "scarp/scene/scene_back_end.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace scarp {
 namespace {
 
-// The pairs of a slice of rays are answered together.
+// The pairs of a slice of rays are traced together.
 constexpr std::size_t kRaysAtOnce = 1 << 17;
 
 // For each i in [0, count), on all threads.
@@ -79,7 +79,7 @@ void Scene::trace_occluded(std::span<const Ray> rays, From from, std::span<const
   for (std::size_t i = 0; i < pairs.size(); ++i) blocked[pairs[i].ray] |= answers[i];
 }
 
-// Of rays up to their hits.
+// Pairs along rays up to their hits.
 std::vector<Scene::Pair> Scene::pairs_in_tree(std::span<const Ray> rays, std::span<const Hit> hits) const {
   std::vector<std::vector<std::uint32_t>> met(rays.size());
   for_each(rays.size(), [&](std::size_t i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A back end that answers the rays of a scene instead of the CPU. One call is for thousands of rays over one field, in
-// that field's space, so that it may go through a table of functions.
+// A back end that traces the rays of a scene instead of the CPU. One call traces thousands of rays over one field, in
+// that field's space, so a virtual call costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,20 @@ namespace scarp {
 
 struct DeviceTerrain;  // scene_vk.h
 
-/// `field` is an index of the scene's fields. Rays begin as SceneField has it, by Ray::start or on the surface of
-/// `from`. The spans of one call have one length, but `steps` and `from` may be empty.
+/// `field` is an index of the scene's fields. Rays start as in SceneField, by Ray::start or on the surface of `from`.
+/// All spans have the same length, except that `steps` and `from` may be empty.
 class SceneBackEnd {
  public:
   virtual ~SceneBackEnd() = default;
 
-  /// hits[i] answers rays[i], with object 0; steps[i] is what that cost, as in MarchStats.
+  /// Sets hits[i] to the closest hit of rays[i], with object 0, and steps[i] to its cost, as in MarchStats.
   virtual void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<Hit> hits,
                             std::span<std::uint32_t> steps, std::span<const Hit* const> from) = 0;
-  /// blocked[i] is 1 where SceneField::occluded() is true, else 0.
+  /// Sets blocked[i] to 1 if SceneField::occluded() is true, else to 0.
   virtual void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                         std::span<const Hit* const> from) = 0;
-  /// What a device holds of a height field, for pictures that it makes whole; null for other fields and back ends.
+  /// The device's copy of a height field, for pictures rendered whole on the device; null for other fields and back
+  /// ends.
   virtual const DeviceTerrain* terrain(std::uint32_t) const { return nullptr; }
 };
 

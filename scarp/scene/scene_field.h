@@ -2,8 +2,8 @@
 // A field with its march, as an object of a scene: the same queries for heights, functions, shapes, voxels and meshes
 // (mesh/scene_mesh.h), in the field's own space.
 //
-// A ray from a surface begins there by the rule of the field's kind (cell, place, voxel, triangle). No ray is pushed
-// off, except the shadow rays of voxels with smooth normals.
+// A ray from a surface starts there by the rule of the field's kind (cell, position, voxel, triangle). Origins are not
+// offset, except those of shadow rays of voxels with smooth normals.
 #pragma once
 
 #include <cstddef>
@@ -32,20 +32,20 @@ namespace scarp {
 
 class VoxelObjects;  // voxel_objects.h
 
-/// What is at a hit, in the field's space.
+/// The surface at a hit, in the field's space.
 struct FieldSurface {
-  dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
+  dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that started inside
   dvec3 shading_normal{0.0};            ///< unit
-  std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
+  std::optional<VoxelColour> colour{};  ///< if the field has its own colours
   int material = 0;                     ///< of the cell or the part of a shape, plus 1; 0: that of the object
-  double openness = 1;                  ///< share of the sky that is open, as far as the field knows by itself
+  double openness = 1;                  ///< fraction of the sky that the field itself leaves open
   VoxelMaterial light{};                ///< what the surface emits and mirrors
   bool wall = false;                    ///< whether a wall of solid ground or of a plinth was hit
-  /// z of the surface, where it is known to more digits than by the ray's point: a sea at 0 is at 0.
+  /// z of the surface, if known more precisely than from the ray's point: a sea at 0 is exactly at 0.
   std::optional<double> height{};
 };
 
-/// What a field is made of, for back ends (scene_back_end.h). Fields that no back end knows have no parts.
+/// The contents of a field, for back ends (scene_back_end.h). Fields without back-end support have no parts.
 struct SceneFieldParts {
   template <class Field, class Entry>
   struct Marched {
@@ -59,17 +59,15 @@ struct SceneFieldParts {
 
   struct Voxels {
     const VoxelObjects* objects;
-    /// Where a shadow ray begins that begins on a voxel; null: beside that voxel.
+    /// Start of a shadow ray from a voxel; null: beside that voxel.
     std::function<Ray(const Ray& ray, const Hit& from)> shadow_ray;
   };
 
   std::variant<std::monostate, Heights, Function, Shape, Voxels> of{};  ///< monostate: none of these
 };
 
-/// Immutable; may be queried from many threads at once.
-///
-/// Rays begin by Ray::start unless `from` is given: then they begin on the surface of that hit of this field. In
-/// batches `from` is empty or as long as `rays`, and rays whose entry is null begin free.
+/// Immutable and thread-safe. Rays start by Ray::start unless `from` is given: then they start on the surface of that
+/// hit of this field. In batches `from` is empty or as long as `rays`, and rays whose entry is null start free.
 class SceneField {
  public:
   virtual ~SceneField() = default;
@@ -78,12 +76,12 @@ class SceneField {
   virtual std::string_view march() const = 0;  ///< its name
   /// Returns why the march with its settings guarantees less than MarchEntry states; empty if it does not.
   virtual std::string caveat() const { return {}; }
-  /// Around everything that rays can meet: empty when that is nothing, nullopt for a field without an end.
+  /// Bounding box of everything that rays can hit; empty if there is nothing, nullopt for an unbounded field.
   virtual std::optional<WorldBox> box() const = 0;
-  /// Around what a picture should show: nullopt for a field that goes on forever. Walls of solid ground end nowhere,
-  /// but the ground does.
+  /// Bounding box of everything that a picture should show; nullopt for an unbounded field. Walls of solid ground are
+  /// unbounded, but the ground is not.
   virtual std::optional<WorldBox> extent() const { return box(); }
-  /// Whether the field is only seen: it throws no shadow and is no ground.
+  /// Whether the field is only visible: it casts no shadow and is not ground.
   virtual bool is_backdrop() const { return false; }
   /// Whether any of its surfaces may mirror.
   virtual bool mirrors() const { return false; }
@@ -91,64 +89,64 @@ class SceneField {
   /// ground.
   virtual std::optional<double> height(double x, double y) const;
 
-  /// `stats`, when given, is overwritten.
+  /// Returns the closest hit. Overwrites `stats` unless null.
   virtual Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const = 0;
-  /// Whether closest_hit() would return a hit. Exceptions: functions with other octaves for shadows answer for that
-  /// surface, and `from` voxels with smooth normals the ray begins above their steps.
+  /// Whether closest_hit() would return a hit. Exceptions: functions with other octaves for shadows use that surface,
+  /// and rays from voxels with smooth normals start above their steps.
   virtual bool occluded(const Ray& ray, const Hit* from) const = 0;
   /// The closest hit that counts. The filter is called for hits as closest_hit() returns them. Fields other than height
-  /// fields and tiles have one side. By default throws Error if the filter rejects a hit: not every march can go on.
+  /// fields and tiles have one side. By default throws Error if the filter rejects a hit: not every march can continue.
   virtual Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const;
   virtual FieldSurface surface(const Ray& ray, const Hit& hit) const = 0;
-  /// Asks for the memory that surface() will read, so that it does not wait for it later.
+  /// Prefetches the memory that surface() reads.
   virtual void prefetch_surface(const Hit&) const {}
   /// FieldSurface::material.
   virtual int material(const Ray& ray, const Hit& hit) const { return surface(ray, hit).material; }
 
   /// Returns why the field has no contacts, overlaps and closest points; empty if it has.
   virtual std::string no_contacts() const;
-  /// The first contact of a capsule that moves, in the field's space, by its surface alone; whether a box meets it; and
-  /// its closest point. Throw Error if no_contacts() has a reason.
+  /// The first contact of a moving capsule with the surface, in the field's space; the overlap of a box with it; and
+  /// its closest point. Throw Error if no_contacts() returns a reason.
   virtual std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
   virtual bool overlaps(const TurnedBox& box) const;
   virtual std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
 
-  /// The field at a point below the ground, in the shape or in a solid voxel, surface included: normals of the surface
-  /// above or nearest. Returns nullopt outside, beside the ground and in its holes.
+  /// Returns the surface for a point below the ground, in the shape or in a solid voxel, surface included, with the
+  /// normal of the surface above or nearest. Returns nullopt outside, beside the ground and in its holes.
   virtual std::optional<FieldSurface> within(const dvec3& p) const = 0;
 
-  /// The side of the smallest cell or voxel, in metres; 0 for fields without.
+  /// Returns the side of the smallest cell or voxel, in metres; 0 for fields without cells or voxels.
   virtual double cell_side() const { return 0; }
   /// Number of samples, solid voxels or triangles that the field stores; 0 for formulas.
   virtual std::int64_t elements() const { return 0; }
-  /// What stands for the field where 2^level times its voxels are small; null: the field itself.
+  /// Returns a version of the field with voxels 2^level times as large; null: the field itself.
   virtual std::shared_ptr<const SceneField> coarser(int) const { return nullptr; }
-  /// The same field with the march that judges others: one that passes nothing. Null: there is none beside its own.
+  /// Returns the same field with its reference march, which loses no hit. Null if it already uses it.
   virtual std::shared_ptr<const SceneField> judge() const { return nullptr; }
 
   /// Number of edits of the samples or voxels of the field so far; nullopt for fields that cannot be edited.
   virtual std::optional<std::uint64_t> edits() const { return {}; }
-  /// Whether the field was edited after it was built, so that its answers may be wrong.
+  /// Whether the field was edited after it was built, so that results may be wrong.
   virtual bool outdated() const { return false; }
-  /// Returns the field built again over its samples or voxels as they are now. Null for fields that cannot be edited.
+  /// Returns the field rebuilt over its current samples or voxels. Null for fields that cannot be edited.
   virtual std::shared_ptr<const SceneField> rebuilt() const { return nullptr; }
   /// Owner of caller-owned samples; null if the field has none or does not know it.
   virtual const std::weak_ptr<const void>* memory() const { return nullptr; }
 
   virtual SceneFieldParts parts() const { return {}; }
-  /// The ray as the march takes it: on the surface of `from`, or free when that is null.
+  /// Returns the ray for the march: on the surface of `from`, or free if that is null.
   virtual Ray started(const Ray& ray, const Hit* from) const;
 
-  /// Memory of the models and of what was built over them: of voxels. 0: not counted.
+  /// Memory use of voxel models and their accelerators. 0: not counted.
   virtual std::size_t bytes() const { return 0; }
 
   /// Whether batches are faster than single rays.
   virtual bool likes_batches() const { return false; }
-  /// The same answers for many rays, on the calling thread.
+  /// The same results for many rays, on the calling thread.
   virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const;
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                         std::span<const Hit* const> from) const;
-  /// The same on all threads. `steps`, when not empty, is what each ray cost.
+  /// The same on all threads. Sets `steps`, unless empty, to the cost of each ray.
   virtual void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits,
                                            std::span<std::uint32_t> steps, std::span<const Hit* const> from) const;
   virtual void occluded_on_all_threads(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
@@ -163,18 +161,18 @@ using CellMaterials = std::shared_ptr<const std::vector<std::uint8_t>>;
 /// The field's height field; null for all other kinds.
 const HeightField* height_field_of(const SceneField& field);
 
-/// What answers the rays of a field.
+/// Selects what traces the rays of a field.
 enum class AnsweredBy : std::uint8_t {
   cpu,
-  back_end,  ///< nothing is built for the CPU, and rays asked of the field itself throw Error
+  back_end,  ///< nothing is built for the CPU, and queries of the field itself throw Error
 };
 
-/// `march` is a row of height_marches(). Builds what the march needs. Rays over a field that wraps round need a finite
-/// t_max. Throws Error for a setting out of its range.
+/// `march` is a row of height_marches(). Builds what the march needs. Rays over a wrapped field need a finite t_max.
+/// Throws Error for a setting out of range.
 SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march = find_height_march("max-mip"),
                             const MarchSettings& settings = {}, AnsweredBy answered_by = AnsweredBy::cpu);
-/// The same with the march `max-mip` and the field's pyramid, which exists already; both are shared. `materials` as in
-/// require_materials(), or null: the object's.
+/// The same with the march `max-mip` and the field's existing pyramid; both are shared. `materials` as in
+/// require_materials(); null: the object's.
 SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid, CellMaterials materials = nullptr);
 
 /// Throws Error unless there is one for each cell or the pointer is null.
@@ -190,9 +188,9 @@ SceneFieldPtr scene_shape(DistanceField shape, const ShapeMarchEntry& march = fi
                           const MarchSettings& settings = {});
 
 /// Models in their places as one field; each model has its march. With VoxelNormals::smooth, occluded() moves a ray
-/// that begins on a voxel up the smooth normal, by sqrt(3) voxels, so that the steps of what looks smooth do not shade
-/// it. Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
-/// model that is null, a rounding or shading out of its range.
+/// that starts on a voxel along the smooth normal, by sqrt(3) voxels, so that the steps of a smooth-looking surface do
+/// not shadow it. Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a
+/// scale; or a model that is null, a rounding or shading out of its range.
 SceneFieldPtr scene_voxels(PlacedVoxels voxels, const VoxelShading& shading = {});
 
 }  // namespace scarp

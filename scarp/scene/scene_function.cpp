@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions in scenes. What is seen, what throws shadows on it, and what it is shaded by may have different
-// octaves (FunctionUse).
+// Terrain functions in scenes. The visible surface, the one that casts shadows and the one used for normals may have
+// different octaves (FunctionUse).
 #include <algorithm>
 #include <mutex>
 #include <optional>
@@ -74,7 +74,7 @@ class FunctionField final : public SceneField {
     return {function_.normals_are_of_march() ? normal : upward(function_.gradient(p.x, p.y, FunctionUse::march)),
             normal};
   }
-  // It passes no crossing.
+  // It misses no crossing.
   SceneFieldPtr judge() const override {
     MarchSettings settings;
     settings.lipschitz_local.max_steps = kStepsOfJudge;
@@ -83,7 +83,7 @@ class FunctionField final : public SceneField {
   SceneFieldParts parts() const override { return {SceneFieldParts::Function{&function_, &march_, &settings_}}; }
 
  private:
-  // Compiled for the first ray with a filter.
+  // Compiled on the first query with a filter.
   const HeightFunction& below() const {
     std::call_once(below_made_, [&] { below_.emplace(upside_down(function_)); });
     return *below_;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kRaysPerCopy = 4096;
 // Neighbours may be placed so far apart or over each other, in cells, and meet without a gap. The origin of each is
-// rounded, by 2^-53 of it along every axis, and the way of a ray from the world to a field takes 8 roundings of their
+// rounded, by 2^-53 of it along every axis, and transforming a ray from the world to a field takes 8 roundings of their
 // distance: together less than 16 for both, if neither is beyond 2^23 cells (an earth-centred field with cells of 1 m).
 constexpr double kSeam = 0x1p-26;
 constexpr const char* kNotOnCpu =
@@ -141,7 +141,7 @@ class Heights final : public SceneField {
     if (from.empty()) return march_.occluded_batch(target(), rays, blocked, settings_);
     march_.occluded_batch(target(), begun(rays, from), blocked, settings_);
   }
-  // In the order of the ground that the rays begin over, where that is faster (march/height/queries.h).
+  // Sorted by the ground below the rays' origins, if that is faster (march/height/queries.h).
   void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                                    std::span<const Hit* const> from) const override {
     if (!steps.empty()) return SceneField::closest_hits_on_all_threads(rays, hits, steps, from);
@@ -154,7 +154,7 @@ class Heights final : public SceneField {
     scarp::occluded(target(), begun_on_all_threads(rays, from), blocked, march_, settings_);
   }
   SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_}}; }
-  // A ray from a wall begins free: the wall is behind it.
+  // A ray from a wall starts free: the wall is behind it.
   Ray started(const Ray& ray, const Hit* from) const override {
     Ray r = ray;
     r.start = RayStart::free;

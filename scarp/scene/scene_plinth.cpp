@@ -29,7 +29,7 @@ class PlinthField final : public SceneField {
     if (const auto wall = plinth_.intersect(ray)) set(hit, ray, *wall);
     return hit;
   }
-  // Most rays of a picture meet no wall.
+  // Most rays of a picture hit no wall.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const>) const override {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       hits[i].status = HitStatus::miss;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries of a scene in which some objects or hits do not count:
+// Scene queries that ignore some objects or hits:
 //
 //   const SceneQuery solid = scene.query({.mask = kSolid});
 //   const SceneQuery both = scene.query({.sides = Sides::both});
@@ -7,11 +7,11 @@
 //     return scene.material(ray, hit) != kWater;
 //   }});
 //
-// A ray goes on behind a hit that the filter rejects as if there were a hole: through that voxel, that triangle, that
-// solid, or the ground, which it can leave elsewhere. Over height fields with the march max-mip or exhaustive, tiles,
-// voxels and meshes it is never started anew, so no other hit is lost and none found twice. Over functions with the
-// march lipschitz-local, and shapes, it goes on from the surface by the rule of its march, which may pass the same hit
-// to the filter twice, within its tolerance. To reject a hit with another march of functions throws Error.
+// Behind a hit that the filter rejects, the ray continues as if there were a hole: through that voxel, triangle or
+// solid, or below the ground, where it may emerge elsewhere. Over height fields with the march max-mip or exhaustive,
+// tiles, voxels and meshes it is not restarted, so no other hit is lost or found twice. Over functions with the march
+// lipschitz-local, and shapes, it restarts on the surface by the rule of its march, which may pass the same hit to the
+// filter twice, within its tolerance. Rejecting a hit of any other function march throws Error.
 #pragma once
 
 #include <limits>
@@ -35,7 +35,7 @@ struct ScenePoint : FieldPoint {
 /// the filter is.
 class SceneQuery {
  public:
-  /// Throws Error if the scene has objects and the mask is that of none, or if it is on a device.
+  /// Throws Error if the scene has objects and none matches the mask, or if it is on a device.
   SceneQuery(const Scene& scene, SceneRules rules);
 
   /// As Scene::closest_hit(), by the rules.
@@ -43,21 +43,21 @@ class SceneQuery {
   /// As Scene::occluded(), by the rules. With sides or a filter, rays from voxels with smooth normals start on the
   /// voxels.
   bool occluded(const Ray& ray, const Hit* from = nullptr) const;
-  /// As Scene::closest_hits() and Scene::occluded(), by the rules. With a mask alone as fast as without.
+  /// As Scene::closest_hits() and Scene::occluded(), by the rules. A mask alone costs nothing.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from = {}) const;
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
   /// Returns the first contact of a sphere or capsule that moves along `motion`; nullopt if there is none. If it
-  /// touches several objects at once, the one with the lowest index counts. The mask counts, sides and filter do not:
+  /// touches several objects at once, the one with the lowest index counts. Only the mask applies, not sides or filter:
   /// height fields and tiles are touched from both sides. The hierarchy of the scene finds the objects on the way.
-  /// Throws Error for a capsule or a motion that validate() refuses, and where the mask selects a function, a shape, a
-  /// mesh, or heights that wrap round or are not marched by max-mip.
+  /// Throws Error for a capsule or a motion that validate() rejects, and if the mask selects a function, a shape, a
+  /// mesh, a wrapped height field, or one not marched by max-mip.
   std::optional<SceneContact> sweep(const Capsule& capsule, const dvec3& motion) const;
   /// Returns whether a box, closed, meets a height field's surface or a solid voxel. Errors as for sweep().
   bool overlaps(const TurnedBox& box) const;
-  /// Returns the point closest to p of all surfaces of height fields and of all solid voxels, within `max_distance`
-  /// metres; of objects at the same distance, that with the lowest index. Errors as for sweep().
+  /// Returns the point closest to p on any height field surface or solid voxel, within `max_distance` metres. Among
+  /// objects at the same distance, the lowest index wins. Errors as for sweep().
   std::optional<ScenePoint> closest_point(const dvec3& p,
                                           double max_distance = std::numeric_limits<double>::infinity()) const;
 
@@ -70,7 +70,7 @@ class SceneQuery {
 
   const Scene& scene_;
   SceneRules rules_;
-  std::string no_contacts_;  // why contacts are refused; empty: they are not
+  std::string no_contacts_;  // why contacts are unsupported; empty: they are supported
 };
 
 }  // namespace scarp

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tiles as one field of a scene: the tiles on a ray's way, each by its own march; the closest hit counts, of two at the
-// same t that of the tile with the lower number.
+// Tiles as one field of a scene: each tile on the ray's path is traced by its own march; the closest hit counts and, at
+// the same t, the tile with the lower number.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -217,7 +217,7 @@ class Tiles final : public SceneField {
       const HeightField& field = tile.ground->field;
       if (const auto place = field.place(x, y)) {
         const auto ground = field.ground_at(*place);
-        // The caller's cell, where it is the one at the point or beside it: rounding may decide between them.
+        // The caller's cell, if it is the one at the point or adjacent to it: rounding may decide between them.
         const Cell own = ray.start_cell;
         const bool near = !from && std::abs(own.col - ground.cell.col) <= 1 && std::abs(own.row - ground.cell.row) <= 1;
         if (field.cell_heights(near ? own : ground.cell)) add(number(col, row), near ? own : ground.cell);
@@ -274,14 +274,14 @@ class Tiles final : public SceneField {
     const dvec3& o = ray.origin;
     const dvec3& d = ray.direction;
     const double width = map_->tile_width(), depth = map_->tile_depth();
-    // Tiles are widened by a cell, far more than rounding: to ask one in vain costs little.
+    // Tiles are widened by a cell, far more than rounding: testing one in vain costs little.
     const double wide_x = layout_.ground.cell_x + std::abs(o.x) * 0x1p-48,
                  wide_y = layout_.ground.cell_y + std::abs(o.y) * 0x1p-48;
     Span whole{ray.t_min, ray.t_max};
     whole = between(-wide_x, layout_.cols * width + wide_x, o.x, d.x, whole);
     whole = between(-wide_y, layout_.rows * depth + wide_y, o.y, d.y, whole);
     if (whole.empty()) return;
-    // Where the ray comes to the terrain, or starts over it.
+    // Where the ray enters the terrain, or starts over it.
     const Span over =
         between(0, layout_.rows * depth, o.y, d.y, between(0, layout_.cols * width, o.x, d.x, {ray.t_min, ray.t_max}));
     const double begin_x = along(o.x, d.x, over.begin), begin_y = along(o.y, d.y, over.begin);
@@ -332,7 +332,7 @@ class Tiles final : public SceneField {
     return lowest - highest > 0x1p-40 * (std::abs(ray.origin.z) + std::abs(lowest) + std::abs(highest));
   }
 
-  // As HeightField::shading_normal(), with the heights of the tiles beside at the borders.
+  // As HeightField::shading_normal(), with the heights of adjacent tiles at the borders.
   dvec3 shading_normal(const Tile& tile, int col, int row, Cell cell, double u, double v) const {
     const HeightField& field = tile.ground->field;
     const bool inner = cell.col > 0 && cell.row > 0 && cell.col + 2 < field.cols() && cell.row + 2 < field.rows();

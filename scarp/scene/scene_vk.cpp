@@ -24,7 +24,7 @@
 namespace scarp {
 namespace {
 
-// Marches ready to run, one for all fields that have it: making one takes longer than most of its calls.
+// Marches ready to run, shared by all fields that use them: creating one takes longer than most of its calls.
 class Marches {
  public:
   explicit Marches(const Device& device) : device_(device) {}
@@ -201,7 +201,7 @@ class OnDevice final : public SceneBackEnd {
   Marches marches_;
   std::shared_ptr<VoxelSight> sight_;
   std::vector<SceneFieldPtr> fields_;
-  std::vector<std::unique_ptr<FieldOnDevice>> on_device_;  // null: the CPU answers
+  std::vector<std::unique_ptr<FieldOnDevice>> on_device_;  // null: traced on the CPU
 };
 
 }  // namespace

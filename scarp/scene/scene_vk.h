@@ -25,7 +25,7 @@ namespace scarp {
 ///
 /// Fields made by scene_heights() with AnsweredBy::back_end build no acceleration structure for the CPU.
 ///
-/// `sight`: how voxels are drawn (voxel_sight_vk.h); null: by compute.
+/// `sight`: how voxels are drawn (voxel_sight_vk.h); null: by compute shaders.
 Scene scene_on(const Device& device, const Scene& scene, std::shared_ptr<VoxelSight> sight = nullptr);
 
 /// A height field on its device, returned by Scene::device_terrain().

@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-// It visits every voxel in turn, in whole numbers.
+// It visits every voxel in turn, in integers.
 constexpr std::string_view kJudge = "voxel-planes";
 
 class VoxelField final : public SceneField {
@@ -32,7 +32,7 @@ class VoxelField final : public SceneField {
   std::optional<WorldBox> box() const override { return objects_.reach(); }
   std::optional<WorldBox> extent() const override { return objects_.box(); }
 
-  // A ray alone does not say on which voxel it begins: without `from` all rays are free.
+  // A ray alone does not identify the voxel that it starts on: without `from` all rays are free.
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return objects_.closest_hit(ray, from, stats);
   }
@@ -105,8 +105,8 @@ class VoxelField final : public SceneField {
   }
 
  private:
-  // A surface that is shaded as a smooth one is not shaded by its own steps. Voxels with their middles below a plane
-  // have corners up to sqrt(3) / 2 voxel above it, and faces as far below: above all of them the ray begins free.
+  // A surface with smooth normals must not be shadowed by its own steps. Voxels with their centres below a plane have
+  // corners up to sqrt(3) / 2 voxel above it, and faces as far below: the ray starts free above all of them.
   Ray above_steps(const Ray& ray, const Hit& from) const {
     const dvec3 p = ray.at(ray.t_min), normal = objects_.normal(p, from);
     Ray above = ray;
@@ -124,8 +124,8 @@ class VoxelField final : public SceneField {
     const dvec3 in_world = objects_.world_from_grid(hit, smooth);
     const double towards = dot(in_world, normal);
     if (towards > 0) return in_world;
-    // A face of a step that looks up the slope is lit as the slope along it; of a leaf or a thread, where the other
-    // side may weigh more, the face itself comes in.
+    // A face of a step that faces up the slope is lit like the slope; on a leaf or a thread, where the other side may
+    // dominate, the face normal is blended in.
     const dvec3 along = in_world - towards * normal;
     return normalize(along + std::max(0.0, 1 - 2 * length(along)) * normal);
   }
@@ -133,7 +133,7 @@ class VoxelField final : public SceneField {
   VoxelObjects objects_;
   std::string march_;
   VoxelShading shading_;
-  std::uint64_t edits_ = objects_.edits();  // when its boxes were taken
+  std::uint64_t edits_ = objects_.edits();  // when its boxes were computed
 };
 
 }  // namespace

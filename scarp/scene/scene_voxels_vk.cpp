@@ -97,7 +97,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
   }
 
  private:
-  // Steps of a drawing are not those of the whole ray.
+  // The steps of a drawing do not cover the whole ray.
   bool draws(std::span<const std::uint32_t> steps, std::span<const Hit* const> from) const {
     return sight_ && sight_->drawing == VoxelDrawing::proxies && steps.empty() && from.empty();
   }
@@ -106,7 +106,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
   std::vector<std::size_t> draw(std::span<const Ray> rays, std::span<Hit> hits) {
     const std::optional<CameraBatch> batch = camera_batch(sight_->picture, rays);
     if (!batch) return queries_->closest_hits(there_.objects, rays, {}, hits);
-    // Pixels without a ray have one without any t.
+    // Pixels without a ray get one with an empty range.
     Ray none;
     none.t_min = 1, none.t_max = 0;
     const std::size_t pixels = batch->ray.size();
@@ -131,7 +131,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
     for (std::size_t i = 0; i < asked.size(); ++i) hits[batch->others[i]] = answers[i];
     return left;
   }
-  // Made on first use: compute does without graphics.
+  // Created on first use: compute does not need graphics.
   DeviceVoxelPictures& sight_pictures() {
     if (!pictures_) pictures_.emplace(device_, queries_);
     return *pictures_;

@@ -22,7 +22,7 @@ struct ObjectsOnDevice {
   DeviceVoxelObjects objects;
 };
 
-/// `sight` may be null. Returns null for rounded voxels, which the CPU answers. Throws Error for a march that does not
+/// `sight` may be null. Returns null for rounded voxels, which the CPU traces. Throws Error for a march that does not
 /// run on devices, or if the device lacks memory or 64-bit floating point numbers.
 std::unique_ptr<FieldOnDevice> voxels_on_device(const Device& device,
                                                 const std::shared_ptr<DeviceVoxelQueries>& queries,

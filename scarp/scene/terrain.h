@@ -39,8 +39,8 @@ class Terrain {
   /// setting out of range, an infinite sample, or a shared border whose sides differ. NaN samples are holes. Unless
   /// it is periodic, a field of one row or column has no cells: every ray misses.
   ///
-  /// `memory`, if not empty, is what owns the samples: queries throw Error once it is destroyed. The terrain does not
-  /// keep it.
+  /// `memory`, if not empty, owns the samples: queries throw Error once it is destroyed. The terrain does not keep it
+  /// alive.
   template <class T>
   static Terrain view(const T* samples, int cols, int rows, const HeightFieldSettings& settings = {},
                       std::ptrdiff_t row_stride = 0, std::weak_ptr<const void> memory = {});
@@ -70,7 +70,7 @@ class Terrain {
   void samples_changed(const SampleRect& rect);
 
   /// Sets the material of each cell, 0..255: SceneSurface::material of hits on it, in place of the object's. Rows from
-  /// north to south, as the samples. Empty: none. Scenes that contain the terrain keep those from before until they are
+  /// north to south, as the samples. Empty: none. Scenes that contain the terrain keep the old materials until they are
   /// combined again. Throws Error unless there is one for each cell.
   void set_materials(std::vector<std::uint8_t> materials);
 
@@ -86,7 +86,7 @@ class Terrain {
   const Georeference& georeference() const;
 
   /// Returns the scene of this field alone. After an edit, other scenes that contain it throw Error until they are
-  /// combined again; a LiveScene takes edits.
+  /// combined again; a LiveScene supports edits.
   const Scene& scene() const;
   operator const Scene&() const { return scene(); }
 

@@ -48,7 +48,7 @@ std::string shown(double sample) { return std::isnan(sample) ? "a hole" : fmt::f
                   col, row, col + side.dcol, row + side.drow, shown(here), shown(beside)));
 }
 
-// A copy of a tile's samples, as float32, and how far those on straight lines are off them.
+// A copy of a tile's samples, as float32, and the rounding of those on straight lines.
 struct Stitched {
   int cols, rows;
   std::vector<float> samples;
@@ -64,7 +64,7 @@ void stitch(Stitched& to, Side side, const Tile& coarser, int level) {
   const int apart = 1 << (coarser.level - level);
   for (int i = 0; i + 1 < border_samples(coarser, back); ++i) {
     const double first = on_border(coarser, back, i), second = on_border(coarser, back, i + 1);
-    // At the rim of a hole the coarser tile has no ground to meet.
+    // At the rim of a hole the coarser tile has no ground to match.
     if (std::isnan(first) || std::isnan(second)) continue;
     for (int j = 1; j < apart; ++j) {
       const int at = i * apart + j;

@@ -18,7 +18,7 @@
 
 namespace scarp {
 
-/// A height field with its pyramid, as rays meet it.
+/// A height field with its pyramid, ready for rays.
 struct TileGround {
   explicit TileGround(HeightField heights) : field(std::move(heights)), pyramid(field) {}
   HeightField field;
@@ -41,7 +41,7 @@ struct Tile {
   std::shared_ptr<const void> memory;        ///< keeps the samples of a view alive
   std::shared_ptr<const TileGround> ground;  ///< `given`, or a copy with stitched borders
   bool stitched = false;                     ///< whether it is a copy
-  double own_step = 0;   ///< sample units that stitched samples are off the line that they stand for, by rounding
+  double own_step = 0;   ///< rounding of stitched samples relative to the line that they represent, in sample units
   double seam_step = 0;  ///< HeightTarget::seam_step: the greatest of own_step here and beside
 };
 
@@ -67,8 +67,8 @@ struct TileMap {
   void at(double x, double y, const F& f) const;
 };
 
-/// Cells by which a point beside a tile may be off its border and counts as on it: world coordinates of 2^20 cells are
-/// doubles to 2^-33 of a cell, and the way from them to a tile takes some operations.
+/// Distance in cells from a tile's border up to which a point counts as on it: world coordinates at 2^20 cells are
+/// accurate to 2^-33 of a cell, and converting them to a tile takes a few operations.
 constexpr double kTileSeam = 0x1p-30;
 
 template <class F>

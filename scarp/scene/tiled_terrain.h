@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A terrain of tiles: a grid of height fields that share their border samples and answer as one field. Tiles come and
-// go while other threads query.
+// A terrain of tiles: a grid of height fields that share their border samples and answer as one field. Tiles can be
+// added and removed while other threads query.
 //
 //   scarp::TiledTerrain terrain({.cols = 100, .rows = 100, .cell_cols = 256, .cell_rows = 256, .ground = {...}});
 //   terrain.edit([&](auto& editor) { editor.put({3, 4}, field); });     // one thread
@@ -14,9 +14,9 @@
 //     |       |     |
 //     +-------+-----+     Missing tiles are holes.
 //
-// A tile may be coarser: its cells 2, 4, 8, ... times as long, and as many times fewer. Where a finer tile meets it,
-// the samples of the finer border are replaced by those of the straight lines between the coarser samples, so that the
-// surfaces meet without a gap. Stitched samples are float32; where one is rounded, rays that enter at most that far
+// A tile may be coarser: its cells are 2, 4, 8, ... times as long, and correspondingly fewer. Where a finer tile meets
+// it, the samples of the finer border are replaced by those of the straight lines between the coarser samples, so that
+// the surfaces meet without a gap. Stitched samples are float32; where one is rounded, rays that enter at most that far
 // below the border hit it.
 #pragma once
 
@@ -104,11 +104,11 @@ class TiledTerrain {
     Change& change_;
   };
 
-  /// Calls `change`, then makes its tiles the current ones, all at once, and returns the new epoch. Readers do not
-  /// wait, and what read() returned before stays as it is. Builds the pyramids of the tiles that changed and of
-  /// finer tiles beside them. Throws Error, changing nothing, if `change` throws or tiles would differ in a sample of
-  /// their shared border (compared where the coarser one has samples). Edits wait for one another; `change` must not
-  /// call edit(). Thread-safe.
+  /// Calls `change`, then publishes its tiles in one step, and returns the new epoch. Readers do not wait, and earlier
+  /// results of read() do not change. Builds the pyramids of the tiles that changed and of finer tiles beside them.
+  /// Throws Error, changing nothing, if `change` throws or tiles would differ in a sample of their shared border
+  /// (compared where the coarser one has samples). Edits wait for one another; `change` must not call edit().
+  /// Thread-safe.
   std::uint64_t edit(const std::function<void(Editor&)>& change);
 
  private:

@@ -32,7 +32,7 @@ struct VoxelCamera::Impl {
         there(device_, voxels_of(scene_)),
         queries(std::make_shared<DeviceVoxelQueries>(device_, settings_)) {}
 
-  // Made on first use: compute does without graphics.
+  // Created on first use: compute does not need graphics.
   DeviceVoxelPictures& boxes() {
     if (!pictures) pictures.emplace(device, queries, settings.words);
     return *pictures;

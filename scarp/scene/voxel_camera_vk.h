@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a camera sees of voxels, on a Vulkan device, by either way of drawing (march/voxel/voxel_pictures_vk.h):
+// Traces a camera's rays against voxels on a Vulkan device, with either method of drawing
+// (march/voxel/voxel_pictures_vk.h):
 //
 //   VoxelCamera camera(device, scene);                                   // a scene of one field, of voxels
 //   camera.look(VoxelDrawing::proxies, picture, rays, hits);             // a ray per pixel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The voxel that a ray hit, as its file has it: its palette entry and its coordinates.
+// Palette entry and file coordinates of the voxel that a ray hit.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A voxel grid with all that its march needs, and the colours that its entries stand for.
+// A voxel grid with the accelerator of its march and the colours of its entries.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace scarp {
 
 /// Red, green, blue; sRGB.
 using VoxelColour = std::array<std::uint8_t, 3>;
-/// Of voxels without a colour of their own.
+/// Colour of voxels without their own.
 inline constexpr VoxelColour kPlainVoxels{196, 188, 170};
 
 /// Bytes that a march builds for a grid of this size.
@@ -33,14 +33,14 @@ void require_marchable(const VoxelMarchEntry& march, const ivec3& size);
 /// A scene must be built again after edits of its models, or be edited through a LiveScene (live_scene.h).
 class VoxelModel {
  public:
-  /// Which part of the grid rays are followed in.
+  /// The part of the grid in which rays are followed.
   enum class Extent {
     bounds,  ///< the box around its solid voxels
     grid,    ///< all of it, as in the founding post
   };
 
   /// Builds what the march, a row of voxel_marches(), needs. Without a palette the entries are RGB, red in the lowest
-  /// 8 bits. `materials` are those of the palette's entries; voxels of entries beyond them are plain. Throws Error when
+  /// 8 bits. `materials` are those of the palette's entries; voxels of entries beyond them are plain. Throws Error if
   /// the grid is too large for the march.
   VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette = {},
              Extent extent = Extent::bounds, std::vector<VoxelMaterial> materials = {});
@@ -52,13 +52,13 @@ class VoxelModel {
     return model;
   }
 
-  /// Where the grid is among the voxels of the file that it was read from: readers crop grids and turn their axes.
+  /// Position of the grid in the voxels of its file: readers crop grids and rotate their axes.
   void set_file_place(const LatticePlace& place) { file_place_ = place; }
   const LatticePlace& file_place() const { return file_place_; }
 
   const VoxelGrid& grid() const { return grid_; }
   const VoxelMarchEntry& march() const { return *march_; }
-  /// The voxels that rays are followed in; empty when none is solid.
+  /// The voxels in which rays are followed; empty if none is solid.
   const VoxelBox& box() const { return box_; }
   VoxelTarget target() const;
 
@@ -70,8 +70,8 @@ class VoxelModel {
   /// Whether any of its materials mirrors.
   bool mirrors() const;
 
-  /// Changes the grid and what was built from it. `edit(grid)` returns the dirty box; when it throws, all is built
-  /// again over what it left.
+  /// Changes the grid and updates its accelerator. `edit(grid)` returns the dirty box; if it throws, the accelerator is
+  /// rebuilt over the remaining state.
   template <class Edit>
   void edit(const Edit& edit) {
     VoxelBox changed = grid_.box();
@@ -87,7 +87,7 @@ class VoxelModel {
   /// Number of edits so far.
   std::uint64_t edits() const { return edits_.value(); }
 
-  /// Memory that it takes, with all that was built.
+  /// Memory use, including the accelerator.
   std::size_t bytes() const;
 
  private:

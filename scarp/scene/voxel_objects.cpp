@@ -19,8 +19,8 @@
 namespace scarp {
 namespace {
 
-// How far the columns of a matrix may be from orthogonal and alike, relative to their squares: many roundings of turns
-// that were multiplied, and no shear that could be meant.
+// Tolerance for the columns of a matrix to be orthogonal and equally long, relative to their squares: many roundings of
+// multiplied rotations, but no intentional shear.
 constexpr double kRigid = 1e-9;
 
 void require_rigid(const glm::dmat3& m, std::size_t place) {
@@ -78,15 +78,15 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   }
   objects_.shrink_to_fit();
   in_tree_.shrink_to_fit();
-  // Where objects meet, no coordinate of a ray, a place or a corner is larger than `farthest`. Their difference, the
-  // three products of a row and the sums round less than 8 units of it, and as much again in the elements of the
-  // inverse and in places of readers, which are products: 2^-49; twice that leaves room for the two sides of a plane.
+  // Where objects meet, no coordinate of a ray, a placement or a corner is larger than `farthest`. Their difference,
+  // the three products of a row and the sums have less than 8 units of rounding, and as much again in the elements of
+  // the inverse and in placements by readers, which are products: 2^-49; twice that covers both sides of a plane.
   double farthest = 0;
   for (const WorldBox& box : boxes) box_ = around(box_, box);
   for (const Object& object : objects_) farthest = std::max(farthest, largest(object.origin));
   if (!boxes.empty()) farthest = std::max({farthest, largest(box_.low), largest(box_.high)});
   for (Turn& turn : turns_) turn.room = std::ldexp(farthest, -48) * length(turn.grid_from_world[0]);
-  // Rays may hit voxels at edges of a box that they miss by less (quantise()).
+  // Rays may hit voxels at the edges of a box that they miss by less than this (quantise()).
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Turn& turn = turns_[objects_[in_tree_[i]].turn];
     const double margin =
@@ -96,7 +96,7 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   tree_ = BoxTree(boxes);
 }
 
-// A world ray on its way through the objects; what neighbouring objects share is computed once.
+// A world ray on its path through the objects; values shared by neighbouring objects are computed once.
 struct VoxelObjects::Query {
   const VoxelObjects& scene;
   const Ray& ray;
@@ -133,8 +133,8 @@ struct VoxelObjects::Query {
   }
 };
 
-// A ray into the rounded voxel that it begins on hits there, at once, as one into a cube does: of that no neighbour,
-// where the walk begins, would tell.
+// A ray into the rounded voxel that it starts on hits there at once, as with cubes: the walk, which starts in a
+// neighbour, would not detect this.
 bool VoxelObjects::begins_into(const Ray& ray, const Hit* from) const {
   return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
 }
@@ -162,7 +162,7 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* 
     best.t = t_max = ray.t_min;
     if (accept && !(*accept)(best)) best = {}, t_max = ray.t_max;
   }
-  // Asked even when that is known: of hits at the same t the first object's counts.
+  // Tested even if a hit is known: at the same t the first object counts.
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
@@ -235,7 +235,7 @@ std::optional<VoxelColour> VoxelObjects::colour_at(const dvec3& p) const {
     const dvec3 at = floor(turns_[object.turn].grid_from_world * (p - object.origin));
     const VoxelModel& model = *models_[object.model];
     const dvec3 size(model.grid().size());
-    // Compared as they are: too far away for whole numbers.
+    // Compared as doubles: too far away for integers.
     if (!(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < size.x && at.y < size.y && at.z < size.z)) continue;
     if (model.grid().solid(ivec3(at))) return model.colour(model.grid().entry(ivec3(at)));
   }

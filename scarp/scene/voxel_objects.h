@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the queries of a voxel field (scene_voxels()), whose objects are models in their places.
+// Private to the station: the queries of a voxel field (scene_voxels()), whose objects are placed models.
 //
-// Rays are answered in the space of each model that they may meet, quantised there (voxel_ray.h). t counts in the
-// length of the ray's direction throughout. Of hits at the same t that of the first place counts.
+// Rays are traced in the space of each model that they may hit, and quantised there (voxel_ray.h). t is in units of the
+// direction's length throughout. Among hits at the same t, the lowest index counts.
 //
-// Batches go through a hierarchy of their own as beams of 64 rays, and through each model's grid in vectors
-// (voxel_packet.h); where rays go apart, one by one. That is why the models are not objects of the scene: its hierarchy
-// knows fields alone, and asks them ray by ray.
+// Batches traverse a hierarchy of their own as beams of 64 rays, and each model's grid in vectors (voxel_packet.h);
+// diverging rays are traced one by one. This is why the models are not objects of the scene, whose hierarchy contains
+// only fields and queries them ray by ray.
 #pragma once
 
 #include <array>
@@ -27,47 +27,46 @@
 
 namespace scarp {
 
-/// Immutable. May be queried from many threads at once.
+/// Immutable and thread-safe.
 class VoxelObjects {
  public:
   /// Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
-  /// model that is null, a rounding out of its range.
+  /// model that is null, a rounding out of range.
   explicit VoxelObjects(PlacedVoxels voxels);
 
-  /// The same with `level` times 2 x 2 x 2 voxels made one, see coarse_voxels.h.
+  /// The same with voxels merged 2 x 2 x 2, `level` times; see coarse_voxels.h.
   VoxelObjects coarser(int level) const;
-  /// The same over the models as they are now, after edits.
+  /// The same over the current models, after edits.
   VoxelObjects rebuilt() const;
   /// Number of edits of all models so far.
   std::uint64_t edits() const;
   /// The same with another march, a row of voxel_marches().
   VoxelObjects marched_by(std::string_view march) const;
 
-  /// The ray counts as one that starts free. `stats`, when given, is overwritten. `part` of hits is an index of the
-  /// places.
+  /// Treats the ray as free. Overwrites `stats` unless null. `part` of hits is the index of the place.
   Hit closest_hit(const Ray& ray, MarchStats* stats = nullptr) const { return closest_hit(ray, nullptr, stats); }
-  /// The same for a ray that starts on the face that another one hit, when `from` is not null: one that goes into the
-  /// solid hits that voxel at t_min, one that leaves it does not hit it again.
+  /// The same for a ray that starts on the face of the hit `from`, unless null: a ray into the solid hits that voxel at
+  /// t_min, a ray away from it does not hit it again.
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
     return closest_hit(ray, from, nullptr, stats);
   }
   /// The same for voxels that count; null: all do.
   Hit closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const;
-  /// Whether anything is in the way.
+  /// Whether anything blocks the ray.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
-  /// The same for a ray that starts on the face that another one hit, as closest_hit() with `from`.
+  /// The same for a ray that starts on the face of the hit `from`, as closest_hit().
   bool occluded_from(const Hit& hit, const Ray& ray) const { return occluded(ray, &hit); }
 
   /// hits[i] is closest_hit(rays[i], from[i], nullptr), bit for bit, on the calling thread; without `from` all rays are
-  /// free. Fast where neighbouring rays go about the same way, as those of 8 x 8 pixels do. Throws Error when spans
-  /// differ in length.
+  /// free. Fast if neighbouring rays have similar directions, as those of 8 x 8 pixels do. Throws Error if spans differ
+  /// in length.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from = {}) const;
-  /// blocked[i] is 1 where closest_hits() would tell a hit, else 0.
+  /// Sets blocked[i] to 1 if closest_hits() would return a hit, else to 0.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
-  /// Outward unit normal in world space of what was hit, a face or a rounded edge; zero for a ray that began in the
-  /// voxel.
+  /// Returns the outward unit normal in world space of the face or rounded edge that was hit; zero for a ray that
+  /// started in the voxel.
   dvec3 normal(const Ray& ray, const Hit& hit) const { return normal(ray.at(hit.t), hit); }
   /// The same by the point that was hit.
   dvec3 normal(const dvec3& p, const Hit& hit) const;
@@ -76,7 +75,7 @@ class VoxelObjects {
   /// Whether any of its voxels may mirror.
   bool mirrors() const;
 
-  /// Contacts, overlaps and closest points with the cubes of the voxels, whatever their rounding; SceneField has them.
+  /// Contacts, overlaps and closest points of the unrounded voxels; see SceneField.
   std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
   bool overlaps(const TurnedBox& box) const;
   std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
@@ -88,25 +87,25 @@ class VoxelObjects {
   const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.part].model]->grid(); }
   /// A point of the world in the space of the object's grid.
   dvec3 place_in_grid(const Hit& hit, const dvec3& p) const;
-  /// Metres of a voxel's side of the object.
+  /// Side of the object's voxels in metres.
   double voxel_side(const Hit& hit) const;
-  /// A unit vector of the grid's space in the world.
+  /// Converts a unit vector from grid space to world space.
   dvec3 world_from_grid(const Hit& hit, const dvec3& direction) const;
-  /// Of the solid voxel that a point is in; nothing for a point in none.
+  /// Returns the surface of the solid voxel that contains a point; nullopt if there is none.
   std::optional<VoxelColour> colour_at(const dvec3& p) const;
-  /// The least side of a voxel of all objects, in metres; 0 when there is none.
+  /// Side of the smallest voxel of all objects, in metres; 0 if there is none.
   double voxel_side() const;
 
-  /// Around all solid voxels (or grids); empty when there are none.
+  /// Bounding box of all solid voxels (or grids); empty if there are none.
   const WorldBox& box() const { return box_; }
-  /// Around all that rays may hit, which is a little more (kTouch in march/voxel/voxel_ray.h).
+  /// Bounding box of everything that rays may hit, which is slightly larger (kTouch in march/voxel/voxel_ray.h).
   const WorldBox& reach() const { return tree_.box(); }
   std::size_t objects() const { return objects_.size(); }
   const std::vector<std::shared_ptr<const VoxelModel>>& models() const { return models_; }
-  /// Of the objects and the hierarchy over them, without the models.
+  /// Memory use of the objects and the hierarchy over them, without the models.
   std::size_t bytes() const;
 
-  /// An object as back ends read it; `part` is the index of its place.
+  /// An object in the layout of back ends; `part` is the index of its place.
   struct Placed {
     dvec3 origin;
     std::uint32_t model, turn, part;
@@ -125,7 +124,7 @@ class VoxelObjects {
   const VoxelRounding& rounding() const { return rounding_; }
 
  private:
-  // An object; turns are shared by all that have the same one.
+  // An object; equal rotations are shared.
   struct Object {
     dvec3 origin;
     std::uint32_t model, turn;
@@ -156,7 +155,7 @@ class VoxelObjects {
   std::vector<VoxelTarget> targets_;
   std::vector<Object> objects_;
   std::vector<Turn> turns_;
-  std::vector<std::uint32_t> in_tree_;  // objects that have something to hit, in the order of the tree's numbers
+  std::vector<std::uint32_t> in_tree_;  // objects that are not empty, in the order of the tree's numbers
   BoxTree tree_;
   WorldBox box_;
   VoxelRounding rounding_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts of voxel objects: those that the hierarchy finds, each in its grid's space.
+// Contacts of voxel objects: finds them by the hierarchy, and tests each in its grid's space.
 #include "scarp/march/voxel/voxel_contact.h"
 #include "scarp/scene/contact_search.h"
 #include "scarp/scene/voxel_objects.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays at voxel objects.
+// Batches of rays against voxel objects.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,11 +15,11 @@ namespace {
 constexpr std::size_t kRays = VoxelPacket::kRays;
 static_assert(kRays == BoxTree::Beam::kRays);
 
-// A beam that came to so many objects which few of its rays met is given up: by then its rays could have gone alone.
-// So are those that follow, twice as many each time.
+// A beam that visited this many objects which few of its rays hit is abandoned: its rays could have been traced
+// individually by then. The following beams are skipped as well, twice as many each time.
 constexpr int kFewRays = 8, kWasted = 24;
 constexpr std::size_t kLongestPause = 64;
-// So few objects are asked without a hierarchy.
+// This few objects are tested without a hierarchy.
 constexpr std::size_t kAskedAtOnce = 1;
 
 // Calls body(i) for each bit.
@@ -34,15 +34,15 @@ void require_same_length(std::size_t rays, std::size_t answers) {
 
 }  // namespace
 
-// Up to 64 world rays on their way through the objects together.
+// Up to 64 world rays traced through the objects together.
 class VoxelObjects::PacketQuery {
  public:
   using From = std::span<const Hit* const>;
 
   explicit PacketQuery(const VoxelObjects& scene) : scene_(scene) {}
 
-  // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, or their
-  // directions are of no usual length, and nothing is known.
+  // Sets hits[i] for rays[i]; without `hits`, tests for any hit. Returns false, without a result, if they diverge too
+  // much or their directions do not have usual lengths.
   bool ask(std::span<const Ray> rays, From from, Hit* hits) {
     rays_ = rays, from_ = from, hits_ = hits;
     if (hits) std::fill(hits, hits + rays.size(), Hit{});
@@ -74,7 +74,7 @@ class VoxelObjects::PacketQuery {
     const auto beam =
         scene_.tree_.beam({rays_.size(), {o[0], o[1], o[2]}, {d[0], d[1], d[2]}, packet_.t_min, packet_.t_max});
     if (!beam) return false;
-    // Those that pass everything.
+    // Rays that miss everything.
     for_each_bit(~beam->inside & ~std::uint64_t{0} >> (kRays - rays_.size()),
                  [&](std::size_t i) { packet_.t_max[i] = -std::numeric_limits<double>::infinity(); });
     int wasted = 0;
@@ -91,7 +91,7 @@ class VoxelObjects::PacketQuery {
     std::uint64_t met = 0, hit = 0;  // a bit per ray
   };
 
-  // The rays at an object. Where it is the nearest so far, it is kept; t_max is that of the nearest hit from then on.
+  // Traces the rays against an object. Keeps its hits if they are the nearest so far, and lowers t_max accordingly.
   Meeting meet(std::uint32_t index, std::uint64_t open) {
     const Object& object = scene_.objects_[index];
     const Turn& turn = scene_.turns_[object.turn];
@@ -148,7 +148,7 @@ class VoxelObjects::PacketQuery {
     return meeting;
   }
 
-  // Where the hit is to be told, if it is the nearest so far.
+  // Where to store the hit, if it is the nearest so far.
   Hit* keep(std::size_t i, double t, std::uint32_t index) {
     const bool again = found(i);
     found_ |= std::uint64_t{1} << i;
@@ -171,7 +171,7 @@ class VoxelObjects::PacketQuery {
   From from_;
   Hit* hits_ = nullptr;
   VoxelPacket packet_;
-  std::uint32_t aimed_ = kNoTurn, alone_aimed_ = kNoTurn;  // turns of the directions in packet_ and directions_
+  std::uint32_t aimed_ = kNoTurn, alone_aimed_ = kNoTurn;  // rotations of the directions in packet_ and directions_
   std::vector<VoxelDirection> directions_;
   std::uint64_t found_ = 0;
 };
@@ -180,7 +180,7 @@ template <class Together, class Alone>
 void VoxelObjects::by_packets(std::span<const Ray> rays, std::span<const Hit* const> from, Hit* hits,
                               const Together& together, const Alone& alone) const {
   if (!from.empty()) require_same_length(rays.size(), from.size());
-  // Rounded voxels are met by rays alone.
+  // Rounded voxels are traced ray by ray.
   if (rounding_) {
     for (std::size_t i = 0; i < rays.size(); ++i) alone(i, from.empty() ? nullptr : from[i]);
     return;

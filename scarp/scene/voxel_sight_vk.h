@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Where a camera looks, for a scene on a device whose voxels are drawn (VoxelDrawing::proxies):
+// The current camera, for a scene on a device whose voxels are drawn (VoxelDrawing::proxies):
 //
 //   const auto sight = std::make_shared<VoxelSight>(VoxelSight{VoxelDrawing::proxies});
 //   const Scene there = scene_on(device, scene, sight);
 //   sight->picture = ...;                               // before each picture
 //
-// Of batches of free rays, those of the camera are then answered by drawing boxes, all others by compute. Answers are
-// the same. A ray is one of the camera if it has its origin and a pixel that no other ray of the batch has.
+// In batches of free rays, those of the camera are then traced by drawing boxes, all others by compute, with the same
+// results. A ray is one of the camera if it has its origin and a pixel that no other ray of the batch has.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace scarp {
 struct VoxelSight {
   VoxelDrawing drawing = VoxelDrawing::compute;
   VoxelPicture picture{};   ///< a pixel per sample
-  std::uint64_t drawn = 0;  ///< rays so far that were answered by drawing
+  std::uint64_t drawn = 0;  ///< number of rays traced by drawing so far
 };
 
 }  // namespace scarp

@@ -52,7 +52,7 @@ VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
                     const std::function<std::uint32_t(const SceneSurface&)>& entry, const Progress& progress) {
   const ivec3 size = lattice.box.high - lattice.box.low;
   VoxelGrid grid(size, VoxelGrid::kMaxEntryBits);
-  // A layer of bricks at a time: who is inside is asked on all threads, the grid is filled by one.
+  // A layer of bricks at a time: all threads test points, one fills the grid.
   const auto columns = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   std::vector<std::optional<SceneSurface>> found(columns * VoxelGrid::kBrick);
   const auto place = [&](int x, int y, int z) {
@@ -89,7 +89,7 @@ VoxelGrid voxelised_ground(const HeightField& heights, const VoxelLattice& latti
   const auto middle = [&](int x, int y, int z) {
     return lattice.side * (dvec3(lattice.box.low + ivec3(x, y, z)) + 0.5);
   };
-  // Middles at or below the ground, counted by the comparison that voxelised() makes.
+  // Centres at or below the ground, by the same comparison as voxelised().
   const auto top = [&](int x, int y) {
     const dvec3 lowest = middle(x, y, 0);
     const auto height = heights.height(lowest.x, lowest.y);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Scenes of any kind made voxels: terrain, functions, shapes, other voxels.
+// Converts scenes of any kind to voxels: terrain, functions, shapes, other voxels.
 //
-// A voxel is solid when its middle is inside of an object, told by the object's own arithmetic: below the surface of
-// heights (z <= height), in a shape (value <= 0), in a voxel. What is thinner than a voxel may fall between the
-// middles.
+// A voxel is solid if its centre is inside an object, by the object's own arithmetic: below the surface of heights (z
+// <= height), in a shape (value <= 0), or in a voxel. Parts thinner than a voxel may fall between the centres.
 #pragma once
 
 #include <functional>
@@ -20,18 +19,18 @@ struct VoxelLattice {
   VoxelBox box;
 };
 
-/// Around the scene, or around the part of it within `within` (where it has no end, needed). Sides are counted from the
-/// world's origin. Throws Error: a side that is not above 0, nothing that has an end, more than `most` voxels along an
-/// axis, places beyond 2^24 voxels.
+/// Returns the lattice around the scene, or around the part inside `within` (required if the scene is unbounded).
+/// Voxels are aligned to the world's origin. Throws Error for a side that is not above 0, nothing bounded, more than
+/// `most` voxels along an axis, or positions beyond 2^24 voxels.
 VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within = {},
                             int most = VoxelGrid::kMaxModelSide);
 
-/// The grid begins at lattice.box.low. `entry`: of a solid voxel, 24 bits, asked on one thread; the surface is what
-/// Scene::within() tells of its middle. Throws Interrupted when progress asks.
+/// The grid begins at lattice.box.low. `entry` returns the entry of a solid voxel, 24 bits, and is called on one thread
+/// with the result of Scene::within() at its centre. Throws Interrupted if `progress` returns false.
 VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
                     const std::function<std::uint32_t(const SceneSurface&)>& entry, const Progress& progress = {});
 
-/// The same voxels of a scene that has heights only (Scene::only_heights()), column by column, for boxes of up to
+/// The same for a scene of heights only (Scene::only_heights()), column by column, for boxes of up to
 /// VoxelGrid::kMaxSide voxels a side. Without entries.
 VoxelGrid voxelised_ground(const HeightField& heights, const VoxelLattice& lattice, const Progress& progress = {});
 

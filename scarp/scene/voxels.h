@@ -49,7 +49,7 @@ class Voxels {
   VoxelColour colour(const Hit& hit) const;
 
   /// Returns the scene of these voxels alone. After an edit, other scenes that contain them throw Error until they are
-  /// combined again; a LiveScene takes edits.
+  /// combined again; a LiveScene supports edits.
   const Scene& scene() const;
   operator const Scene&() const { return scene(); }
 

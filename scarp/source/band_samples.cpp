@@ -94,7 +94,7 @@ bool is_clean(const float* line, int samples, std::optional<double> nodata) {
   return plain == samples && marked == 0;
 }
 
-// What samples are in the file.
+// Storage of the samples in the file.
 struct Stored {
   GDALDataType type = GDT_Unknown;
   bool signed_bytes = false;
@@ -298,7 +298,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   Stored stored{type, is_signed_byte(band), {}, nullptr};
   // A mask that only repeats the nodata value adds nothing, and the caller's nodata value overrides it.
   if (has_own_mask(*plan.band)) stored.mask = plan.band->GetMaskBand();
-  // To learn it, a mask that is reduced would be read twice.
+  // Determining this would read a reduced mask twice.
   if (stored.mask && !plan.decimates && !hides_some(*stored.mask, window, session)) stored.mask = nullptr;
   Findings found;
   found.beyond_are_holes = !nodata;

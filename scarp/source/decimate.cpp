@@ -170,7 +170,7 @@ void Decimator<T>::write(const Row& row) {
   }
 }
 
-// An average that equals the nodata value is no hole: it moves to the next value.
+// An average that equals the nodata value must not become a hole: it moves to the next value.
 template <class T>
 T Decimator<T>::average(double sum, std::int64_t valid) const {
   const double mean = sum / static_cast<double>(valid);

@@ -2,7 +2,7 @@
 // Reduction of rasters too large to be shown sample by sample: averages of blocks, with the extremes kept.
 //
 //   n = ceil(N / k)   samples on a side of N; sample i is the average of the valid ones in the block of columns
-//                     [i N / n, (i + 1) N / n), rounded down, so that it is off its place by less than half a column
+//                     [i N / n, (i + 1) N / n), rounded down, so that it is displaced by less than half a column
 //   k                 the smallest whole number whose result keeps to the caller's limit
 //   a hole            where less than half of a block is valid
 //   the extremes      the blocks with the lowest and the highest sample take exactly these values, so that relief,

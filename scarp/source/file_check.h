@@ -13,7 +13,7 @@ namespace scarp {
 /// readable. Accepts names that are not files, which may be GDAL's own.
 void check_file(const std::string& path);
 
-/// Throws Error (without the file's name) if the end of a file is missing, as far as its start tells: HDF5 (netCDF-4),
+/// Throws Error (without the file's name) if the end of a file is missing, judging by its start: HDF5 (netCDF-4),
 /// classic netCDF, .zip. For files that GDAL cannot open.
 void check_end(const std::string& path);
 

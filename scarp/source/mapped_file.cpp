@@ -28,11 +28,11 @@ MappedFile::MappedFile(const std::string& path) {
   if (file.number < 0) throw Error("cannot be opened");
   struct stat facts {};
   if (fstat(file.number, &facts) != 0 || !S_ISREG(facts.st_mode)) throw Error("cannot be read (is it a file?)");
-  if (facts.st_size == 0) return;  // nothing to map is an error of mmap()
+  if (facts.st_size == 0) return;  // mmap() fails for a length of 0
   const auto size = static_cast<std::size_t>(facts.st_size);
   void* const at = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
   if (at == MAP_FAILED) throw Error("cannot be mapped into memory");
-  // Advice alone: reading begins before the first use.
+  // Only advice: starts reading before the first use.
   madvise(at, size, MADV_WILLNEED);
   bytes_ = {static_cast<const char*>(at), size};
 }

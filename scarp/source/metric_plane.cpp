@@ -16,7 +16,7 @@ namespace scarp {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
-constexpr double kEarthShare = 0.05;  // as gdal_viewshed has it: other bodies have no refraction by default
+constexpr double kEarthShare = 0.05;  // as in gdal_viewshed: other bodies have no refraction by default
 
 bool read_crs(const Georeference& geo, OGRSpatialReference& crs) {
   if (geo.crs_wkt.empty() || crs.importFromWkt(geo.crs_wkt.c_str()) != OGRERR_NONE) return false;

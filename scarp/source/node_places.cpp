@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-// A frame for one call; there are as many as threads that called at once.
+// A frame for one call; there are as many as concurrent calls.
 class NodePlaces::Borrowed {
  public:
   explicit Borrowed(const NodePlaces& owner) : owner_(owner) {
@@ -39,7 +39,7 @@ class NodePlaces::Borrowed {
 
 NodePlaces::NodePlaces(const Georeference& georeference, int cols, int rows)
     : georeference_(georeference), cols_(cols), rows_(rows) {
-  const Borrowed first(*this);  // its errors come now
+  const Borrowed first(*this);  // reports its errors now
 }
 
 NodePlaces::~NodePlaces() = default;

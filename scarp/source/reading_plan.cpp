@@ -28,7 +28,8 @@ GDALRasterBand* overview_for(GDALRasterBand& band, double wanted_cols, double wa
   return best;
 }
 
-// The samples of the overview with their middle in part of a side, and the spacing of the `out` samples made of them.
+// The samples of the overview whose centres are in part of a side, and the spacing of the `out` samples computed from
+// them.
 struct Side {
   int first, count;
 };
@@ -39,7 +40,7 @@ Side side_of_overview(int side, int overview_side, int first, int count) {
   return {begin, std::max(end - begin, 1)};
 }
 
-// `begin` and `count` are of the part that is averaged, in samples of what was asked for.
+// `begin` and `count` describe the averaged part, in samples of the request.
 SampleSpacing spacing(double begin, double count, int out) {
   const double step = count / out;
   return {begin + (step - 1) / 2, step};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is read of a band: all of its samples, or for a large raster that is only shown, fewer of them (decimate.h),
-// from an overview of the file where it has a suitable one.
+// The part of a band to read: all of its samples or, for a large raster that is only displayed, fewer of them
+// (decimate.h), from an overview of the file if it has a suitable one.
 #pragma once
 
 #include <gdal_priv.h>
@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// Place of the samples of a result along one side, in samples of what was asked for.
+/// Position of the samples of a result along one side, in samples of the request.
 struct SampleSpacing {
   double first = 0;
   double step = 1;
@@ -22,11 +22,11 @@ struct SampleSpacing {
 struct ReadingPlan {
   GDALRasterBand* band = nullptr;  ///< the band or one of its overviews
   RasterWindow window;             ///< of it
-  bool decimates = false;          ///< whether the result has fewer samples than were asked for
+  bool decimates = false;          ///< whether the result has fewer samples than requested
   int cols = 0;                    ///< of the result
   int rows = 0;
   SampleSpacing across, down;
-  SampleEnds known;  ///< of the file, where an overview may lack them
+  SampleEnds known;  ///< of the file, as an overview may lack them
   std::string note;  ///< empty if everything is read
 };
 

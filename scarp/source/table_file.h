@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: what the readers of text tables share.
+// Private to the station: shared by the readers of text tables.
 #pragma once
 
 #include <charconv>

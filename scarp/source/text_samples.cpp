@@ -15,7 +15,7 @@ namespace scarp {
 namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
-// Longer words are no numbers; longer lines are no header.
+// Longer words are not numbers; longer lines are not headers.
 constexpr std::size_t kLongestWord = 512;
 constexpr std::size_t kShownBytes = 24;
 
@@ -77,7 +77,7 @@ void TextSamples::take(std::string_view bytes) {
   if (left_ <= 0) return;
   rest_ += bytes;
   std::string_view text = without_header(rest_);
-  // A word at the end may go on in the next piece.
+  // A word at the end may continue in the next piece.
   std::size_t end = text.size();
   while (!in_header_ && end > 0 && kind_of(text[end - 1]) != kSpace) --end;
   if (in_header_) end = 0;

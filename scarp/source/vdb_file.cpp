@@ -21,8 +21,8 @@ namespace scarp {
 namespace {
 
 #ifdef SCARP_OPENVDB
-// Beside the program or library that this code is part of, in a build folder as where it was installed; or, in programs
-// that link an archive, where Scarp was installed.
+// Next to the program or library that contains this code, in a build folder and when installed; for programs that link
+// the static library, where Scarp was installed.
 const VdbModule& vdb_module() {
   static const VdbModule* const module = [] {
     Dl_info here{};
@@ -30,7 +30,7 @@ const VdbModule& vdb_module() {
     if (::dladdr(reinterpret_cast<const void*>(&is_vdb_path), &here) != 0 && here.dli_fname) {
       std::error_code error;
       auto file = std::filesystem::canonical(here.dli_fname, error);
-      // For a program this is the name by which it was called.
+      // For a program this is the name it was started with.
       if (error) file = std::filesystem::read_symlink("/proc/self/exe", error);
       places = {file.parent_path().parent_path() / SCARP_VDB_FOLDER, file.parent_path() / "scarp"};
     }
@@ -38,7 +38,7 @@ const VdbModule& vdb_module() {
     std::string reason;
     for (const auto& place : places) {
       const auto file = place / SCARP_VDB_MODULE;
-      // Its symbols stay its own.
+      // Its symbols stay private.
       if (void* opened = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
         if (const void* found = ::dlsym(opened, kVdbModule)) return static_cast<const VdbModule*>(found);
       }
@@ -66,7 +66,7 @@ VdbVoxels read_vdb(const std::string& path) {
   VdbVoxels voxels;
   std::string error;
   try {
-    // The libraries' messages do not tell a file that is missing from one that is not theirs.
+    // The libraries' messages do not distinguish a missing file from one in another format.
     if (std::ifstream file(path, std::ios::binary); !file || file.peek() == std::ifstream::traits_type::eof())
       throw Error(file.eof() ? "empty file (0 bytes)" : "cannot be read");
     if (!vdb_module().read(path, voxels, error)) throw Error(error);

@@ -5,8 +5,8 @@
 //   bool or mask grid           solid where active
 //   Vec3 grid                   colours in linear light. Alone in a file, it is solid where active
 //
-// Reading is in a module of its own (vdb_module.h), which is opened when the first such file comes: OpenVDB takes as
-// long to start as the rest of the program.
+// Reading is in a module of its own (vdb_module.h), which is opened for the first such file: OpenVDB takes as long to
+// start as the rest of the program.
 #pragma once
 
 #include <array>

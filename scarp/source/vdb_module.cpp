@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The module with OpenVDB and NanoVDB. NanoVDB's grids become OpenVDB's first, so that one text reads both.
+// The module with OpenVDB and NanoVDB. NanoVDB's grids are converted to OpenVDB's first, so that the same code reads
+// both.
 #include "scarp/source/vdb_module.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ using Grid = openvdb::GridBase::ConstPtr;
 
 constexpr int kLeaf = 8, kLeafVoxels = kLeaf * kLeaf * kLeaf;
 
-// What is wrong with a file, for users.
+// Error message about a file, for users.
 struct Refused : std::runtime_error {
   using runtime_error::runtime_error;
 };
@@ -51,14 +52,14 @@ int offset_of(std::size_t brick, int bit) {
 
 ivec3 vector_of(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
-// The box of what was found so far.
+// The bounding box so far.
 class Box {
  public:
   void add(const ivec3& low, int side) {
     for (int axis = 0; axis < 3; ++axis) {
       low_[axis] = std::min<std::int64_t>(low_[axis], low[axis]);
       high_[axis] = std::max<std::int64_t>(high_[axis], std::int64_t{low[axis]} + side);
-      // Leaves reach beyond what is solid in them, by less than two of them.
+      // Leaves extend beyond their solid voxels, by less than two leaves.
       const std::int64_t voxels = high_[axis] - low_[axis];
       if (voxels >= kMaxVdbSide + 2 * kLeaf)
         throw Refused(fmt::format("its grid has {} voxels along {} (limited to {})", voxels, "xyz"[axis], kMaxVdbSide));
@@ -147,7 +148,7 @@ void read_colours(const openvdb::Vec3SGrid& grid, VdbVoxels& voxels) {
   }
 }
 
-// Voxels must be cubes, which may be turned.
+// Voxels must be cubes, possibly rotated.
 void read_place(const Grid& grid, VdbVoxels& voxels) {
   const openvdb::math::Transform& transform = grid->transform();
   constexpr double kCube = 1e-5;  // relative; files hold floats
@@ -230,14 +231,14 @@ std::vector<Grid> grids_of(const std::string& path, VdbVoxels& voxels) {
   }
   voxels.format = "OpenVDB";
   openvdb::io::File file(path);
-  // Without it, grids of a file are mapped to memory, and a file that is cut off ends the program.
+  // Without it, grids of a file are mapped to memory, and a truncated file ends the program.
   file.open(false);
   for (auto name = file.beginName(); name != file.endName(); ++name) grids.push_back(file.readGrid(name.gridName()));
   file.close();
   return grids;
 }
 
-// openvdb::io::File says nothing of bytes that the disk did not take.
+// openvdb::io::File does not report bytes that could not be written.
 struct CheckedArchive : openvdb::io::Archive {
   void save(std::ostream& out, const openvdb::GridCPtrVec& grids) const {
     constexpr bool kWithOffsets = true;

@@ -37,7 +37,7 @@ ivec3 parse_size(VoxBytes& bytes, int axes) {
   return size;
 }
 
-// Half a turn about x: y away from the viewer and z up.
+// Half a turn about x: y points away from the viewer and z up.
 ListedVoxel upright(const ivec3& v, const ivec3& size, const std::array<std::uint8_t, 3>& colour) {
   return {static_cast<std::int16_t>(v.x), static_cast<std::int16_t>(size.y - 1 - v.y),
           static_cast<std::int16_t>(size.z - 1 - v.z), colour};
@@ -83,7 +83,7 @@ class MapColumns {
         {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z), from_bgr(colour)});
     depth = std::max(depth, z + 1);
   }
-  // The inside of the ground, which is seen at the border of the map; it has the colour above.
+  // The inside of the ground, which is visible at the border of the map; it has the colour above.
   void add_inside(int x, int y, int begin, int end, std::string_view colour) {
     const bool border = x == 0 || y == 0 || x == columns_.x - 1 || y == columns_.y - 1;
     for (int z = begin; border && z < end; ++z) add(x, y, z, colour);
@@ -96,7 +96,7 @@ class MapColumns {
       const std::size_t words = byte_at(bytes_, 0);
       const int begin = byte_at(bytes_, 1), end = byte_at(bytes_, 2) + 1;
       const auto colours = static_cast<std::size_t>(std::max(0, end - begin));
-      // A span without colours ends right above its begin.
+      // A span without colours ends right above its start.
       if (begin < next || end < begin || (words > 0 && words < 1 + colours))
         throw Error(fmt::format("column ({}, {}): inconsistent spans (is it a map of Voxlap?)", x, y));
       const std::size_t length = 4 * (words > 0 ? words : 1 + colours);
@@ -104,7 +104,7 @@ class MapColumns {
       for (std::size_t i = 0; i < colours; ++i) add(x, y, begin + static_cast<int>(i), bytes_.substr(4 + 4 * i));
       const std::string_view last = bytes_.substr(4 * std::max<std::size_t>(colours, 1));
       if (words == 0) {
-        // The ground goes on to the bottom.
+        // The ground continues to the bottom.
         if (colours > 0) add_inside(x, y, end, bottom_, last);
         bytes_.remove_prefix(length);
         return;

@@ -44,7 +44,7 @@ void require_fits(const RasterTarget::Impl& target, const DrawCall& call) {
 
 }  // namespace
 
-// Host memory for the reads of a run, one behind the other.
+// Host memory for the reads of a run, consecutively.
 class HostReads {
  public:
   explicit HostReads(const Device::Impl& device)

@@ -94,7 +94,7 @@ Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
 Device::Impl::~Impl() {
   save_pipelines();
   if (!hangs) return;
-  // Drivers wait without end for a device that is destroyed while it runs. The process leaves it to the system instead.
+  // Drivers wait forever for a device that is destroyed while it runs. The process leaves it to the system instead.
   staging.release();
   new auto(std::move(pipelines));
   new auto(std::move(pool));

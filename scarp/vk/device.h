@@ -80,8 +80,8 @@ struct DeviceSettings {
   std::string choice = "auto";
   bool validation =
       false;  ///< enables the Khronos validation layer with synchronisation validation and collects its messages
-  /// Time limit of one run of commands, > 0; after it the device is given up: nothing runs on it. Nothing: 60 s, on CPU
-  /// devices 600 s.
+  /// Time limit of one run of commands, > 0; after it the device is given up and runs nothing more. nullopt: 60 s, on
+  /// CPU devices 600 s.
   std::optional<double> timeout_s = {};
   /// Whether compiled pipelines are kept in the user's cache folder, from process to process (doc/user/devices.md).
   bool keep_pipelines = true;

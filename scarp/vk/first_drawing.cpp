@@ -17,7 +17,7 @@ constexpr std::uint32_t kVertexWords[] = {
 constexpr double kSeconds = 10;
 constexpr std::uint32_t kSide = 8;
 
-// For a time, of one device.
+// Limits the time of one device.
 class ShorterLimit {
  public:
   explicit ShorterLimit(Device::Impl& device) : device_(device), usual_(device.timeout_s) {
@@ -37,9 +37,9 @@ class ShorterLimit {
 void try_first_drawing(const Device& device) {
   Device::Impl& open = *device.impl();
   if (open.has_drawn) return;
-  open.has_drawn = true;  // what is made here asks again
+  open.has_drawn = true;  // prevents recursion
   const ShorterLimit limit(open);
-  // Of depths alone, which takes no fragment shader.
+  // Depth only, which needs no fragment shader.
   const RasterTarget target(device, kSide, kSide, 0);
   const RasterPipeline triangle(device, kVertexWords, {}, "a first drawing", {.colours = 0});
   Commands commands(device);

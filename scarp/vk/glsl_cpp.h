@@ -73,7 +73,8 @@ struct Address {
 
 #endif
 
-// Marks the begin of a block of a shader for `scarp-bench simt`, which counts them; nothing in all other builds.
+// Marks the start of a block of a shader for `scarp-bench simt`, which counts them; expands to nothing in all other
+// builds.
 #ifndef SCARP_COUNT
 #define SCARP_COUNT(block)
 #endif

@@ -5,9 +5,9 @@
 // (LP_MAX_TGSI_LOOP_ITERATIONS of llvmpipe). Invocations share a vector, so an iteration counts if any of them executes
 // it. Other drivers stop shaders that run for seconds. Loops therefore stop earlier and continue in the next run.
 //
-// Mesa 22.3's lavapipe also reads, after a loop, what the last invocation in the vector has computed in its last turn,
-// for values that each turn computes anew. A value that is used after a loop must be carried from turn to turn or set
-// before a `break`.
+// For values that each iteration recomputes, Mesa 22.3's lavapipe also reads, after a loop, the result of the last
+// invocation in the vector. A value that is used after a loop must be carried from turn to turn or set before a
+// `break`.
 #ifndef SCARP_VK_LOOP_TURNS_GLSL_H
 #define SCARP_VK_LOOP_TURNS_GLSL_H
 

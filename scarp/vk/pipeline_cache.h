@@ -3,8 +3,8 @@
 //
 //   pipelines-VENDOR-DEVICE-DRIVER-UUID.bin:  magic, checksum, then the driver's data (VkPipelineCache)
 //
-// The file is a convenience: what cannot be read, is damaged, or belongs to another device or driver is ignored, as is
-// a folder that cannot be written.
+// The file is only a cache: it is ignored if it cannot be read, is damaged, or belongs to another device or driver, as
+// is a folder that cannot be written.
 #pragma once
 
 #include <array>

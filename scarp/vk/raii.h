@@ -78,7 +78,7 @@ struct Device::Impl {
   /// Waits for the fence and resets it. Gives the device up after the time limit, and throws Error then
   /// and from then on.
   void wait(const vk::raii::Fence& fence, const std::string& what);
-  /// Waits for the fence before what it guards is destroyed: for a device that was given up, only a few seconds.
+  /// Waits for the fence before its resources are destroyed; on a device that was given up, only a few seconds.
   void wait_at_end(const vk::raii::Fence& fence) noexcept;
   const std::string& name() const { return description.name; }
   /// Returns the first memory type for a buffer that has all `flags`.

@@ -25,7 +25,7 @@ vk::raii::PhysicalDevice first_with_statistics(const VulkanInstance& instance) {
   throw Error(fmt::format("Vulkan: no driver reports statistics of shaders (available: {})", names));
 }
 
-// Like the devices that compute, as far as this one goes: a driver may compile for a device that could not run
+// Like the devices that compute, as far as this is possible: a driver may compile for a device that cannot run
 // anything.
 vk::raii::Device open_to_compile(const vk::raii::PhysicalDevice& physical, const DeviceAbilities& abilities) {
   const float priority = 1;
@@ -129,7 +129,7 @@ std::string ShaderCompiler::disassembly(const ShaderProgram& program) const {
     const Impl::Compiled compiled =
         impl_->compile(program, vk::PipelineCreateFlagBits::eCaptureInternalRepresentationsKHR);
     const vk::PipelineExecutableInfoKHR& executable = compiled.executable;
-    // Sizes first, then all texts by a second call, for which Vulkan-Hpp has no other form.
+    // Sizes first, then all texts by a second call: Vulkan-Hpp has no other way.
     auto all = device.getPipelineExecutableInternalRepresentationsKHR(executable);
     std::vector<std::string> texts(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {

@@ -20,7 +20,7 @@ struct ShaderStatistic {
   double value = 0;
 };
 
-/// The compiler of a Vulkan driver. Drivers are found anew for each object, so the environment may change in between.
+/// The compiler of a Vulkan driver. Each object searches for drivers again, so the environment may change in between.
 class ShaderCompiler {
  public:
   /// Throws Error if there is no loader, no device, or none whose driver reports statistics

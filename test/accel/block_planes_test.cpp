@@ -67,7 +67,7 @@ Samples slope(int cols, int rows, double east, double south) {
   return heights;
 }
 
-TEST(BlockPlanes, AreAboveTheGroundAtAnySize) {
+TEST(BlockPlanes, BoundTheGroundAtAnySize) {
   const std::vector<std::pair<int, int>> sizes{{2, 2}, {2, 9}, {3, 3}, {5, 17}, {17, 17}, {13, 29}, {64, 3}, {101, 97}};
   for (const auto& [cols, rows] : sizes) {
     for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
@@ -81,7 +81,7 @@ TEST(BlockPlanes, AreAboveTheGroundAtAnySize) {
   }
 }
 
-TEST(BlockPlanes, AreAboveHeightsOfAnyMagnitude) {
+TEST(BlockPlanes, BoundHeightsOfAnyMagnitude) {
   for (const double offset : {0.0, 1e6, -3e30}) {
     for (const double scale : {0.0, 1e-7, 1.0 / 3, 1e30}) {
       Samples heights = noise(33, 18, scale);
@@ -92,14 +92,14 @@ TEST(BlockPlanes, AreAboveHeightsOfAnyMagnitude) {
   }
 }
 
-// One cliff of the full range among gentle ground, which slopes cannot follow and must not spoil the rest.
-TEST(BlockPlanes, KeepCloseToGentleGroundBesideACliff) {
+// A single cliff of the full range on gentle ground: slopes cannot follow it, and it must not spoil the rest.
+TEST(BlockPlanes, StayTightOnGentleGroundBesideACliff) {
   Samples heights = slope(257, 257, 2, 1);
   heights[20 * 257 + 40] = 20000;
   const HeightField field = field_of<float>(heights, 257, 257);
   const MaxPyramid pyramid(field);
   expect_above(field, pyramid);
-  // Mean over the blocks: 2 x 2 cells rise by 6, four blocks have the cliff.
+  // Mean over the blocks: 2 x 2 cells rise by 6; four blocks contain the cliff.
   const double mean = 6 + 4 * 20000 / (128.0 * 128), step = pyramid.planes().code().step;
   EXPECT_LT(pyramid.planes().steepest() * step, mean + 2 * step);
 }
@@ -141,7 +141,7 @@ TEST(BlockPlanes, FollowEdits) {
 }
 
 // Otherwise one edit would refit all planes.
-TEST(BlockPlanes, HaveRoomForEditsAtOnce) {
+TEST(BlockPlanes, LeaveHeadroomForEdits) {
   for (const double height : {0.0, 1.0, 20.0}) {
     HeightField field = field_of<std::int16_t>(noise(20, 20, height), 20, 20);
     MaxPyramid pyramid(field);
@@ -155,7 +155,7 @@ TEST(BlockPlanes, HaveRoomForEditsAtOnce) {
   }
 }
 
-TEST(BlockPlanes, ComeAndGoWithHoles) {
+TEST(BlockPlanes, DisappearAndReturnWithHoles) {
   HeightField field = field_of<std::int16_t>(noise(20, 20, 1), 20, 20, {.nodata = -1});
   MaxPyramid pyramid(field);
   ASSERT_TRUE(pyramid.planes().exist());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pyramid that a device makes is the CPU's, bit for bit, and shaders read the samples that the field has.
+// The pyramid built by a device is the CPU's, bit for bit, and shaders read the samples of the field.
 #include "scarp/accel/device_ground.h"
 
 #include <gtest/gtest.h>
@@ -89,7 +89,7 @@ class DeviceGrounds : public test::OnDevice {
   }
 };
 
-TEST_F(DeviceGrounds, PyramidsAreTheCpusAtAnySize) {
+TEST_F(DeviceGrounds, PyramidsMatchTheCpuAtAnySize) {
   for (const auto& [cols, rows] : kSizes) {
     expect_same_with_and_without_holes<std::int16_t>(noise<std::int16_t>(cols, rows, 1, -30000), cols, rows, -32768);
     expect_same_with_and_without_holes<std::uint16_t>(noise<std::uint16_t>(cols, rows), cols, rows, 9);
@@ -97,8 +97,8 @@ TEST_F(DeviceGrounds, PyramidsAreTheCpusAtAnySize) {
   }
 }
 
-TEST_F(DeviceGrounds, PyramidsAreTheCpusAtAnyHeight) {
-  // Both extremes of 16 bits; floats that are tiny, huge, far from 0, all the same, 0 of both signs, all nodata.
+TEST_F(DeviceGrounds, PyramidsMatchTheCpuAtAnyHeight) {
+  // Both extremes of 16 bits; floats that are tiny, huge, far from 0, all equal, zeros of both signs, all nodata.
   expect_same(HeightField::own(std::vector<std::int16_t>{-32768, 32767, 0, -1, 1, 7}, 3, 2));
   expect_same(HeightField::own(std::vector<std::uint16_t>{0, 65535, 1, 32768, 32767, 7}, 3, 2));
   for (const double base : {0.0, 1e6, -1e6, 4e38 / 3, -3e38}) {
@@ -112,7 +112,7 @@ TEST_F(DeviceGrounds, PyramidsAreTheCpusAtAnyHeight) {
   expect_same(HeightField::own(std::vector<float>{-0.f, 5.f, 0.f, 6.f, 7.f, 8.f}, 3, 2, {.nodata = 0.0}));
 }
 
-TEST(CodeTables, SayOfAnyFloatWhatTheFormulaSays) {
+TEST(CodeTables, MatchTheFormulaForAnyFloat) {
   std::mt19937 random(5);
   for (const SampleRange& range : {SampleRange{-1000, 4000}, SampleRange{0, 0}, SampleRange{1e6, 1e6 + 0.25},
                                    SampleRange{-3e38, 3e38}, SampleRange{1e-42, 1e-41}}) {
@@ -121,7 +121,7 @@ TEST(CodeTables, SayOfAnyFloatWhatTheFormulaSays) {
     const auto begin = tables.begin(), middle = begin + glsl::kPyramidCodes, end = tables.end();
     ASSERT_TRUE(std::is_sorted(begin, middle) && std::is_sorted(middle, end));
     for (int i = 0; i < 20000; ++i) {
-      // Any sample of the range, and the neighbours of what codes stand for.
+      // Any sample of the range, and the neighbours of decoded values.
       float sample =
           static_cast<float>(range.low + (range.high - range.low) * static_cast<double>(random()) / 4294967295.0);
       if (i % 2) sample = static_cast<float>(code.height(static_cast<std::uint16_t>(random() % 65536)));
@@ -137,7 +137,7 @@ TEST(CodeTables, SayOfAnyFloatWhatTheFormulaSays) {
   }
 }
 
-TEST_F(DeviceGrounds, AnUpdateIsABuildOfWhatChanged) {
+TEST_F(DeviceGrounds, UpdateMatchesARebuild) {
   std::mt19937 random(9);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   const auto run = [&]<class T>(T nodata, const HeightFieldSettings& settings) {
@@ -168,7 +168,7 @@ TEST_F(DeviceGrounds, AnUpdateIsABuildOfWhatChanged) {
   }
 }
 
-TEST_F(DeviceGrounds, AnUpdateMakesNothingElseAnew) {
+TEST_F(DeviceGrounds, UpdateCreatesNoPasses) {
   HeightField field = HeightField::own(noise<float>(1025, 1025), 1025, 1025);
   DeviceGround ground(device(), field);
   EXPECT_EQ(ground.passes().size(), 20u);  // two passes for each level
@@ -179,8 +179,8 @@ TEST_F(DeviceGrounds, AnUpdateMakesNothingElseAnew) {
 }
 
 // More samples than one storage buffer of lavapipe holds (128 MiB), and a level wider than one dispatch; the checked
-// build takes half a minute for that and contents itself with a long row. Rays meet what is there.
-TEST_F(DeviceGrounds, LongFieldsAreLikeOthers) {
+// build would take half a minute for that, so it uses a long row. Rays hit the ground there.
+TEST_F(DeviceGrounds, LongFieldsWork) {
 #ifdef NDEBUG
   const int cols = 17'500'000;
 #else
@@ -198,7 +198,7 @@ TEST_F(DeviceGrounds, LongFieldsAreLikeOthers) {
   };
   std::vector<Ray> rays(1000);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Half of them over the last samples, which lie beyond the range.
+    // Half of them are over the last samples, which are outside the range.
     rays[i].origin = {uniform(i % 2 ? 0.97 * cols : 0, cols - 1), uniform(0, 1), uniform(66000, 70000)};
     rays[i].direction = {i % 4 < 2 ? 1.0 : -1.0, uniform(-1, 1) / 1024, -uniform(5, 500)};
     rays[i].t_max = 1000;
@@ -215,8 +215,8 @@ TEST_F(DeviceGrounds, LongFieldsAreLikeOthers) {
   EXPECT_GT(met, 500);
 }
 
-// What a shader reads through ground_buffers.glsl.h: four heights of each cell, and whether it is a hole.
-TEST_F(DeviceGrounds, ShadersReadTheSamplesOfTheField) {
+// Reads through ground_buffers.glsl.h the four heights of each cell, and whether it is a hole.
+TEST_F(DeviceGrounds, ShadersReadTheFieldsSamples) {
   struct Push {
     glsl::Address ground, out;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// C++ and the shaders agree on the layout of what they share.
+// C++ and the shaders agree on the layout of shared structs.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -18,7 +18,7 @@ constexpr std::uint32_t kShader[] = {
 #include "scarp/accel/max_pyramid.comp.inc"
 };
 
-TEST(GroundLayout, IsThatOfTheShaders) {
+TEST(GroundLayout, MatchesTheShaders) {
   EXPECT_TRUE(
       test::has_struct(kShader, {offsetof(GroundBuffers, samples),        offsetof(GroundBuffers, pyramid),
                                  offsetof(GroundBuffers, quads),          offsetof(GroundBuffers, quad_cols),
@@ -45,7 +45,7 @@ TEST(GroundLayout, IsThatOfTheShaders) {
                 offsetof(PyramidPush, row_end)}));
 }
 
-TEST(GroundLayout, NumbersMeanTheSame) {
+TEST(GroundLayout, ConstantsMatchTheShaders) {
   EXPECT_EQ(glsl::kGroundInt16, static_cast<std::uint32_t>(SampleType::int16));
   EXPECT_EQ(glsl::kGroundUint16, static_cast<std::uint32_t>(SampleType::uint16));
   EXPECT_EQ(glsl::kGroundFloat32, static_cast<std::uint32_t>(SampleType::float32));

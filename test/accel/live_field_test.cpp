@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Edits while others ask: every batch sees one epoch, and neither side waits for ever. Run under the thread sanitizer,
+// Edits during queries: every batch sees one epoch, and neither side waits for ever. Run under the thread sanitizer,
 // too.
 #include "scarp/accel/live_field.h"
 
@@ -66,7 +66,7 @@ std::vector<Hit> answers(const HeightField& field, const MaxPyramid& pyramid, co
 
 template <class T>
 void expect_whole_epochs() {
-  // Two states that differ in a rectangle; edits go to and fro between them.
+  // Two states that differ in a rectangle; edits alternate between them.
   const auto even = ground<T>(0, kSide);
   auto odd = even;
   const auto other = cut(ground<T>(1, kSide), kRect), one = cut(even, kRect);
@@ -99,7 +99,7 @@ void expect_whole_epochs() {
       }
     });
   }
-  // That this ends is the test that nobody starves: readers never pause, and the edits are as many.
+  // Termination shows that nobody starves: readers never pause, and there are as many edits.
   for (int i = 0; i < kEdits; ++i) {
     EXPECT_EQ(live.edit(kRect, (i % 2 ? one : other).data(), kRect.cols), static_cast<std::uint64_t>(i + 1));
   }
@@ -116,11 +116,11 @@ TEST(LiveField, EveryBatchSeesOneEpoch) {
   expect_whole_epochs<std::int16_t>();
 }
 
-TEST(LiveField, AnEditGetsItsTurnAmongReadersWithoutAPause) {
+TEST(LiveField, EditIsNotStarvedByReaders) {
   LiveField live(HeightField::own(ground<float>(0, kSide), kSide, kSide));
   std::atomic<bool> done{false};
   std::vector<std::thread> readers;
-  // At any time one of them holds a reading: without a turnstile the edit would never come in.
+  // At any time one of them holds a reading: without a turnstile the edit would never get its turn.
   for (int i = 0; i < 3; ++i) {
     readers.emplace_back([&] {
       while (!done) {
@@ -136,7 +136,7 @@ TEST(LiveField, AnEditGetsItsTurnAmongReadersWithoutAPause) {
   EXPECT_EQ(live.read().epoch(), 20u);
 }
 
-TEST(LiveField, ARefusedEditChangesNothing) {
+TEST(LiveField, RejectedEditChangesNothing) {
   LiveField live(HeightField::own(ground<float>(0, kSide), kSide, kSide));
   const double before = live.read().field().cell_heights({3, 4})->h00;
   const float bad = HUGE_VALF;

@@ -61,7 +61,7 @@ void expect_tight(const HeightField& field, const MaxPyramid& pyramid) {
         if (true_bounds.hole) {
           ASSERT_EQ(low, -kInfinity);
         } else if (low == -kInfinity) {
-          ASSERT_EQ(true_bounds.low, pyramid.code().height(0));  // as low as codes go
+          ASSERT_EQ(true_bounds.low, pyramid.code().height(0));  // the lowest code
         } else {
           ASSERT_LE(low, true_bounds.low);
           ASSERT_LT(true_bounds.low - low, exact ? step : 2 * step);
@@ -97,7 +97,7 @@ TEST(MaxPyramid, BoundsEachBlockTightlyAtAnySize) {
   }
 }
 
-TEST(MaxPyramid, BoundsHeightsThatCodesDoNotMeet) {
+TEST(MaxPyramid, BoundsHeightsOfAnyOffsetAndScale) {
   // Far above the datum, tiny, huge, and all the same.
   for (const double offset : {0.0, 1e6, -3e30}) {
     for (const double scale : {0.0, 1e-7, 1.0 / 3, 1e30}) {
@@ -109,8 +109,8 @@ TEST(MaxPyramid, BoundsHeightsThatCodesDoNotMeet) {
   }
 }
 
-TEST(MaxPyramid, BoundsHeightsOfARangeThatIsNarrowerThanRounding) {
-  // Neighbouring floats far above the datum, and a reserve that doubles hardly tell from nothing.
+TEST(MaxPyramid, BoundsRangesNarrowerThanRounding) {
+  // Neighbouring floats far above the datum, and a reserve that is barely representable in doubles.
   for (const double datum : {1.0, 8388608.0, -3e30}) {
     auto samples = noise<float>(33, 18);
     const float low = static_cast<float>(datum), high = std::nextafter(low, std::numeric_limits<float>::infinity());
@@ -123,7 +123,7 @@ TEST(MaxPyramid, BoundsHeightsOfARangeThatIsNarrowerThanRounding) {
   }
 }
 
-TEST(MaxPyramid, BoundsHeightsThatAreThoseOfCodesButForRounding) {
+TEST(MaxPyramid, BoundsHeightsThatMatchCodesUpToRounding) {
   std::mt19937 random(10);
   std::uniform_real_distribution<double> some(0.001, 0.01);
   const HeightField flat = HeightField::own(std::vector<float>(9, 1.0f), 3, 3);
@@ -135,13 +135,13 @@ TEST(MaxPyramid, BoundsHeightsThatAreThoseOfCodesButForRounding) {
   }
 }
 
-TEST(MaxPyramid, LeavesHolesOut) {
+TEST(MaxPyramid, IgnoresHoles) {
   auto ints = noise<std::int16_t>(21, 19);
   auto floats = noise<float>(21, 19);
   std::mt19937 random(8);
   for (int i = 0; i < 60; ++i) {
     const auto at = random() % ints.size();
-    ints[at] = 9999;  // higher than all: a hole that is taken for ground would show
+    ints[at] = 9999;  // higher than all others: a hole taken for ground would show
     floats[at] = i % 2 ? std::numeric_limits<float>::quiet_NaN() : 9999.f;
   }
   for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
@@ -183,7 +183,7 @@ void expect_update_equals_build(const HeightFieldSettings& settings) {
   std::mt19937 random(9);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   const int cols = 37, rows = 29;
-  // Samples 0 and 999 stay in, so that a pyramid built anew has the same range.
+  // Samples 0 and 999 stay, so that a rebuilt pyramid has the same range.
   auto samples = noise<T>(cols, rows);
   if (settings.wrap == Wrap::shared_border) {
     for (int row = 0; row < rows; ++row)
@@ -215,7 +215,7 @@ void expect_update_equals_build(const HeightFieldSettings& settings) {
   }
 }
 
-TEST(MaxPyramid, AnUpdateIsABuildOfWhatChanged) {
+TEST(MaxPyramid, UpdateMatchesARebuild) {
   for (const Wrap wrap : {Wrap::none, Wrap::periodic, Wrap::shared_border}) {
     for (const std::optional<double> nodata : {std::optional<double>(), std::optional<double>(500)}) {
       expect_update_equals_build<float>({.nodata = nodata, .wrap = wrap});
@@ -225,17 +225,17 @@ TEST(MaxPyramid, AnUpdateIsABuildOfWhatChanged) {
   }
 }
 
-TEST(MaxPyramid, AnUpdateTouchesNothingElse) {
+TEST(MaxPyramid, UpdateTouchesOnlyChangedBlocks) {
   HeightField field = HeightField::own(noise<std::int16_t>(65, 65), 65, 65);
   MaxPyramid pyramid(field);
-  // An entry spoilt far from the edit stays spoilt.
+  // A corrupted entry far from the edit stays corrupted.
   const_cast<std::uint32_t*>(pyramid.blocks())[0] = 12345;
   const std::int16_t sample = 7;
   pyramid.update(field, field.set_samples({60, 60, 1, 1}, &sample, 1));
   EXPECT_EQ(pyramid.maximum_code(0), 12345);
 }
 
-TEST(MaxPyramid, IsBuiltAnewWhenSamplesLeaveTheRangeOfItsCodes) {
+TEST(MaxPyramid, RebuildsWhenSamplesLeaveTheCodeRange) {
   HeightField field = HeightField::own(noise<float>(40, 30), 40, 30);
   MaxPyramid pyramid(field), reserved(field, SampleRange{-6000, 6000});
   const double step = reserved.code().step;
@@ -245,7 +245,7 @@ TEST(MaxPyramid, IsBuiltAnewWhenSamplesLeaveTheRangeOfItsCodes) {
   reserved.update(field, changed);
   expect_tight(field, pyramid);
   expect_tight(field, reserved);
-  EXPECT_EQ(reserved.code().step, step);  // the range was reserved: no need
+  EXPECT_EQ(reserved.code().step, step);  // not needed: the range was reserved
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-TEST(SlopeBound, OfAPlaneIsItsSlope) {
+TEST(SlopeBound, EqualsTheSlopeOfAPlane) {
   std::vector<float> samples;
   for (int row = 0; row < 7; ++row) {
     for (int col = 0; col < 5; ++col) samples.push_back(static_cast<float>(30 * col + 40 * row));
@@ -19,7 +19,7 @@ TEST(SlopeBound, OfAPlaneIsItsSlope) {
   EXPECT_DOUBLE_EQ(slope_bound(HeightField::own(samples, 5, 7, {.cell_x = 10, .cell_y = 10, .exaggeration = 2})), 10);
 }
 
-TEST(SlopeBound, LeavesHolesOut) {
+TEST(SlopeBound, IgnoresHoles) {
   EXPECT_DOUBLE_EQ(slope_bound(HeightField::own<float>({0, 0, std::nanf(""), 0, 1, 900}, 3, 2)), std::sqrt(2));
 }
 

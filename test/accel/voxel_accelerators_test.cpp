@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The accelerators of voxel grids against their definitions by brute force, and after edits against being built anew.
+// The accelerators of voxel grids against their definitions by brute force, and after edits against a rebuild.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ int octant_side(const std::vector<ivec3>& solid, const ivec3& v, int octant) {
   return least;
 }
 
-// What is built in vectors.
+// Accelerators that are built with SIMD.
 struct Built {
   EmptyCubes cubes;
   EmptySpheres spheres;
@@ -90,7 +90,7 @@ void expect_as_defined(const VoxelGrid& grid, const Built& built) {
 
 class VoxelAccelerators : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
+TEST_P(VoxelAccelerators, MatchTheirDefinitions) {
   Random random(11);
   for (int i = 0; i < 3; ++i) {
     VoxelGrid grid = GetParam().make(random);
@@ -110,7 +110,7 @@ TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
   }
 }
 
-TEST_P(VoxelAccelerators, AllBuildersOfCubesAgree) {
+TEST_P(VoxelAccelerators, AllCubeBuildersAgree) {
   Random random(12);
   for (int i = 0; i < cases(4, 4, 1); ++i) {
     const VoxelGrid grid = GetParam().make(random);
@@ -120,7 +120,7 @@ TEST_P(VoxelAccelerators, AllBuildersOfCubesAgree) {
   }
 }
 
-TEST_P(VoxelAccelerators, FollowEditsAsIfBuiltAnew) {
+TEST_P(VoxelAccelerators, MatchARebuildAfterEdits) {
   Random random(13);
   for (int i = 0; i < cases(3, 3, 1); ++i) {
     VoxelGrid grid = GetParam().make(random);
@@ -142,8 +142,9 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
   return name;
 });
 
-// Rows of less than a vector, of one, of some; longer than what counts; along each axis; before and after edits.
-TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
+// Rows shorter than a vector, of one and of several vectors, and beyond the longest run that counts; along each axis;
+// before and after edits.
+TEST(VoxelAccelerators, MatchTheirDefinitionsForRowsOfAnyLength) {
   Random random(14);
   for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
                             ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
@@ -166,9 +167,9 @@ TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
   }
 }
 
-// What edits alter may be far away, beyond another solid voxel, on all sides or on one; they add and remove at once,
-// and report more than they change.
-TEST(VoxelAccelerators, FollowSpitefulEdits) {
+// The effects of edits may be far away, beyond another solid voxel, on all sides or on one. The edits add and remove at
+// once, and report more than they change.
+TEST(VoxelAccelerators, MatchARebuildAfterHostileEdits) {
   Random random(15);
   const std::array sizes{ivec3(70, 31, 43), ivec3(129, 23, 20), ivec3(31, 90, 24)};
   for (const ivec3& size : std::span(sizes).first(static_cast<std::size_t>(cases(3, 3, 1)))) {
@@ -190,7 +191,7 @@ TEST(VoxelAccelerators, FollowSpitefulEdits) {
         if (edit % 4 == 0) changed = grid.fill_sphere(at, radius, 1);
         if (edit % 4 == 1) changed = grid.clear_sphere(at + 1.5, radius);
         if (edit % 4 == 2) {
-          // Some voxels come, some go.
+          // Some voxels are added, some removed.
           changed = grid.edit({low, high}, [&](const ivec3&, const VoxelGrid::Voxel&) {
             return uniform(random, 0, 1) < 0.3 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
           });
@@ -213,7 +214,7 @@ TEST(VoxelAccelerators, FollowSpitefulEdits) {
   }
 }
 
-TEST(VoxelAccelerators, CountNoFartherThanAByte) {
+TEST(VoxelAccelerators, SaturateAtOneByte) {
   VoxelGrid grid({400, 3, 3}, 1);
   EXPECT_EQ(EmptyCubes(grid).distance({200, 1, 1}), 255);
   EXPECT_EQ(EmptySpheres(grid).distance({200, 1, 1}), 254);
@@ -231,7 +232,7 @@ TEST(VoxelAccelerators, CountNoFartherThanAByte) {
 }
 
 // Levels above sectors tell what the cells below contain, before and after edits.
-TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
+TEST(VoxelAccelerators, HaveLevelsForLargeGrids) {
   Random random(16);
   for (const ivec3& size : {ivec3(520, 7, 30), ivec3(3, 1100, 18), ivec3(600, 70, 4200)}) {
     VoxelGrid grid(size, 1);
@@ -261,7 +262,7 @@ TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
   }
 }
 
-TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
+TEST(VoxelAccelerators, RejectOversizedGrids) {
   const VoxelGrid grid({513, 1, 1}, 1);
   EXPECT_THROW((EmptyCubes(grid)), Error);
   EXPECT_THROW((EmptySpheres(grid)), Error);
@@ -278,7 +279,7 @@ TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
 }
 
 // Above the size at which the builder changes.
-TEST(VoxelAccelerators, OfALargeGridAgreeToo) {
+TEST(VoxelAccelerators, AllCubeBuildersAgreeOnALargeGrid) {
   VoxelGrid grid({100, 90, 70}, 1);
   grid.fill_sphere({20, 70, 30}, 9, 1);
   grid.fill({{90, 3, 60}, {95, 30, 61}}, 1);

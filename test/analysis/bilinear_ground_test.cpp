@@ -30,11 +30,11 @@ double dense_clearance(const HeightField& field, double col, double row, double 
   return least;
 }
 
-// What samples leave open: a ray may dip between them, and starts on the ground.
+// Tolerance of sampling: a ray may dip between samples, and starts on the ground.
 constexpr double kRounding = 1e-6;
 double between_samples(const HeightField& field) { return kRounding + (field.max_height() - field.min_height()) / 100; }
 
-TEST(BilinearGround, ShadesEqualDenseSamples) {
+TEST(BilinearGround, ShadowsMatchDenseSamples) {
   int counts[4] = {};
   std::size_t turn = 0;
   const auto suns = map_suns();
@@ -45,7 +45,7 @@ TEST(BilinearGround, ShadesEqualDenseSamples) {
     const BilinearGround ground(field);
     for (int i = 0; i < 3; ++i) {
       const SunRay sun = sun_ray(field, suns[turn++ % suns.size()]);
-      // Of a cell per unit of t.
+      // Cells per unit of t.
       const auto unit = static_cast<double>(SunRay::kUnit);
       const double cols = static_cast<double>(sun.col) / unit, rows = static_cast<double>(sun.row) / unit;
       if ((cols == 0 || rows == 0) && field.nodata_count() > 0) continue;  // along lines beside holes
@@ -86,7 +86,7 @@ TEST(BilinearGround, ShadesEqualDenseSamples) {
   for (const int count : counts) EXPECT_GT(count, cases(100, 100, 10));
 }
 
-TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
+TEST(BilinearGround, LinesOfSightMatchDenseSamples) {
   std::mt19937 random(5);
   int visible = 0, hidden = 0;
   for (const MapField& kind : map_fields()) {
@@ -125,7 +125,7 @@ TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
         EXPECT_TRUE(line.visible) << where();
       }
       EXPECT_EQ(line.visible, back.visible) << where();
-      // Samples beside the ends are no clearances.
+      // Samples next to the ends do not count as clearances.
       if (clearance < -kRounding) {
         EXPECT_LT(line.clearance, clearance + kRounding) << where();
       }
@@ -146,7 +146,7 @@ TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
 }
 
 // Within a cell whose opposite corners are high, the ground between two low corners rises to the mean of all four.
-TEST(BilinearGround, CountsWhatLiesBetweenCrossings) {
+TEST(BilinearGround, AccountsForGroundBetweenCrossings) {
   const auto field = HeightField::own(std::vector<float>{0, 10, 10, 0}, 2, 2, {.cell_x = 3, .cell_y = 4});
   const BilinearGround ground(field);
   EXPECT_TRUE(line_of_sight(field, {0, 0, 4}, {1, 1, 4}, {.coefficient = 0}).visible);
@@ -181,7 +181,7 @@ TEST(BilinearGround, GrazingIsVisible) {
   EXPECT_EQ(ground.shade({SunRay::kUnit, 0, SunRay::kUnit * 9.}, {3, 4}), Shade::self_shaded);
 }
 
-TEST(BilinearGround, RefusesWhatHasNoCells) {
+TEST(BilinearGround, RejectsFieldsWithoutCells) {
   EXPECT_THROW(BilinearGround(HeightField::own(std::vector<float>{1, 2, 3}, 3, 1)), Error);
   EXPECT_THROW(BilinearGround(HeightField::own(std::vector<float>(9, 1), 3, 3, {.wrap = Wrap::periodic})), Error);
 }

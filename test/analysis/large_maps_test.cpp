@@ -47,7 +47,7 @@ std::size_t index_in(const HeightField& field, Node node) {
 
 std::string text_of(Node node) { return "column " + std::to_string(node.col) + ", row " + std::to_string(node.row); }
 
-TEST(LargeMaps, ViewshedsEqualRaysAndTheJudge) {
+TEST(LargeMaps, ViewshedsMatchRaysAndTheJudge) {
   const HeightField field = large_field();
   const Viewpoint view(field, {field.cols() / 3, field.rows() / 2 + 50}, {.observer_height = 30, .target_height = 1});
   const auto codes = viewshed(field, view.observer(), view.settings());
@@ -69,7 +69,7 @@ TEST(LargeMaps, ViewshedsEqualRaysAndTheJudge) {
   EXPECT_LT(visible, rays / 2);
 }
 
-TEST(LargeMaps, ShadowsEqualRaysAndTheJudge) {
+TEST(LargeMaps, ShadowsMatchRaysAndTheJudge) {
   const HeightField field = large_field();
   const SightGround ground(field);
   const SunDirection sun{2, 0.1};

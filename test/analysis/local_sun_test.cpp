@@ -45,7 +45,7 @@ HeightField rough(int cols, int rows, double cell_x, double cell_y, double relie
 
 constexpr const char* kEvening = "2026-10-21T17:10+02:00";
 
-TEST(LocalSun, EqualsTheJudgeWithTheRayOfEveryNode) {
+TEST(LocalSun, MatchesTheJudgePerNode) {
   for (const double turn : {0.0, 0.3}) {
     const Ground ground{rough(31, 23, 3000, 3000, 1500), 10, 46, 0.03, turn};
     const LocalSun sun = ground.sun(kEvening);
@@ -85,7 +85,7 @@ TEST(LocalSun, EqualsTheJudgeWithTheRayOfEveryNode) {
 }
 
 // Degrees of latitude and longitude at 46 degrees north: 111,151 m and 77,463 m.
-TEST(LocalSun, StepsAreLengthsOnTheGround) {
+TEST(LocalSun, StepsAreGroundDistances) {
   const auto steps = node_steps({10, 46, 0}, {9.99, 46, 0}, {10.01, 46, 0}, 2, {10, 46.01, 0}, {10, 45.99, 0}, 2);
   EXPECT_NEAR(steps.col.x, 774.63, 0.05);
   EXPECT_NEAR(steps.row.y, -1111.51, 0.05);
@@ -98,7 +98,7 @@ TEST(LocalSun, StepsAreLengthsOnTheGround) {
 }
 
 // Over 20 km the sun moves by 0.2 degree: few nodes differ from those under one sun.
-TEST(LocalSun, IsNearlyOneSunOverASmallField) {
+TEST(LocalSun, BarelyVariesOverASmallField) {
   const double step = 0.002, north = 46 * kRadians;
   const HeightField field = rough(90, 90, step * 111320 * std::cos(north), step * 111151, 400);
   const Ground ground{field, 10, 46 + 45 * step, step};

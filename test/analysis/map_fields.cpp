@@ -24,7 +24,7 @@ HeightField sampled(int cols, int rows, double cell_x, double cell_y, const Shap
   return HeightField::own(std::move(samples), cols, rows, {.cell_x = cell_x, .cell_y = cell_y});
 }
 
-// Whole metres, so that exact ties are common; `levels` of them.
+// Whole metres, so that exact ties are common; `levels` is their number.
 Shape steps(unsigned seed, int levels) {
   return [random = std::mt19937(seed), levels](int, int) mutable {
     return static_cast<float>(random() % static_cast<unsigned>(levels));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small fields chosen to hurt viewsheds and shadows.
+// Small adversarial fields for viewsheds and shadows.
 #pragma once
 
 #include <string>

@@ -66,7 +66,7 @@ TEST(MapPart, BandsCoverAllRows) {
   EXPECT_THROW(shadow_rows(field, {.altitude = 1}, {3, 6}), Error);
 }
 
-TEST(MapPart, PartsTogetherAreTheWhole) {
+TEST(MapPart, PartsAddUpToTheWhole) {
   auto fields = map_fields();
   fields.push_back({"mountains", mountains(90, 120)});
   const auto stride = static_cast<std::size_t>(cases(1, 3, 8));
@@ -110,8 +110,8 @@ TEST(MapPart, PartsTogetherAreTheWhole) {
   }
 }
 
-// Ground above the band hides the sun from as far as it reaches, and limits of distance leave out whole bands.
-TEST(MapPart, FarGroundCounts) {
+// Ground above the band casts shadows into it, and distance limits exclude whole bands.
+TEST(MapPart, DistantGroundAffectsTheBand) {
   std::vector<float> heights(40 * 200, 0);
   for (int col = 0; col < 40; ++col) heights[static_cast<std::size_t>(col)] = 100;
   const auto field = HeightField::own(std::move(heights), 40, 200);

@@ -21,7 +21,7 @@ std::string place(const MapField& kind, std::size_t i) {
   return kind.name + ", column " + std::to_string(i % cols) + ", row " + std::to_string(i / cols);
 }
 
-// All fields in optimised builds, a share in others: the judge's rational numbers take most of the time.
+// All fields in optimised builds, some in others: the judge's rational numbers take most of the time.
 std::vector<MapField> some_fields() {
   const auto stride = static_cast<std::size_t>(cases(1, 1, 4));
   auto all = map_fields();
@@ -30,7 +30,7 @@ std::vector<MapField> some_fields() {
   return some;
 }
 
-// A share of the observers, others for each field.
+// Some of the observers, different ones for each field.
 std::vector<Node> some_observers(const HeightField& field) {
   static std::size_t turn = 0;
   const auto all = map_observers(field);
@@ -39,14 +39,14 @@ std::vector<Node> some_observers(const HeightField& field) {
   return some;
 }
 
-TEST(Maps, ThereAreAtLeastSixtyFields) { EXPECT_GE(map_fields().size(), 60u); }
+TEST(Maps, HaveAtLeastSixtyFields) { EXPECT_GE(map_fields().size(), 60u); }
 
-TEST(Maps, ViewshedsEqualTheJudge) {
+TEST(Maps, ViewshedsMatchTheJudge) {
   std::size_t visible = 0, hidden = 0;
   unsigned turn = 0;
   for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
-      // One set of settings per observer, in turn: all meet all shapes.
+      // One set of settings per observer, in turn: all are combined with all shapes.
       const auto settings = map_settings();
       const auto& chosen = settings[turn++ % settings.size()];
       const auto judged = judge_viewshed(kind.field, observer, chosen);
@@ -63,7 +63,7 @@ TEST(Maps, ViewshedsEqualTheJudge) {
   EXPECT_GT(hidden, least);
 }
 
-TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
+TEST(Maps, LeastVisibleHeightsMatchTheJudge) {
   unsigned turn = 0;
   for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
@@ -79,8 +79,8 @@ TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
     }
 }
 
-// A plane 10 m below the eye; a wall with a hole on it hides what is behind.
-TEST(Maps, AnglesAreThoseOfTheLinesOfSight) {
+// A plane 10 m below the eye; a wall with a hole on it hides the ground behind it.
+TEST(Maps, AnglesMatchTheLinesOfSight) {
   constexpr int kSide = 21;
   std::vector<float> heights(kSide * kSide, 0);
   for (int row = 0; row < kSide; ++row) heights[static_cast<std::size_t>(row * kSide + 15)] = 40;
@@ -105,7 +105,7 @@ TEST(Maps, AnglesAreThoseOfTheLinesOfSight) {
   EXPECT_EQ(last[3], at(3, kSide - 2));
 }
 
-TEST(Maps, ShadowsEqualTheJudge) {
+TEST(Maps, ShadowsMatchTheJudge) {
   std::size_t counts[4] = {};
   const auto suns = map_suns();
   const auto turns = static_cast<std::size_t>(cases(static_cast<int>(suns.size()), 5, 2));

@@ -31,7 +31,7 @@ std::vector<std::uint16_t> sum_of_viewsheds(const std::vector<Viewpoint>& views)
   return sum;
 }
 
-TEST(ObserverCount, IsTheSumOfViewsheds) {
+TEST(ObserverCount, EqualsTheSumOfViewsheds) {
   const auto fields = map_fields();
   const auto stride = static_cast<std::size_t>(cases(1, 1, 4));
   std::size_t limited = 0, holes = 0, several = 0;
@@ -58,7 +58,7 @@ TEST(ObserverCount, IsTheSumOfViewsheds) {
 }
 
 // One observer with limits and one without: nothing is out of range.
-TEST(ObserverCount, MixesLimits) {
+TEST(ObserverCount, CombinesLimitedAndUnlimitedObservers) {
   const auto fields = map_fields();
   const HeightField& field = fields[0].field;
   const std::vector<Viewpoint> views{{field, {2, 3}, {.max_distance = 3}}, {field, {9, 3}, {}}};

@@ -33,11 +33,11 @@ HeightField field_of(int cols, int rows, double cell, const std::function<double
   return HeightField::own(std::move(samples), cols, rows, {.cell_x = cell, .cell_y = cell});
 }
 
-// A place in the field, rounded to what lines of sight are rounded to.
+// A position in the field, rounded as lines of sight are.
 SightEnd random_end(const HeightField& field, std::mt19937& random) {
   const auto along = [&](int samples) {
     const auto steps = static_cast<unsigned>((samples - 1) * kSubcells);
-    // Nodes and grid lines as often as places between.
+    // Nodes and grid lines as often as positions between them.
     const auto place = static_cast<unsigned>(random() % (steps + 1));
     constexpr auto kCell = static_cast<unsigned>(kSubcells);
     return (random() % 2 ? place / kCell * kCell : place) / static_cast<double>(kCell);
@@ -45,7 +45,7 @@ SightEnd random_end(const HeightField& field, std::mt19937& random) {
   return {along(field.cols()), along(field.rows()), static_cast<double>(random() % 3)};
 }
 
-TEST(LineOfSight, EqualsTheJudgeEverywhere) {
+TEST(LineOfSight, MatchesTheJudgeEverywhere) {
   std::mt19937 random(1);
   int visible = 0, blocked = 0;
   for (const MapField& kind : map_fields())
@@ -59,7 +59,7 @@ TEST(LineOfSight, EqualsTheJudgeEverywhere) {
         ASSERT_EQ(answer.visible, judged)
             << kind.name << ": " << from.col << "," << from.row << " to " << to.col << "," << to.row;
         EXPECT_EQ(answer.visible, !answer.obstruction);
-        // Clearance is rounded; its sign is that of the answer but for grazing.
+        // Clearance is rounded; its sign is that of the answer except for grazing lines.
         if (std::abs(answer.clearance) > kHeightRounding) {
           EXPECT_EQ(answer.clearance > 0, answer.visible);
         }
@@ -72,7 +72,7 @@ TEST(LineOfSight, EqualsTheJudgeEverywhere) {
 }
 
 // Skipping changes nothing, on fields of several blocks and with holes.
-TEST(LineOfSight, IsTheSameWithMaxima) {
+TEST(LineOfSight, IsUnchangedByMaxima) {
   std::mt19937 random(3);
   const auto ridges = [](int col, int row) {
     return 30 * std::sin(0.11 * col) * std::cos(0.07 * row) + (col * row) % 3;
@@ -106,7 +106,7 @@ TEST(LineOfSight, IsTheSameWithMaxima) {
 }
 
 // On small fields with ties and holes, and on fields of several blocks.
-TEST(VisibleLines, EqualLinesOfSight) {
+TEST(VisibleLines, MatchLinesOfSight) {
   std::mt19937 random(4);
   auto fields = map_fields();
   const auto ridges = [](int col, int row) {
@@ -167,7 +167,7 @@ TEST(LineOfSight, IsReciprocal) {
     }
 }
 
-TEST(LineOfSight, NodesAgreeWithTheViewshed) {
+TEST(LineOfSight, AgreesWithTheViewshedAtNodes) {
   const MapField kind = map_fields()[36];
   for (const Node observer : map_observers(kind.field)) {
     const ViewshedSettings settings{.observer_height = 1, .target_height = 0.5};
@@ -192,7 +192,7 @@ TEST(LineOfSight, FindsTheObstruction) {
   EXPECT_DOUBLE_EQ(line.distance, 1000);
 }
 
-TEST(LineOfSight, RejectsBadEnds) {
+TEST(LineOfSight, RejectsBadEndpoints) {
   const auto field = HeightField::own(std::vector<float>{1, 2, 3, std::nanf(""), 5, 6}, 3, 2);
   EXPECT_NO_THROW(line_of_sight(field, {0, 0}, {2, 0}));
   EXPECT_THROW(line_of_sight(field, {0, 0}, {2.01, 0}), Error);
@@ -204,7 +204,7 @@ TEST(LineOfSight, RejectsBadEnds) {
   EXPECT_THROW(line_of_sight(field, {0, 0, -1}, {2, 0}), Error);
 }
 
-TEST(Profile, HasEveryCrossingOnceAndKeepsTheGround) {
+TEST(Profile, ListsEveryCrossingOnceAndKeepsTheGround) {
   const auto field = field_of(30, 20, 10, [](int col, int row) { return 3. * col - 2. * row; });
   const SightLine line(field, {1, 2, 5}, {25, 14, 5}, {.coefficient = 1, .diameter = 1e4});
   const auto points = profile(line);
@@ -219,7 +219,7 @@ TEST(Profile, HasEveryCrossingOnceAndKeepsTheGround) {
   EXPECT_DOUBLE_EQ(points.back().distance, line.distance());
 }
 
-TEST(Profile, HidesWhatIsBehindTheRidge) {
+TEST(Profile, HidesGroundBehindTheRidge) {
   const auto field = field_of(11, 3, 10, [](int col, int) { return col == 5 ? 20. : 0.; });
   const auto points = profile(SightLine(field, {0, 1, 2}, {10, 1, 0}, kFlat));
   for (const ProfilePoint& p : points) EXPECT_EQ(p.visible, p.col <= 5) << p.col;
@@ -238,15 +238,15 @@ TEST(Profile, MarksHoles) {
   for (const ProfilePoint& p : points) EXPECT_EQ(p.after_hole, p.col == 5) << p.col;
 }
 
-TEST(Viewshed, SeesAllOfAPlaneFromAboveIt) {
+TEST(Viewshed, SeesAllOfAPlaneFromAbove) {
   const auto field = field_of(40, 30, 5, [](int col, int row) { return 2. * col + row; });
   for (const double height : {0., 2.})
     for (const Seen code : viewshed(field, {7, 11}, {.observer_height = height, .curvature = kFlat}))
       EXPECT_EQ(code, Seen::visible);
 }
 
-// An eye at the height of a cone's base sees of its flank what faces it: up to the tangents from the eye to the base,
-// where the cosine of the angle around the axis is radius over distance. From the tip it sees everything.
+// An eye at the height of a cone's base sees the part of its flank that faces it: up to the tangents from the eye to
+// the base, where the cosine of the angle around the axis is radius over distance. From the tip it sees everything.
 TEST(Viewshed, SeesTheNearSideOfACone) {
   const auto field =
       field_of(81, 81, 10, [](int col, int row) { return std::max(0., 200 - 10 * std::hypot(col - 40, row - 40)); });
@@ -275,7 +275,7 @@ TEST(Viewshed, HidesTheFootOfACliff) {
 }
 
 // Over a flat sea the horizon is at sqrt(2 R h / cc) = sqrt(D h / cc).
-TEST(Viewshed, EndsAtTheHorizonOfTheSea) {
+TEST(Viewshed, EndsAtTheSeaHorizon) {
   const double cell = 100, height = 25;
   const SightCurvature curvature;
   const auto field = field_of(400, 1, cell, [](int, int) { return 0.; });
@@ -311,7 +311,7 @@ TEST(Viewshed, IsMonotoneInTargetHeightAndNestedInDistance) {
 }
 
 // Least heights decide visibility: a target is visible from there on, and not one double below.
-TEST(Viewshed, LeastHeightsAreSharp) {
+TEST(Viewshed, LeastVisibleHeightsAreTight) {
   for (const MapField& kind : map_fields()) {
     const Node observer = map_observers(kind.field).front();
     const Viewpoint view(kind.field, observer, {});
@@ -328,7 +328,7 @@ TEST(Viewshed, LeastHeightsAreSharp) {
 }
 
 // Mirror images of the field have mirror images of the map.
-TEST(Maps, MirrorImagesHaveMirroredAnswers) {
+TEST(Maps, MirroredFieldsGiveMirroredMaps) {
   const auto height = [](int col, int row) { return std::fmod(7.3 * col * col + 3.1 * row * row + col * row, 9.); };
   const int n = 21;
   const auto plain = field_of(n, n, 3, height);
@@ -348,7 +348,7 @@ TEST(Maps, MirrorImagesHaveMirroredAnswers) {
     }
 }
 
-TEST(Maps, DoNotDependOnTheNumberOfThreads) {
+TEST(Maps, DoNotDependOnThreads) {
   const auto field =
       field_of(60, 50, 4, [](int col, int row) { return 5 * std::sin(0.7 * col) * std::cos(0.4 * row); });
   const auto seen = viewshed(field, {20, 20});
@@ -359,7 +359,7 @@ TEST(Maps, DoNotDependOnTheNumberOfThreads) {
 }
 
 // The shadow of a pillar is as long as its height over the tangent of the altitude, and one cell wide at most.
-TEST(Shadow, OfAPillar) {
+TEST(Shadow, MatchesAPillar) {
   const double height = 50, cell = 2, altitude = 30 * kDegree;
   const auto field = field_of(80, 21, cell, [&](int col, int row) { return col == 60 && row == 10 ? height : 0.; });
   const auto codes = shadow(field, {90 * kDegree, altitude});
@@ -377,7 +377,7 @@ TEST(Shadow, OfAPillar) {
 }
 
 // A plane that rises towards the sun is self-shaded where it is steeper than the sun's rays, and lit otherwise.
-TEST(Shadow, OfAPlane) {
+TEST(Shadow, MatchesAPlane) {
   const auto field = field_of(20, 20, 10, [](int col, int) { return 10. * col; });
   const auto count = [](const std::vector<Shade>& codes, Shade code) {
     return std::count(codes.begin(), codes.end(), code);

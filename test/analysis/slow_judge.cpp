@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A crossing: how far along the ray, in directions, and the height of the ground there.
+// A crossing: its position along the ray, in multiples of the direction, and the height of the ground there.
 struct GroundAt {
   Rational along, height;
 };
@@ -21,7 +21,7 @@ Rational floor_of(const Rational& x) {
   return Rational(quotient);
 }
 
-// The ground where the ray start + along * (col, row) crosses line k of an axis; nullopt if nothing is there.
+// The ground where the ray start + along * (col, row) crosses line k of an axis; nullopt if there is no ground.
 std::optional<GroundAt> ground_on_line(const SightGround& ground, int axis, int k, const Rational start[2],
                                        const Rational direction[2]) {
   const int cols = ground.field().cols(), rows = ground.field().rows();
@@ -99,7 +99,7 @@ double judge_least_visible(const Viewpoint& view, Node node) {
     if (!least || height > *least) least = height;
   }
   if (!least) return -kInfinity;
-  // The smallest double that is not below it.
+  // The smallest double that is not less than it.
   double rounded = least->convert_to<double>();
   while (Rational(rounded) < *least) rounded = std::nextafter(rounded, kInfinity);
   while (Rational(std::nextafter(rounded, -kInfinity)) >= *least) rounded = std::nextafter(rounded, -kInfinity);

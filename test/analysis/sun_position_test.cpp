@@ -16,7 +16,7 @@ constexpr double kTolerance = 0.01;  // degrees
 
 // I. Reda, A. Andreas, "Solar Position Algorithm for Solar Radiation Applications", NREL/TP-560-34302, table A5.1:
 // zenith 50.11162, azimuth 194.34024 degrees, with refraction.
-TEST(SunPosition, EqualsThePublishedExampleOfNrel) {
+TEST(SunPosition, MatchesThePublishedNrelExample) {
   const EarthPlace place{-105.1786 * kDegree, 39.742476 * kDegree, 1830.14};
   const SunPosition sun = sun_position(parse_time("2003-10-17T12:30:30-07:00"), place, true);
   EXPECT_NEAR(sun.altitude / kDegree, 90 - 50.11162, kTolerance);
@@ -25,18 +25,18 @@ TEST(SunPosition, EqualsThePublishedExampleOfNrel) {
 }
 
 // J. Meeus, "Astronomical Algorithms", example 25.b: 1992 October 13, 0h TD (59 s before in UT): declination
-// -7.783817 degrees. At the pole the altitude is the declination, but for parallax (0.0024 degree).
+// -7.783817 degrees. At the pole the altitude is the declination, except for parallax (0.0024 degree).
 TEST(SunPosition, AltitudeAtThePoleIsTheDeclination) {
   const SunPosition sun = sun_position(parse_time("1992-10-12T23:59:01Z"), {0, 90 * kDegree, 0});
   EXPECT_NEAR(sun.altitude / kDegree, -7.783817 - 0.0024, 0.001);
 }
 
 // Equinox of March 2026: 20 March 14:46 UTC. The sun is over the equator.
-TEST(SunPosition, EquinoxIsOnTheEquator) {
+TEST(SunPosition, IsOnTheEquatorAtEquinox) {
   EXPECT_NEAR(sun_position(parse_time("2026-03-20T14:46Z"), {0, 90 * kDegree, 0}).altitude / kDegree, 0, kTolerance);
 }
 
-TEST(SunPosition, OffsetsAreOffsets) {
+TEST(SunPosition, AppliesTimeZoneOffsets) {
   const UtcTime z = parse_time("2026-06-21T07:00Z"), east = parse_time("2026-06-21T09:00:00.0+02:00"),
                 west = parse_time("2026-06-21 02:30-0430");
   constexpr double kRounding = 0x1p-50;  // a few roundings of a fraction of a day
@@ -44,7 +44,7 @@ TEST(SunPosition, OffsetsAreOffsets) {
   EXPECT_NEAR(z.fraction, west.fraction, kRounding);
 }
 
-TEST(SunPosition, RejectsOtherForms) {
+TEST(SunPosition, RejectsOtherTimeFormats) {
   for (const char* text :
        {"", "2026-06-21", "2026-06-21T09:00", "2026-02-30T09:00Z", "2026-06-21T25:00Z", "21.6.2026",
         "2026-06-21T09:00+2", "2026-06-21T09:00+02:00x", "1492-06-21T09:00Z", "2026-06-21T09:00:99Z"})

@@ -125,7 +125,7 @@ std::string sweep_place(int number, const HeightField& field, Node node) {
 
 constexpr int kSweptFields = 400;
 
-TEST(Sweeps, ViewshedsEqualRays) {
+TEST(Sweeps, ViewshedsMatchRays) {
   SweepDraw draw(1);
   SweepStatistics statistics;
   for (int number = 0; number < kSweptFields; ++number) {
@@ -144,13 +144,13 @@ TEST(Sweeps, ViewshedsEqualRays) {
                                     << view.observer().row << ", eye " << view.eye();
     });
   }
-  // All ways through the code are taken.
+  // All branches of the code are taken.
   EXPECT_GT(statistics.skipped, 1000);
   EXPECT_GT(statistics.careful, 1000);
   EXPECT_GT(statistics.walked, 10);
 }
 
-TEST(Sweeps, LeastVisibleHeightsEqualRays) {
+TEST(Sweeps, LeastVisibleHeightsMatchRays) {
   SweepDraw draw(2);
   for (int number = 0; number < kSweptFields; ++number) {
     const HeightField field = sweep_field(number, draw);
@@ -169,7 +169,7 @@ TEST(Sweeps, LeastVisibleHeightsEqualRays) {
   }
 }
 
-TEST(Sweeps, ShadowsEqualRays) {
+TEST(Sweeps, ShadowsMatchRays) {
   SweepDraw draw(3);
   SweepStatistics statistics;
   for (int number = 0; number < kSweptFields; ++number) {
@@ -208,7 +208,7 @@ struct GridSymmetry {
   }
 };
 
-// A field turned by quarters or mirrored has its maps turned and mirrored: no direction is favoured.
+// The maps of a field rotated by quarter turns or mirrored are rotated and mirrored, too: no direction is favoured.
 TEST(Sweeps, AreSymmetric) {
   SweepDraw draw(4);
   for (int number = 0; number < 64; ++number) {
@@ -242,7 +242,7 @@ TEST(Sweeps, AreSymmetric) {
   }
 }
 
-// What two nodes see of one another, and what a higher sun does.
+// Two nodes see each other or neither does, and a higher sun lights more.
 TEST(Sweeps, AreReciprocalAndMonotone) {
   SweepDraw draw(6);
   int visible = 0, lit_later = 0;

@@ -18,7 +18,7 @@
 namespace scarp {
 namespace {
 
-TEST(ParallelFor, CoversTheRangeOnceWhateverTheGrain) {
+TEST(ParallelFor, CoversTheRangeOnceForAnyGrain) {
   for (const std::int64_t count : {1, 2, 3, 64, 1000, 1009}) {
     for (const std::int64_t grain : {1, 7, 64, 5000}) {
       std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
@@ -33,14 +33,14 @@ TEST(ParallelFor, CoversTheRangeOnceWhateverTheGrain) {
   }
 }
 
-TEST(ParallelFor, CallsNothingForAnEmptyRange) {
+TEST(ParallelFor, DoesNothingForAnEmptyRange) {
   for (const std::int64_t count : {0, -1}) {
     parallel_for(count, 1, [](std::int64_t, std::int64_t) { FAIL(); });
   }
 }
 
-// Written by many threads without locks and read afterwards: what the thread sanitizer is run on.
-TEST(ParallelFor, WhatTheBodyWroteIsVisibleAfterwards) {
+// Written by many threads without locks and read afterwards, for the thread sanitizer.
+TEST(ParallelFor, WritesAreVisibleAfterwards) {
   std::vector<int> squares(100000, -1);
   parallel_for(100000, 100, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) squares[static_cast<std::size_t>(i)] = static_cast<int>(i % 1000);
@@ -48,7 +48,7 @@ TEST(ParallelFor, WhatTheBodyWroteIsVisibleAfterwards) {
   EXPECT_EQ(std::accumulate(squares.begin(), squares.end(), std::int64_t{0}), std::int64_t{100} * 999 * 500);
 }
 
-TEST(ParallelFor, LetsTheBodysExceptionThrough) {
+TEST(ParallelFor, PropagatesExceptions) {
   const auto body = [](std::int64_t begin, std::int64_t end) {
     if (begin <= 500 && 500 < end) throw std::out_of_range("piece 500");
   };
@@ -60,7 +60,7 @@ TEST(ParallelFor, LetsTheBodysExceptionThrough) {
   }
 }
 
-TEST(ParallelFor, ReportsSharesOneAtATimeAndEndsAtOne) {
+TEST(ParallelFor, ReportsProgressSeriallyUpToOne) {
   std::vector<double> shares;  // no lock of its own: parallel_for promises one report at a time
   parallel_for(
       1000, 10, [](std::int64_t, std::int64_t) {},
@@ -76,8 +76,8 @@ TEST(ParallelFor, ReportsSharesOneAtATimeAndEndsAtOne) {
   }
 }
 
-// Many short pieces, so that threads come to report just after one another.
-TEST(ParallelFor, NeverReportsLessThanBefore) {
+// Many short pieces, so that threads report in quick succession.
+TEST(ParallelFor, ProgressNeverDecreases) {
   double last = 0;
   parallel_for(
       1'000'000, 1, [](std::int64_t, std::int64_t) {},
@@ -88,7 +88,7 @@ TEST(ParallelFor, NeverReportsLessThanBefore) {
       });
 }
 
-TEST(ParallelFor, StopsWithInterruptedWhenTheReportSaysSo) {
+TEST(ParallelFor, ThrowsInterruptedWhenProgressReturnsFalse) {
   std::atomic<int> pieces{0};
   EXPECT_THROW(parallel_for(
                    100000, 1, [&](std::int64_t, std::int64_t) { ++pieces; }, [](double) { return false; }),
@@ -96,7 +96,7 @@ TEST(ParallelFor, StopsWithInterruptedWhenTheReportSaysSo) {
   EXPECT_LT(pieces, 100000) << "the rest of the work was done all the same";
 }
 
-TEST(ParallelFor, EndsAtOneEvenWhenTheLastPiecesFoundAnotherThreadReporting) {
+TEST(ParallelFor, ReachesOneWhenAnotherThreadHoldsTheReport) {
   std::atomic<int> pieces{0};
   std::vector<double> shares;
   // The first report takes until all other pieces are done (or, on a single core, a moment).
@@ -111,20 +111,20 @@ TEST(ParallelFor, EndsAtOneEvenWhenTheLastPiecesFoundAnotherThreadReporting) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
-TEST(ParallelFor, StopsWithInterruptedWhenOneReportSaysSoAndLaterOnesWouldNot) {
+TEST(ParallelFor, ThrowsInterruptedAfterASingleFalseReport) {
   int reports = 0;
   EXPECT_THROW(parallel_for(
                    1000, 1, [](std::int64_t, std::int64_t) {}, [&](double) { return ++reports > 1; }),
                Interrupted);
 }
 
-TEST(ParallelFor, StopsWithInterruptedAtTheVeryLastReport) {
+TEST(ParallelFor, ThrowsInterruptedOnTheLastReport) {
   EXPECT_THROW(parallel_for(
                    10, 1, [](std::int64_t, std::int64_t) {}, [](double share) { return share < 1.0; }),
                Interrupted);
 }
 
-// A pool as an engine has one: threads that are always there, each with every second piece or so.
+// A thread pool like an engine's: persistent threads, each with every n-th piece.
 class Pool final : public Executor {
  public:
   void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) override {
@@ -143,7 +143,7 @@ class Pool final : public Executor {
 };
 thread_local bool Pool::in_pool = false;
 
-TEST(Executor, RunsEveryPieceOnceAndNowhereElse) {
+TEST(Executor, RunsEveryPieceOnceInThePool) {
   Pool pool;
   const ExecutorScope scope(pool);
   std::vector<std::atomic<int>> visits(1009);
@@ -163,7 +163,7 @@ TEST(Executor, RunsEveryPieceOnceAndNowhereElse) {
   EXPECT_EQ(pool.runs, 1);
 }
 
-TEST(Executor, BelongsToTheThreadAndTheScope) {
+TEST(Executor, IsPerThreadAndScoped) {
   Pool pool;
   EXPECT_EQ(current_executor(), nullptr);
   {
@@ -184,7 +184,7 @@ TEST(Executor, BelongsToTheThreadAndTheScope) {
   EXPECT_EQ(pool.runs, 0);
 }
 
-TEST(Executor, LetsExceptionsAndInterruptionsThrough) {
+TEST(Executor, PropagatesExceptionsAndInterruptions) {
   Pool pool;
   const ExecutorScope scope(pool);
   EXPECT_THROW(parallel_for(1000, 10,
@@ -207,7 +207,7 @@ TEST(Executor, LetsExceptionsAndInterruptionsThrough) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
-TEST(ThreadLimit, OfOneRunsOnePieceAtATime) {
+TEST(ThreadLimit, OfOneRunsPiecesSerially) {
   const ThreadLimit limit(1);
   std::atomic<int> running{0};
   std::atomic<int> most{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a call is refused with.
+// The error of a rejected call.
 #pragma once
 
 #include <string>

@@ -31,7 +31,7 @@ std::string refusal(const std::string& path) {
   return test::refusal([&] { ReplaceFile{path}; });
 }
 
-// Root may write anywhere: takes that away while it lives.
+// Root may write anywhere: drops that right during its lifetime.
 class WithoutRoot {
  public:
   WithoutRoot() : root_(::geteuid() == 0) {
@@ -64,7 +64,7 @@ class ReplaceFileTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(ReplaceFileTest, CommitPutsTheFileInPlaceAndLeavesNothingElse) {
+TEST_F(ReplaceFileTest, CommitMovesTheFileIntoPlace) {
   {
     ReplaceFile file(path("a.png"));
     write(file.temporary_path(), "new");
@@ -76,7 +76,7 @@ TEST_F(ReplaceFileTest, CommitPutsTheFileInPlaceAndLeavesNothingElse) {
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReplaceFileTest, FollowsALinkAndKeepsIt) {
+TEST_F(ReplaceFileTest, FollowsAndKeepsSymlinks) {
   write(path("a.png"), "old");
   fs::create_symlink("a.png", path("link.png"));
   ReplaceFile file(path("link.png"));
@@ -86,12 +86,12 @@ TEST_F(ReplaceFileTest, FollowsALinkAndKeepsIt) {
   EXPECT_EQ(read(path("a.png")), "new");
 }
 
-TEST_F(ReplaceFileTest, RefusesADevice) {
+TEST_F(ReplaceFileTest, RejectsDevices) {
   EXPECT_NE(refusal("/dev/null").find("/dev/null: is a device"), std::string::npos);
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST_F(ReplaceFileTest, CommitReplacesWhatWasThere) {
+TEST_F(ReplaceFileTest, CommitReplacesAnExistingFile) {
   write(path("a.png"), "old");
   ReplaceFile file(path("a.png"));
   write(file.temporary_path(), "new");
@@ -101,13 +101,13 @@ TEST_F(ReplaceFileTest, CommitReplacesWhatWasThere) {
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReplaceFileTest, CommitKeepsWhoMayRead) {
+TEST_F(ReplaceFileTest, CommitKeepsPermissions) {
   const auto mode = [&] { return static_cast<int>(fs::status(path("a.png")).permissions()); };
   write(path("a.png"), "old");
   for (const int before : {0640, 0600, 0666}) {
     fs::permissions(path("a.png"), fs::perms(before));
     ReplaceFile file(path("a.png"));
-    // As writers do that make the file anew.
+    // Like writers that recreate the file.
     fs::remove(file.temporary_path());
     write(file.temporary_path(), "new");
     file.commit();
@@ -115,7 +115,7 @@ TEST_F(ReplaceFileTest, CommitKeepsWhoMayRead) {
   }
 }
 
-TEST_F(ReplaceFileTest, WithoutCommitNothingIsLeftAndTheOldFileStays) {
+TEST_F(ReplaceFileTest, WithoutCommitTheOldFileStays) {
   write(path("a.png"), "old");
   {
     const ReplaceFile file(path("a.png"));
@@ -125,7 +125,7 @@ TEST_F(ReplaceFileTest, WithoutCommitNothingIsLeftAndTheOldFileStays) {
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReplaceFileTest, TheTemporaryNameLiesBesideTheTargetAndKeepsItsExtension) {
+TEST_F(ReplaceFileTest, TemporaryFileSharesFolderAndExtension) {
   const ReplaceFile file(path("heights.tif"));
   const fs::path temporary(file.temporary_path());
   EXPECT_EQ(temporary.parent_path(), folder_);
@@ -133,7 +133,7 @@ TEST_F(ReplaceFileTest, TheTemporaryNameLiesBesideTheTargetAndKeepsItsExtension)
   EXPECT_NE(temporary.filename(), "heights.tif");
 }
 
-TEST_F(ReplaceFileTest, ANameWithoutFolderMeansTheCurrentFolder) {
+TEST_F(ReplaceFileTest, BareNameMeansTheCurrentFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_);
   {
@@ -145,21 +145,21 @@ TEST_F(ReplaceFileTest, ANameWithoutFolderMeansTheCurrentFolder) {
   EXPECT_EQ(read(path("a.csv")), "x");
 }
 
-TEST_F(ReplaceFileTest, RefusesAnEmptyName) { EXPECT_NE(refusal(""), ""); }
+TEST_F(ReplaceFileTest, RejectsAnEmptyName) { EXPECT_NE(refusal(""), ""); }
 
-TEST_F(ReplaceFileTest, RefusesADirectoryByName) {
+TEST_F(ReplaceFileTest, ErrorNamesTheDirectory) {
   const std::string text = refusal(folder_.string());
   EXPECT_NE(text.find("is a directory"), std::string::npos) << text;
   EXPECT_EQ(files(), 0);
 }
 
-TEST_F(ReplaceFileTest, RefusesAFolderThatDoesNotExistAndCreatesNone) {
+TEST_F(ReplaceFileTest, RejectsAMissingFolderWithoutCreatingIt) {
   const std::string text = refusal(path("missing/a.png"));
   EXPECT_NE(text.find("does not exist"), std::string::npos) << text;
   EXPECT_FALSE(fs::exists(path("missing")));
 }
 
-TEST_F(ReplaceFileTest, RefusesAFolderThatCannotBeWrittenToBeforeAnyWork) {
+TEST_F(ReplaceFileTest, RejectsAReadOnlyFolderUpFront) {
   fs::permissions(folder_, fs::perms::owner_write | fs::perms::group_write, fs::perm_options::remove);
   std::string text;
   {
@@ -171,7 +171,7 @@ TEST_F(ReplaceFileTest, RefusesAFolderThatCannotBeWrittenToBeforeAnyWork) {
   EXPECT_EQ(files(), 0);
 }
 
-TEST_F(ReplaceFileTest, RefusesAFileThatIsWriteProtected) {
+TEST_F(ReplaceFileTest, RejectsAReadOnlyFile) {
   fs::permissions(folder_, fs::perms::all);
   write(path("a.png"), "old");
   fs::permissions(path("a.png"), fs::perms::owner_read | fs::perms::others_read);
@@ -184,7 +184,7 @@ TEST_F(ReplaceFileTest, RefusesAFileThatIsWriteProtected) {
   EXPECT_EQ(read(path("a.png")), "old");
 }
 
-TEST_F(ReplaceFileTest, RefusalsAreOneLineThatNamesTheFile) {
+TEST_F(ReplaceFileTest, ErrorsAreOneLineAndNameTheFile) {
   for (const std::string& name : {folder_.string(), path("missing/a.png")}) {
     const std::string text = refusal(name);
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;
@@ -192,11 +192,11 @@ TEST_F(ReplaceFileTest, RefusalsAreOneLineThatNamesTheFile) {
   }
 }
 
-TEST_F(ReplaceFileTest, AProgramThatEndsAtOnceLeavesNothing) {
+TEST_F(ReplaceFileTest, AbruptExitLeavesNoTemporaryFile) {
   write(path("kept.png"), "old");
   ReplaceFile first(path("kept.png"));
   {
-    // Its place in the list is used again.
+    // Its slot in the list is reused.
     ReplaceFile whole(path("whole.png"));
     write(whole.temporary_path(), "new");
     whole.commit();

@@ -14,7 +14,7 @@ struct Split {
   float high[3], low[3];
 };
 
-// Pairs of conversions side by side, in functions of their own: what g++ 12 folds at -O2 when it is written as casts.
+// Pairs of conversions side by side, in separate functions: g++ 12 folds them at -O2 if they are written as casts.
 [[gnu::noinline]] dvec3 rounded(const dvec3& v) { return {as_float(v.x), as_float(v.y), as_float(v.z)}; }
 [[gnu::noinline]] Split split_all(const dvec3& v) {
   Split all{};
@@ -22,7 +22,7 @@ struct Split {
   return all;
 }
 
-TEST(TwoFloats, AreRoundedAlsoSideBySide) {
+TEST(TwoFloats, RoundEveryComponentOfAVector) {
   const dvec3 v(0.1, 0.2, 1 + 0x1p-30);
   const dvec3 r = rounded(v);
   const Split all = split_all(v);

@@ -37,7 +37,7 @@ class CastStarts : public testing::Test {
   Scratch scratch_;
 };
 
-TEST_F(CastStarts, AreAboveTheSurface) {
+TEST_F(CastStarts, CountAsAboveTheSurface) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
   // Along the plane: touching is a hit for a free ray, none for one that starts on it.
   const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
@@ -49,7 +49,7 @@ TEST_F(CastStarts, AreAboveTheSurface) {
   EXPECT_EQ(result.err.find("start_col"), std::string::npos) << result.err;
 }
 
-TEST_F(CastStarts, AreInTheirCell) {
+TEST_F(CastStarts, MustLieInTheirCell) {
   hills();
   const std::string header = "x,y,z,dx,dy,dz,t_min,t_max,start_col,start_row\n";
   expect_rays_refused(header + "15,15,0,0,0,1,0,9,1,1\n15,15,0,0,0,1,0,9,3,1\n",
@@ -73,7 +73,7 @@ TEST_F(CastStarts, AreInTheirCell) {
 }
 
 // The next ray starts at the hit of the last, given by its x, y, z and cell. Some are on borders of their cell.
-TEST_F(CastStarts, AreHitsOfOtherRays) {
+TEST_F(CastStarts, MayBeHitsOfOtherRays) {
   const std::string degrees = scratch_.write("degrees.asc",
                                              "ncols 5\nnrows 4\nxllcenter 10\nyllcenter 50\ncellsize 0.0001\n"
                                              "1 5 2 7 3\n4 1 8 2 1\n2 6 3 9 3\n3 1 2 5 6\n");

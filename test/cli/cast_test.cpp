@@ -63,7 +63,7 @@ class Cast : public testing::Test {
     expect_refused(options, fragment);
   }
 
-  // A straight look down at each node, its place given by `place(col, row)`; `inner`: not at those on the border.
+  // Looks straight down at each node, whose position is `place(col, row)`; `inner`: not at those on the border.
   template <class Place>
   std::vector<Row> look_down(const Names& options, const Place& place, bool inner = false) {
     std::string table = "col_in,row_in,x,y,z,dx,dy,dz\n";
@@ -98,28 +98,28 @@ class Cast : public testing::Test {
   test::Scratch scratch_;
 };
 
-TEST_F(Cast, LocalNodesHaveTheirSamples) {
+TEST_F(Cast, LocalNodesHitTheirSamples) {
   look_down({"--crs", "local"}, [](int col, int row) { return std::pair(10.0 * col, 10.0 * (kRows - 1 - row)); });
 }
 
-TEST_F(Cast, MapNodesHaveTheirSamples) {
+TEST_F(Cast, MapNodesHitTheirSamples) {
   const auto place = [](int col, int row) { return std::pair(1000 + 10.0 * col, 2000 + 10.0 * (kRows - 1 - row)); };
   const auto asked = look_down({"--crs", "map"}, place), by_default = look_down({}, place);
   EXPECT_EQ(asked, by_default) << "a raster with a place has map coordinates";
 }
 
-TEST_F(Cast, LonlatNodesHaveTheirSamples) {
+TEST_F(Cast, LonlatNodesHitTheirSamples) {
   // Cells of 1/1024 degree: nodes and edges are numbers without rounding.
   const double west = -84.5, south = 36.25, cell = 1.0 / 1024;
   const std::string bounds = fmt::format("--bounds={},{},{},{}", west - cell / 2, south - cell / 2,
                                          west + (kCols - 0.5) * cell, south + (kRows - 0.5) * cell);
-  // Their cells on the ground are no such numbers: a node of the border may come to lie a rounding outside.
+  // Their cells on the ground are rounded: a node of the border may be outside by a rounding error.
   look_down(
       {"--crs", "lonlat", "--raster-crs", "EPSG:4326", bounds},
       [&](int col, int row) { return std::pair(west + cell * col, south + cell * (kRows - 1 - row)); }, true);
 }
 
-TEST_F(Cast, OnePlaceInThreeWords) {
+TEST_F(Cast, CoordinateSystemsAgree) {
   // UTM zone 16N (721085, 4030060) is this longitude and latitude by Krueger's series; nodes are 30 m apart, the
   // south-west one at (721015, 4030015).
   const double west = 721015, south = 4030015, x = 721085, y = 4030060;
@@ -132,7 +132,7 @@ TEST_F(Cast, OnePlaceInThreeWords) {
   };
   const double north = sample(2, 1) + (sample(3, 1) - sample(2, 1)) / 3.0,
                below = sample(2, 2) + (sample(3, 2) - sample(2, 2)) / 3.0;
-  // The series are good to some micrometres, and the slope is about 1.
+  // The series are accurate to some micrometres, and the slope is about 1.
   constexpr double kSeries = 1e-5;
   const Row map = cast(fmt::format("{},{}", x, y), "map"), lonlat = cast("-84.535001630948,36.390278541168", "lonlat");
   for (const Row& row : {map, lonlat}) {
@@ -147,7 +147,7 @@ TEST_F(Cast, OnePlaceInThreeWords) {
   EXPECT_NEAR(number(local, "v"), 0.5, 0.001);
 }
 
-TEST_F(Cast, AHitWithoutLongitudeIsSaid) {
+TEST_F(Cast, ReportsHitsWithoutLongitude) {
   // The Earth from far away: the corners of this map show the sky behind it.
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
   const auto result =
@@ -159,7 +159,7 @@ TEST_F(Cast, AHitWithoutLongitudeIsSaid) {
       << result.err;
 }
 
-TEST_F(Cast, CarriedColumnsAndEveryStatus) {
+TEST_F(Cast, CarriesColumnsForEveryStatus) {
   hills();
   const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
                            rays("name;x;y;z;dx;dy;dz;t_max\r\nhit;15;15;500;0;0;-1;\r\nup;15;15;500;0;0;1;\r\n"
@@ -176,7 +176,7 @@ TEST_F(Cast, CarriedColumnsAndEveryStatus) {
   }
 }
 
-TEST_F(Cast, MarchesAnswerTheSame) {
+TEST_F(Cast, MarchesAgree) {
   std::string table = "x,y,z,dx,dy,dz\n";
   for (int i = 0; i < 50; ++i)
     table += fmt::format("{},{},{},{},{},-20\n", i % 7 * 6, i % 5 * 6, 300, i % 9 - 4, i % 4 - 2);
@@ -200,7 +200,7 @@ TEST_F(Cast, MarchesAnswerTheSame) {
   EXPECT_GT(hits, 10);
 }
 
-TEST_F(Cast, AllHitsStandInTheOrderOfT) {
+TEST_F(Cast, AllHitsAreSortedByT) {
   // Two ridges along the way.
   hills("1 9 1 9 1\n1 9 1 9 1\n1 9 1 9 1\n1 9 1 9 1");
   rays("x,y,z,dx,dy,dz\n-5,15,5,1,0,0\n-5,15,20,1,0,0\n");
@@ -219,7 +219,7 @@ TEST_F(Cast, AllHitsStandInTheOrderOfT) {
   expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "--any", {"--all", "--any"});
 }
 
-TEST_F(Cast, RaysFromBelowAreNoted) {
+TEST_F(Cast, WarnsAboutRaysFromBelow) {
   hills("10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10");
   // From below up, from above down, from above up.
   rays("x,y,z,dx,dy,dz\n15,15,5,0.1,0,1\n15,15,15,0.1,0,-1\n15,15,15,0.1,0,1\n");
@@ -271,7 +271,7 @@ class CastInputs : public Cast {
   const Names volume_{"--volume", "3x1x1:u8"};
 };
 
-TEST_F(CastInputs, VoxelsTellPlaceAndFace) {
+TEST_F(CastInputs, VoxelHitsReportVoxelAndFace) {
   const auto rows = cast({columns(), volume_[0], volume_[1]}, down(2.25, 0.5));
   ASSERT_EQ(rows.size(), 1u);
   const Row& row = rows[0];
@@ -288,7 +288,7 @@ TEST_F(CastInputs, VoxelsTellPlaceAndFace) {
     EXPECT_EQ(cast({columns(), volume_[0], volume_[1], "--march", march}, down(2.25, 0.5)), rows) << march;
 }
 
-TEST_F(CastInputs, FunctionsTellHeightAndNormal) {
+TEST_F(CastInputs, FunctionHitsReportHeightAndNormal) {
   const auto rows = cast({"--function", write("plane.json", "7")}, down(1e6, -3));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].at("status") + rows[0].at("kind"), "hitfunction");
@@ -297,7 +297,7 @@ TEST_F(CastInputs, FunctionsTellHeightAndNormal) {
   EXPECT_EQ(rows[0].at("col") + rows[0].at("voxel_x") + rows[0].at("material"), "");
 }
 
-TEST_F(CastInputs, ScenesTellObjectAndMaterial) {
+TEST_F(CastInputs, SceneHitsReportObjectAndMaterial) {
   const auto rows =
       cast({scene()}, "id,x,y,z,dx,dy,dz\nball,0,0,100,0,0,-1\nplane,50,0,100,0,0,-1\nsky,0,0,100,0,0,1\n");
   ASSERT_EQ(rows.size(), 3u);
@@ -310,7 +310,7 @@ TEST_F(CastInputs, ScenesTellObjectAndMaterial) {
 }
 
 // A terrain's own columns come first, as without the rest.
-TEST_F(CastInputs, TerrainInASceneTellsItsCell) {
+TEST_F(CastInputs, TerrainHitsInASceneReportTheCell) {
   const std::string dem = hills(), table = "x,y,z,dx,dy,dz\n15,15,900,0,0,-1\n";
   const Row alone = cast({dem, "--crs", "local"}, table).at(0),
             among = cast({write("terrain.json", R"({"objects": [{"heights": {"file": "hills.asc"}}]})")}, table).at(0);
@@ -319,7 +319,7 @@ TEST_F(CastInputs, TerrainInASceneTellsItsCell) {
 }
 
 #ifdef SCARP_MESHES_IN_SCENES
-TEST_F(CastInputs, MeshesTellTheTriangle) {
+TEST_F(CastInputs, MeshHitsReportTheTriangle) {
   const std::string mesh = write("roof.obj", "v 0 0 5\nv 8 0 5\nv 0 8 5\nv 8 8 5\nf 1 2 3\nf 2 4 3\n");
   const Row row = cast({mesh, "--mesh-up", "z"}, down(6, 6)).at(0);
   EXPECT_EQ(row.at("status") + row.at("kind") + row.at("triangle") + row.at("col"), "hitmesh1");
@@ -336,7 +336,7 @@ TEST_F(CastInputs, MeshesTellTheTriangle) {
 }
 
 // The middle of the box is empty: the mesh stands on the nearest column.
-TEST_F(CastInputs, AMeshStandsOnTheNearestSurface) {
+TEST_F(CastInputs, MeshStandsOnTheNearestSurface) {
   const std::string mesh = write("tile.obj", "v -0.01 -0.01 0\nv 0.01 -0.01 0\nv 0 0.01 0.5\nf 1 2 3\n");
   const Names on{columns(), volume_[0], volume_[1], "--mesh", mesh, "--mesh-up", "z"};
   int found = 0;
@@ -350,7 +350,7 @@ TEST_F(CastInputs, AMeshStandsOnTheNearestSurface) {
 }
 #endif
 
-TEST_F(CastInputs, WhatTerrainAloneHasIsRefusedOfOthers) {
+TEST_F(CastInputs, RejectsTerrainOptionsForOtherInputs) {
   rays("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n");
   const std::string function = write("plane.json", "7");
   expect_error({scene(), "--all"}, "--all applies to terrain only (marches of other fields return the first hit only)");
@@ -368,7 +368,7 @@ TEST_F(CastInputs, WhatTerrainAloneHasIsRefusedOfOthers) {
   expect_error({write("broken.vox", "VOX ")}, "broken.vox");
 }
 
-TEST_F(Cast, SurfaceOptionsReachTheRays) {
+TEST_F(Cast, AppliesSurfaceOptions) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 8 0 0\n0 0 0 0 0");
   const auto cast = [&](const std::string& table, const Names& options) {
     Names arguments = {"cast", path("hills.asc"), "--crs", "local", "--rays", rays(table)};
@@ -401,7 +401,7 @@ TEST_F(Cast, SurfaceOptionsReachTheRays) {
   EXPECT_EQ(number(cast("x,y,z,dx,dy,dz\n15,35,-3,0,-1,0\n", {"--solid"}), "ny"), 1);
 }
 
-TEST_F(Cast, RenderTakesTheSameSurfaces) {
+TEST_F(Cast, RenderAcceptsTheSameSurfaces) {
   hills();
   const Names arguments = {"render", path("hills.asc"), "-o", path("out.png"), "--size", "32x24"};
   const auto with = [&](const Names& more) {
@@ -413,7 +413,7 @@ TEST_F(Cast, RenderTakesTheSameSurfaces) {
   for (const char* wrap : {"periodic", "mirror"}) EXPECT_EQ(with({"--wrap", wrap}).status, 0) << wrap;
 }
 
-TEST_F(Cast, NotesSayWhyNothingWasHit) {
+TEST_F(Cast, NotesExplainWhyNothingWasHit) {
   const auto note = [&](const std::string& table, Names more = {}) {
     Names arguments{"cast", hills(), "--crs", "local", "--rays", rays(table)};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -432,7 +432,7 @@ TEST_F(Cast, NotesSayWhyNothingWasHit) {
   }
 }
 
-TEST_F(Cast, FilesAndStreams) {
+TEST_F(Cast, ReadsAndWritesFilesAndStreams) {
   const std::string table = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
   const Names arguments = {"cast", hills(), "--crs", "local", "--rays"};
   const auto with = [&](Names more) {
@@ -448,12 +448,12 @@ TEST_F(Cast, FilesAndStreams) {
   EXPECT_NE(run(with({"-"})).err.find("-: empty file"), std::string::npos);
   EXPECT_EQ(run(with({path("rays.csv"), "-o", path("hits.npy")})).status, 0);
   EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 14 * 8 % 64u);
-  // What one cast wrote, the next one reads: a table whose fields it knows or passes over.
+  // The output of one cast is input for the next: a table whose fields it knows or ignores.
   EXPECT_NE(run(with({path("hits.npy")})).err.find("no column 'dx'"), std::string::npos);
   EXPECT_EQ(run(with({rays("x,y,z,dx,dy,dz\n")})).out, "ray,status,t,x,y,z,col,row,u,v,nx,ny,nz,wall\n");
 }
 
-TEST_F(Cast, AReaderThatGoesAwayIsNoFailure) {
+TEST_F(Cast, ClosedPipeIsNotAnError) {
   std::string table = "x,y,z,dx,dy,dz\n";
   for (int i = 0; i < 100000; ++i) table += "15,15,500,0,0,-1\n";
   const std::string command = fmt::format("'{}' cast '{}' --crs local --rays '{}' 2> '{}' | head -n 1 > '{}'",
@@ -466,14 +466,14 @@ TEST_F(Cast, AReaderThatGoesAwayIsNoFailure) {
   }
 }
 
-TEST_F(Cast, AFullDiskIsAFailure) {
+TEST_F(Cast, ReportsAFullDisk) {
   test::Program program({"cast", hills(), "--rays", rays("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n")}, "/dev/full");
   const auto result = program.result();
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
 }
 
-TEST_F(Cast, BadRaysAreOneLineWithFileAndRow) {
+TEST_F(Cast, ErrorsInRaysNameFileAndRow) {
   const std::string header = "x,y,z,dx,dy,dz\n", good = "15,15,500,0,0,-1\n";
   std::string six = header;
   for (int i = 0; i < 6; ++i) six += good;
@@ -496,7 +496,7 @@ TEST_F(Cast, BadRaysAreOneLineWithFileAndRow) {
   expect_refused({"--rays", write("rays.npy", "\x93NUMPY")}, "rays.npy");
 }
 
-TEST_F(Cast, WrongOptionsAreRefused) {
+TEST_F(Cast, RejectsInvalidOptions) {
   const std::string good = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
   expect_refused({}, "--rays");
   expect_rays_refused(good, "--raster-crs", {"--crs", "EPSG:4326"});
@@ -520,7 +520,7 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   EXPECT_NE(run({"cast", path("missing.tif"), "--rays", path("rays.csv")}).err.find("missing.tif"), std::string::npos);
 }
 
-TEST_F(Cast, RaysFarOffTheRasterGetANoteWithItsExtent) {
+TEST_F(Cast, RaysFarFromTheRasterPrintItsExtent) {
   const auto note_of = [&](const std::string& ray) {
     return run({"cast", hills(), "--rays", rays("x,y,z,dx,dy,dz\n" + ray + "\n")}).err;
   };
@@ -530,7 +530,7 @@ TEST_F(Cast, RaysFarOffTheRasterGetANoteWithItsExtent) {
   EXPECT_EQ(note_of("990,2015,500,1,0,-10").find("nothing was hit"), std::string::npos) << "a hit";
 }
 
-TEST_F(Cast, AFieldWithoutCellsSaysThatEveryRayMisses) {
+TEST_F(Cast, WarnsThatAFieldWithoutCellsIsNeverHit) {
   const auto result = run({"cast", write("row.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"),
                            "--rays", rays("x,y,z,dx,dy,dz\n1,0.5,9,0,0,-1\n")});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -538,7 +538,7 @@ TEST_F(Cast, AFieldWithoutCellsSaysThatEveryRayMisses) {
   EXPECT_EQ(rows_of(result.out).at(0).at("status"), "miss");
 }
 
-TEST_F(Cast, AFieldWithoutAWholeCellSaysThatEveryRayMisses) {
+TEST_F(Cast, WarnsThatAFieldWithoutCompleteCellsIsNeverHit) {
   const auto result = run({"cast",
                            write("board.asc",
                                  "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n"
@@ -550,9 +550,9 @@ TEST_F(Cast, AFieldWithoutAWholeCellSaysThatEveryRayMisses) {
 }
 
 #ifdef SCARP_VULKAN
-// Rows of a device are those of the CPU, but for delta of numerics.md, by which the CPU's rays are raised and lowered:
+// Rows of a device are those of the CPU within delta of numerics.md. The CPU's rays are raised and lowered by delta:
 // where these three agree, so does the device, and its hits are no farther from the CPU's than theirs.
-TEST_F(Cast, ADeviceAnswersLikeTheCpu) {
+TEST_F(Cast, DeviceMatchesCpu) {
   const auto devices = nlohmann::json::parse(test::run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   // The border is shared; a hole. Cells of 1 m, heights 100 to 105.
@@ -600,7 +600,7 @@ TEST_F(Cast, ADeviceAnswersLikeTheCpu) {
       if (status != "hit") continue;
       const double t = number(cpu[i], "t");
       const double off = std::max(std::abs(number(low[i], "t") - t), std::abs(number(high[i], "t") - t));
-      // The device's time is two floats, from a begin in double.
+      // The device's time is two floats, relative to a start in double.
       EXPECT_LE(std::abs(number(device[i], "t") - t), off + 0x1p-22 * t) << i;
     }
     EXPECT_GT(compared["hit"], 60) << wrap;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command line from outside: what it prints, what it leaves, how it ends.
+// The command line from outside: its output, its files, its exit status.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -50,7 +50,7 @@ class Cli : public testing::Test {
     EXPECT_EQ(scratch_.files(), before);
   }
 
-  // Until there is a file beside the one that the test made.
+  // Waits until there is a file besides the one that the test made.
   void wait_for_output() const {
     for (int i = 0; i < 2000 && scratch_.files().size() < 2; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -61,9 +61,8 @@ class Cli : public testing::Test {
 };
 
 #ifdef SCARP_CAIRO
-TEST_F(Cli, FiguresHaveAScaleThatIsTrue) {
-  // 30 m in 320 pixels: of at most a quarter of that, 5 m are the longest round length. The first half of the bar is
-  // black.
+TEST_F(Cli, ScaleBarHasTheTrueLength) {
+  // 30 m in 320 pixels: 5 m is the longest round length up to a quarter of that. The first half of the bar is black.
   const auto result =
       run({"render", good(), "-o", path("map.png"), "--top", "--size", "320x240", "--scale-bar", "--legend"});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -80,7 +79,7 @@ TEST_F(Cli, FiguresHaveAScaleThatIsTrue) {
   EXPECT_NEAR(longest, 2.5 * 320 / 30, 2);
 }
 
-TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
+TEST_F(Cli, RejectsFiguresWhereMeaningless) {
   const auto refused = [&](const Names& more, const std::string& size, const std::string& fragment) {
     Names words{"render", good(), "-o", path("out.png")};
     if (!size.empty()) words.insert(words.end(), {"--size", size});
@@ -98,7 +97,7 @@ TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
 }
 #endif
 
-TEST_F(Cli, RenderWritesAPictureAndOneLine) {
+TEST_F(Cli, RenderWritesAPictureAndPrintsOneLine) {
   const auto result = test::Program({"render", good(), "-o", path("out.png"), "--size", "64x48"}).result();
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(test::lines(result.out), 1) << result.out;
@@ -121,8 +120,8 @@ TEST_F(Cli, EveryLookAndMarchRuns) {
   }
 }
 
-TEST_F(Cli, AMapHasTheShapeOfTheGround) {
-  // Of the size that comes of itself, and without light, which would take a minute under sanitizers.
+TEST_F(Cli, MapHasTheAspectRatioOfTheGround) {
+  // At the default size, and without light, which would take a minute under sanitizers.
   const auto result = run({"render", good(), "-o", path("out.png"), "--top", "--look", "height"});
   EXPECT_EQ(result.status, 0) << result.err;
   const test::Rgb picture = test::read_png(path("out.png"));
@@ -130,40 +129,40 @@ TEST_F(Cli, AMapHasTheShapeOfTheGround) {
   EXPECT_EQ(picture.height, 853) << "3 x 2 cells";
 }
 
-TEST_F(Cli, FindingsOfALookArePrinted) {
+TEST_F(Cli, PrintsStatisticsOfALook) {
   const auto steps = run({"render", good(), "-o", path("out.png"), "--size", "32x24", "--look", "steps"});
   EXPECT_NE(steps.out.find("steps per ray: "), std::string::npos) << steps.out;
   const auto error = run({"render", path("good.asc"), "-o", path("out.png"), "--size", "32x24", "--look", "error"});
   EXPECT_NE(error.out.find("lost        red        0\n"), std::string::npos) << error.out;
 }
 
-TEST_F(Cli, AGitLfsPointerIsRecognised) {
+TEST_F(Cli, RecognisesGitLfsPointers) {
   expect_refused(write("dem.tif",
                        "version https://git-lfs.github.com/spec/v1\n"
                        "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345678\n"),
                  "Git LFS");
 }
 
-TEST_F(Cli, APhotographIsNoElevationModel) {
+TEST_F(Cli, RejectsPhotographs) {
   const std::vector<std::uint8_t> photo(3 * 20 * 10, 90);
   write_png(path("photo.png"), {photo.data(), 20, 10});
   expect_refused(path("photo.png"), "photo.png");
 }
 
-TEST_F(Cli, AnEmptyFileIsRefused) { expect_refused(write("dem.tif", ""), "empty"); }
+TEST_F(Cli, RejectsAnEmptyFile) { expect_refused(write("dem.tif", ""), "empty"); }
 
-TEST_F(Cli, ATruncatedFileIsRefused) {
+TEST_F(Cli, RejectsATruncatedFile) {
   ASSERT_EQ(run({"generate", "--size", "600", "-o", path("whole.tif")}).status, 0);
   const std::string whole = test::text_of(path("whole.tif"));
   ASSERT_GT(whole.size(), 100000u);
   expect_refused(write("half.tif", whole.substr(0, whole.size() / 2)), "half.tif");
 }
 
-TEST_F(Cli, ARasterOfNodataAloneIsRefused) {
+TEST_F(Cli, RejectsARasterOfOnlyNodata) {
   expect_refused(grid("void.asc", 3, 2, "-9999 -9999 -9999\n-9999 -9999 -9999"), "nodata");
 }
 
-TEST_F(Cli, InfiniteSamplesAreRefused) {
+TEST_F(Cli, RejectsInfiniteSamples) {
   // A .npy of 2 x 2 float32: 1, 2, 3, infinity.
   std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2), }";
   header.resize(117, ' ');
@@ -173,7 +172,7 @@ TEST_F(Cli, InfiniteSamplesAreRefused) {
                  "infinite");
 }
 
-TEST_F(Cli, ARotatedRasterIsRefusedWithTheRemedy) {
+TEST_F(Cli, RejectsARotatedRasterWithARemedy) {
   good();
   expect_refused(write("rotated.vrt",
                        R"(<VRTDataset rasterXSize="4" rasterYSize="3"><GeoTransform>0,1,0.5,0,0.5,-1</GeoTransform>
@@ -182,22 +181,22 @@ TEST_F(Cli, ARotatedRasterIsRefusedWithTheRemedy) {
                  "gdalwarp");
 }
 
-TEST_F(Cli, ARasterWithoutCellsIsRefused) {
+TEST_F(Cli, RejectsARasterWithoutCells) {
   expect_refused(grid("point.asc", 1, 1, "5"), "cells");
   expect_refused(grid("row.asc", 5, 1, "5 6 7 8 9"), "cells");
   expect_refused(grid("column.asc", 1, 3, "5\n6\n7"), "cells");
 }
 
-TEST_F(Cli, AFolderWithoutRastersIsRefused) { expect_refused(scratch_.path(""), "folder without a raster"); }
+TEST_F(Cli, RejectsAFolderWithoutRasters) { expect_refused(scratch_.path(""), "folder without a raster"); }
 
-TEST_F(Cli, AMissingFileIsNamed) { expect_refused(path("nowhere.tif"), "nowhere.tif"); }
+TEST_F(Cli, NamesAMissingFile) { expect_refused(path("nowhere.tif"), "nowhere.tif"); }
 
-TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
+TEST_F(Cli, DetectsUnwritableOutputBeforeRendering) {
   good();
   const Names before = scratch_.files();
   for (const std::string& output :
        {path("no/such/folder/out.png"), path(""), std::string("/proc/out.png"), path("out.bmp")}) {
-    // The input does not exist either: the output is looked at first.
+    // The input does not exist either: the output is checked first.
     const auto result = run({"render", path("missing.tif"), "-o", output});
     EXPECT_EQ(result.status, 1) << output;
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
@@ -208,7 +207,7 @@ TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
   EXPECT_EQ(scratch_.files(), before);
 }
 
-TEST_F(Cli, ReportsAnEyeBelowTheGroundInPlainNumbers) {
+TEST_F(Cli, ReportsHowFarTheEyeIsBelowGround) {
   // The ground is at 3.5 m there.
   const auto result = run(
       {"render", good(), "-o", path("out.png"), "--size", "8x6", "--eye", "15,10,-3656.5", "--target", "15,20,-3656"});
@@ -216,8 +215,8 @@ TEST_F(Cli, ReportsAnEyeBelowTheGroundInPlainNumbers) {
   EXPECT_NE(result.err.find("the eye is 3660 m below the ground"), std::string::npos) << result.err;
 }
 
-// By no subcommand that writes, and whatever it is that it reads.
-TEST_F(Cli, NothingIsWrittenOverWhatItIsMadeOf) {
+// Applies to all subcommands that write, and to all their inputs.
+TEST_F(Cli, OutputsNeverOverwriteInputs) {
   const auto terrain = [&](const std::string& name, int west = 0) {
     return write(name, fmt::format("ncols 2\nnrows 2\nxllcorner {}\nyllcorner 0\ncellsize 10\n1 2\n3 4\n", west));
   };
@@ -296,7 +295,7 @@ TEST_F(Cli, NothingIsWrittenOverWhatItIsMadeOf) {
   }
 }
 
-TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
+TEST_F(Cli, ErrorsInOptionsNameValidValues) {
   good();
   const Names before = scratch_.files();
   const struct {
@@ -386,7 +385,7 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
   EXPECT_EQ(scratch_.files(), before);
 }
 
-TEST_F(Cli, WhatIsNeededIsAskedFor) {
+TEST_F(Cli, ReportsMissingArguments) {
   for (const Names& arguments : {Names{"render"},
                                  {"render", "--paint"},
                                  {"render", good()},
@@ -400,7 +399,7 @@ TEST_F(Cli, WhatIsNeededIsAskedFor) {
   }
 }
 
-TEST_F(Cli, AnUnknownSubcommandGetsTheListOfSubcommands) {
+TEST_F(Cli, UnknownSubcommandListsSubcommands) {
   for (const Names& arguments : {Names{"rendr"}, {"rendr", good(), "-o", path("out.png")}}) {
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 2);
@@ -416,11 +415,11 @@ TEST_F(Cli, AnUnknownSubcommandGetsTheListOfSubcommands) {
                                   good()));
 }
 
-TEST_F(Cli, ReportsAWrongNameBeforeAMissingOption) {
+TEST_F(Cli, ReportsAnUnknownOptionBeforeAMissingOne) {
   EXPECT_NE(run({"render", "--ouput", "x.png"}).err.find("--ouput"), std::string::npos);
 }
 
-TEST_F(Cli, GenerateRefusesWhatItCannotDo) {
+TEST_F(Cli, GenerateRejectsInvalidOptions) {
   const struct {
     Names options;
     std::string fragment;
@@ -454,7 +453,7 @@ TEST_F(Cli, GenerateRefusesWhatItCannotDo) {
 }
 
 // Samples and pyramid together: 4 bytes where the file has 16 bits, 6 where it has float32.
-TEST_F(Cli, SamplesStayAsSmallAsTheyAreInTheFile) {
+TEST_F(Cli, SamplesKeepTheTypeOfTheFile) {
   constexpr int kSide = 64;
   const struct {
     std::string raw, type;
@@ -473,7 +472,7 @@ TEST_F(Cli, SamplesStayAsSmallAsTheyAreInTheFile) {
   }
 }
 
-TEST_F(Cli, TilesAndTheirGapsAreOneField) {
+TEST_F(Cli, TilesAndGapsFormOneField) {
   const std::string west = good(), east = write("tiles.asc",
                                                 "ncols 2\nnrows 3\nxllcorner 60\nyllcorner 0\ncellsize 10\n"
                                                 "NODATA_value -9999\n1 2\n2 3\n3 9\n");
@@ -491,7 +490,7 @@ TEST_F(Cli, TilesAndTheirGapsAreOneField) {
   EXPECT_NE(picture.err.find("note: gaps between tiles"), std::string::npos) << picture.err;
 }
 
-TEST_F(Cli, RawSamplesAreReadAsTheyAreSaidToBe) {
+TEST_F(Cli, ReadsRawSamplesAsDeclared) {
   const std::string file = write("heights.raw", std::string("head\x01\x00\x02\x00\x03\x00\x00\x01", 12));
   const auto info = run({"info", "--json", file, "--raw", "2x2:u16le+4", "--scale", "0.5,100"});
   EXPECT_EQ(info.status, 0) << info.err;
@@ -499,7 +498,7 @@ TEST_F(Cli, RawSamplesAreReadAsTheyAreSaidToBe) {
   EXPECT_NE(info.out.find("\"max_m\": 228.0,"), std::string::npos) << info.out;
 }
 
-TEST_F(Cli, HelpAndVersion) {
+TEST_F(Cli, PrintsHelpAndVersion) {
   const auto bare = test::Program({}).result();
   EXPECT_EQ(bare.status, 2);
   EXPECT_NE(bare.err.find("render"), std::string::npos);
@@ -515,7 +514,7 @@ TEST_F(Cli, HelpAndVersion) {
   EXPECT_EQ(version.out.find("scarp "), 0u) << version.out;
 }
 
-TEST_F(Cli, MarchesAreListedOnceEach) {
+TEST_F(Cli, ListsEachMarchOnce) {
   const auto plain = run({"marches"}), markdown = run({"marches", "--markdown"});
   EXPECT_EQ(plain.status, 0);
   EXPECT_EQ(markdown.status, 0);
@@ -526,7 +525,7 @@ TEST_F(Cli, MarchesAreListedOnceEach) {
   }
 }
 
-TEST_F(Cli, AFullStandardOutputIsAFailure) {
+TEST_F(Cli, ReportsAFullStandardOutput) {
   for (const char* word : {"marches", "--help", "--version"}) {
     test::Program program({word}, "/dev/full");
     const auto result = program.result();
@@ -535,10 +534,10 @@ TEST_F(Cli, AFullStandardOutputIsAFailure) {
   }
 }
 
-// Ends a long render with a signal; it must be gone soon and leave nothing.
+// Stops a long render by a signal; it must exit soon and leave no files.
 class Interrupt : public Cli, public testing::WithParamInterface<int> {};
 
-TEST_P(Interrupt, LeavesNothing) {
+TEST_P(Interrupt, LeavesNoOutput) {
   good();
   const auto begin = std::chrono::steady_clock::now();
   test::Program program({"render", path("good.asc"), "-o", path("out.png"), "--size", "8000x8000", "--aa", "16"});
@@ -578,8 +577,8 @@ class OpenPipe {
   int file_ = -1;
 };
 
-// Waits at a pipe for a function that nobody writes, and so asks nobody whether there was a signal.
-TEST_P(Interrupt, EndsWhatDoesNotListen) {
+// Waits at a pipe for a function that nobody writes, and so cannot check for signals.
+TEST_P(Interrupt, EndsBlockedReads) {
   const std::string pipe = path("pipe");
   const OpenPipe kept(pipe);
   const Names waiting{"render", "--function", "/dev/stdin", "-o", path("out.png")};
@@ -595,11 +594,11 @@ TEST_P(Interrupt, EndsWhatDoesNotListen) {
     EXPECT_EQ(result.err, "scarp: interrupted\n");
     EXPECT_EQ(scratch_.files(), Names{"pipe"});
   }
-  // After the second signal there is no waiting: its number is told, and not the first one's.
+  // The second signal ends the program at once: its number is reported, not that of the first.
   const int second = GetParam() == SIGINT ? SIGTERM : SIGINT;
   test::Program program(waiting, nullptr, pipe);
   begun(program);
-  // Of two that are pending at once the system chooses which comes first.
+  // If two are pending at once, the system chooses which comes first.
   const std::string status = fmt::format("/proc/{}/status", program.pid());
   for (int i = 0; i < 2000 && test::text_of(status).find("\nShdPnd:\t0000000000000000\n") == std::string::npos; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -614,11 +613,11 @@ TEST_P(Interrupt, EndsWhatDoesNotListen) {
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT));
 
 // As under nohup.
-TEST_F(Cli, ASignalThatIsIgnoredStaysSo) {
+TEST_F(Cli, KeepsIgnoredSignalsIgnored) {
   const std::string pipe = path("pipe");
   OpenPipe function(pipe);
   const auto before = std::signal(SIGHUP, SIG_IGN);
-  // Asks whether there was a signal when it has read the function.
+  // Checks for signals after it has read the function.
   test::Program program({"render", "--function", "/dev/stdin", "-o", path("out.png"), "--size", "8x6"}, nullptr, pipe,
                         test::Ignored::inherited);
   std::signal(SIGHUP, before);

@@ -49,21 +49,21 @@ class ColourScale : public testing::Test {
   const std::string out_ = scratch_.path("out.png");
 };
 
-// What `gdaldem color-relief` (GDAL 3.6) makes of these heights: red to white by 255 / 320 per metre, rounded.
-TEST_F(ColourScale, FilesOfGdaldemHaveItsColours) {
+// Colours of `gdaldem color-relief` (GDAL 3.6) for these heights: red to white by 255 / 320 per metre, rounded.
+TEST_F(ColourScale, ColourFilesMatchGdaldem) {
   const std::string ramp = scratch_.write("ramp.txt", "320 white\n0 255:0:0\nnv 0 0 0\n");
   const Rgb picture = map(slope(), {"--ramp", ramp});
   for (int col = 0; col < 32; ++col) {
     const std::uint8_t* rgb = picture.pixel(col, 16);
     EXPECT_EQ(rgb[0], 255);
-    // Within a slice, colours are mixed in linear light over steps that no eye tells apart.
+    // Within a slice, colours are mixed in linear light over steps that the eye cannot distinguish.
     EXPECT_NEAR(rgb[1], 255.0 / 320 * (10 * col + 5), 1.5) << col;
   }
   const auto wrong = render(slope(), {"--ramp", ramp, "--ramp-range", "0,10"});
   EXPECT_NE(wrong.err.find("ramp.txt has heights of its own"), std::string::npos) << wrong.err;
 }
 
-TEST_F(ColourScale, RangesOfRampsAreThoseOfTheLegend) {
+TEST_F(ColourScale, RampRangeMatchesTheLegend) {
   const std::string dem = slope();
   for (const std::string exaggeration : {"1", "3"}) {
     const Rgb picture = map(dem, {"--ramp", "grey", "--ramp-range", "100,200", "--exaggeration", exaggeration});
@@ -79,7 +79,7 @@ TEST_F(ColourScale, RangesOfRampsAreThoseOfTheLegend) {
             std::string::npos);
 }
 
-TEST_F(ColourScale, LevelGroundAtAContourIsNotPainted) {
+TEST_F(ColourScale, LevelGroundAtAContourIsNotDrawn) {
   // A lake at 100 m, and its shore; contours at 80, 100 and 120 m. The second one has samples of float precision.
   for (const double rounding : {0.0, 1e-5}) {
     const std::string lake = dem("lake.asc", [&](int col, int row) {
@@ -100,7 +100,7 @@ TEST_F(ColourScale, LevelGroundAtAContourIsNotPainted) {
   }
 }
 
-TEST_F(ColourScale, ContoursOfWhichNothingIsSeenGetANote) {
+TEST_F(ColourScale, WarnsAboutInvisibleContours) {
   const std::string dem = slope();
   const auto note = [&](const std::string& interval) {
     const auto result = render(dem, {"--size", "64x48", "--aa", "1", "--contours", interval});
@@ -116,7 +116,7 @@ TEST_F(ColourScale, ContoursOfWhichNothingIsSeenGetANote) {
   EXPECT_NE(none.find("--contours 5000: no line lies between 1000 and 1320 m"), std::string::npos) << none;
 }
 
-TEST_F(ColourScale, ExaggerationIsChosenByTheRelief) {
+TEST_F(ColourScale, ExaggerationFollowsTheRelief) {
   const std::string flat = dem("flat.asc", [](int col, int) { return 7 + 0.009 * col; }),
                     level = dem("level.asc", [](int, int) { return 7; });
   const Names small{"--size", "32x24", "--aa", "1"};
@@ -127,7 +127,7 @@ TEST_F(ColourScale, ExaggerationIsChosenByTheRelief) {
     EXPECT_EQ(result.status, 0) << result.err;
     return result.err;
   };
-  // 0.288 m over 320 m: by 111 it were a tenth.
+  // 0.288 m over 320 m: with 111 it would be a tenth.
   EXPECT_NE(with(flat, "").find("hardly shows (--exaggeration auto, or a factor such as 100"), std::string::npos);
   EXPECT_NE(with(flat, "auto").find("--exaggeration auto is 100: the relief of 0.288 m over 320 m"), std::string::npos);
   const std::string chosen = text_of(out_);

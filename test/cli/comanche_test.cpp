@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The look comanche, water, fog, flights and composites as typed.
+// The look comanche, water, fog, flights and composites on the command line.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ std::string hill(const test::Scratch& scratch) {
 
 bool is_one_line(const std::string& err) { return std::count(err.begin(), err.end(), '\n') == 1 && err.back() == '\n'; }
 
-TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
+TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), out = scratch.path("out.png");
   scratch.write("gap.cpt", "0 0 0 0 10 255 255 255\n20 0 0 0 30 255 255 255\n");
@@ -113,7 +113,7 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
   EXPECT_EQ(scratch.files(), before) << "nothing is left behind";
 }
 
-TEST(Comanche, IsScaledUpByWholeFactors) {
+TEST(Comanche, ScalesByWholeFactors) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), out = scratch.path("out.png");
   const auto result = test::run({"render", dem, "-o", out, "--look", "comanche", "--wrap", "mirror", "--lowres",
@@ -128,7 +128,7 @@ TEST(Comanche, IsScaledUpByWholeFactors) {
   }
 }
 
-TEST(Flight, GoesOnWhereItStopped) {
+TEST(Flight, ResumesWhereItStopped) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), frames = scratch.path("f-###.png");
   const std::vector<std::string> arguments{"render", dem,     "-o",   frames, "--turntable", "--frames", "4",
@@ -151,8 +151,8 @@ TEST(Flight, GoesOnWhereItStopped) {
   EXPECT_NE(test::text_of(scratch.path("f-001.png")), "mine");
 }
 
-// The frame of noise is larger than those of haze.
-TEST(Flight, AFullDiskLeavesTheFramesBefore) {
+// The PNG of the noise is larger than those of the haze.
+TEST(Flight, FullDiskKeepsEarlierFrames) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);
   scratch.write(
@@ -171,7 +171,7 @@ TEST(Flight, AFullDiskLeavesTheFramesBefore) {
   EXPECT_EQ(test::read_png(scratch.path("f1.png")).width, 160);
 }
 
-TEST(Reach, FromAboveEndlessGroundIsSeen) {
+TEST(Reach, EndlessGroundIsVisibleFromAbove) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), out = scratch.path("out.png");
   for (const std::string wrap : {"mirror", "periodic"}) {
@@ -184,7 +184,7 @@ TEST(Reach, FromAboveEndlessGroundIsSeen) {
   }
 }
 
-TEST(Overlay, LiesWhereItsPlaceIs) {
+TEST(Overlay, IsPlacedByItsGeoreference) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);
   // Over the western half of the ground, red; the eastern half has the ramp's grey.
@@ -199,7 +199,7 @@ TEST(Overlay, LiesWhereItsPlaceIs) {
   for (int y = 2; y < 78; y += 5) {
     for (int x = 2; x < 78; x += 5) {
       const auto* p = picture.bytes.data() + 3 * (y * 80 + x);
-      // Within a pixel of its border colours are mixed, by the warper and once more when it is looked up.
+      // Within a pixel of its border colours are mixed, by the warper and again by the lookup.
       if (x >= 38 && x <= 42) continue;
       EXPECT_EQ(p[1] == 0 && p[2] == 0, x < 40) << x << ", " << y;
     }
@@ -234,14 +234,14 @@ TEST(Overlay, IsMirroredWithTheGround) {
 }
 
 #ifdef SCARP_OPENEXR
-TEST(Composite, TheNearerPixelIsSeen) {
+TEST(Composite, ShowsTheNearerPixel) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), ours = scratch.path("ours.exr");
   ASSERT_EQ(
       test::run({"render", dem, "-o", ours, "--top", "--size", "8x8", "--aa", "1", "--depth-range", "1,1000"}).status,
       0);
   // A level plate in green: seen from above it hides what is deeper. The eye is 80 + 80 + 80 m over the middle of the
-  // box; what depth that is, the file says.
+  // box; the depth is read from the file.
   std::vector<float> zero(64, 0.0f), one(64, 1.0f), z(64, 300.0f), device(64);
   const auto write = [&](const std::string& name, float plate) {
     for (std::size_t i = 0; i < 64; ++i) {
@@ -287,7 +287,7 @@ TEST(Composite, TheNearerPixelIsSeen) {
 }
 
 // Nothing is as far away as the sky: a plate is seen before it, and another renderer's sky hides nothing.
-TEST(Composite, ThingsAreSeenBeforeTheSky) {
+TEST(Composite, ShowsObjectsInFrontOfTheSky) {
   constexpr int kSide = 16;
   const test::Scratch scratch;
   const std::string ours = scratch.path("ours.exr"), out = scratch.path("out.exr");

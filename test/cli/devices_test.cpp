@@ -11,7 +11,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Devices, AreListedForPeopleAndForPrograms) {
+TEST(Devices, AreListedAsTextAndJson) {
   const auto text = run_on_device({"devices"}), json_text = run_on_device({"devices", "--json"});
   ASSERT_EQ(text.status, 0) << text.err;
   ASSERT_EQ(json_text.status, 0) << json_text.err;
@@ -33,7 +33,7 @@ TEST(Devices, AreListedForPeopleAndForPrograms) {
 }
 
 // An empty list is a list.
-TEST(Devices, WithoutAnyItSaysWhy) {
+TEST(Devices, ExplainWhyNoneIsListed) {
   ::setenv("VK_DRIVER_FILES", "/nonexistent", 1);
   ::setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
   const auto text = run_on_device({"devices"}), json_text = run_on_device({"devices", "--json"});

@@ -26,7 +26,7 @@ class ExrOutput : public testing::Test {
   test::Scratch scratch_;
 };
 
-TEST_F(ExrOutput, HasTheChannelsThatCompositorsLookFor) {
+TEST_F(ExrOutput, HasTheChannelsCompositorsExpect) {
   const auto result = test::run({"render", plane(), "-o", out(), "--size", "40x30"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(test::lines(result.out), 1) << result.out;
@@ -42,7 +42,7 @@ TEST_F(ExrOutput, HasTheChannelsThatCompositorsLookFor) {
   EXPECT_EQ(names, (std::set<std::string>{"B", "G", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "R", "Z", "steps"}));
 }
 
-TEST_F(ExrOutput, LiesWhereItsMatricesSay) {
+TEST_F(ExrOutput, PositionsMatchTheMatrices) {
   for (const std::vector<std::string>& from :
        {std::vector<std::string>{"--view", "200,50"}, {"--top"}, {"--eye", "-3,-20,160", "--target", "15,10,99"}}) {
     std::vector<std::string> arguments{"render", plane(), "-o", out(), "--size", "40x30", "--no-plinth"};
@@ -75,7 +75,7 @@ TEST_F(ExrOutput, LiesWhereItsMatricesSay) {
   }
 }
 
-TEST_F(ExrOutput, WhatDoesNotWorkIsOneLineAndLeavesNothing) {
+TEST_F(ExrOutput, ReportsErrorsInOneLineWithoutOutput) {
   const std::string input = plane();
   std::filesystem::create_symlink("/dev/full", scratch_.path("full.exr"));
   const auto before = scratch_.files();

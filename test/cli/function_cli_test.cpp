@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions on the command line: pictures, layers, what is known of them, and as elevation models.
+// Terrain functions on the command line: pictures, layers, info, and elevation models.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class Functions : public testing::Test {
     return scratch_.write("ramp.json", R"({"type": "plane", "height": 7, "slope": [0.5, 0]})");
   }
   std::string out(const char* name) const { return scratch_.path(name); }
-  // One line that says `what`, and no file.
+  // One line that contains `what`, and no file.
   void expect_refusal(std::vector<std::string> arguments, const std::string& what) const {
     const auto result = test::run(std::move(arguments));
     EXPECT_NE(result.status, 0);
@@ -39,7 +39,7 @@ class Functions : public testing::Test {
   test::Scratch scratch_;
 };
 
-TEST_F(Functions, AreShownByHeight) {
+TEST_F(Functions, AreColouredByHeight) {
   const std::string picture = out("a.png");
   const auto result = test::run({"render", "--function", ramp(), "--look", "height", "--extent", "100", "--eye",
                                  "-200,0,60", "--target", "0,0,0", "--size", "40x30", "-o", picture});
@@ -62,7 +62,7 @@ TEST_F(Functions, AreShownByHeight) {
   EXPECT_EQ(most, 255);
 }
 
-TEST_F(Functions, StepThroughAWhiteSky) {
+TEST_F(Functions, RenderIterationsUnderAWhiteSky) {
   const std::string picture = out("a.png");
   const auto result =
       test::run({"render", "--function", ramp(), "--look", "comanche", "--march", "fixed-step", "--iterations",
@@ -74,7 +74,7 @@ TEST_F(Functions, StepThroughAWhiteSky) {
 }
 
 #ifdef SCARP_OPENEXR
-TEST_F(Functions, HaveLayers) {
+TEST_F(Functions, WriteLayers) {
   const std::string layers = out("a.exr");
   const auto result = test::run({"render", "--function", ramp(), "--extent", "100", "--eye", "-200,0,60", "--target",
                                  "0,0,0", "--size", "40x30", "--depth-range", "1,10000", "-o", layers});
@@ -94,7 +94,7 @@ TEST_F(Functions, HaveLayers) {
 }
 #endif
 
-TEST_F(Functions, HaveTheColoursOfARamp) {
+TEST_F(Functions, TakeColourRamps) {
   const std::string picture = out("ramped.png"), table = scratch_.write("table.cpt", "0 255 0 0 100 0 0 255\n");
   const auto rendered = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"render", "--function", ramp(),   "--extent", "100",
@@ -125,7 +125,7 @@ TEST_F(Functions, AreDescribedByInfo) {
     EXPECT_GE(at["range"].get<double>(), 1);
     EXPECT_GE(at["slope"].get<double>(), 1);
   }
-  // Of a ramp all is known but for rounding.
+  // For a ramp everything is known except for rounding.
   const Json plane = Json::parse(test::run({"info", "--function", ramp(), "--json"}).out);
   for (const Json& at : plane["tightness"]) {
     EXPECT_NEAR(at["range"].get<double>(), 1, 1e-9);
@@ -134,7 +134,7 @@ TEST_F(Functions, AreDescribedByInfo) {
   EXPECT_NE(test::run({"info", "--function", "sea"}).out.find("certified"), std::string::npos);
 }
 
-TEST_F(Functions, AreSampledIntoAnElevationModel) {
+TEST_F(Functions, CanBeSampledIntoAnElevationModel) {
   const std::string dem = out("ramp.tif");
   const auto result = test::run({"generate", "--function", ramp(), "--size", "33x17", "--cell", "10", "-o", dem});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -147,7 +147,7 @@ TEST_F(Functions, AreSampledIntoAnElevationModel) {
   EXPECT_NEAR(info["slope_bound"].get<double>(), 0.5, 1e-6);
 }
 
-TEST_F(Functions, SayInOneLineWhatIsWrong) {
+TEST_F(Functions, ReportErrorsInOneLine) {
   expect_refusal({"info", "--function", "moon"}, "neither a file that can be read nor one of hills");
   expect_refusal({"render", "--function", "hills", "--march", "max-mip", "-o", out("a.png")},
                  "march 'max-mip': is not for functions (available: ");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures, small, against those that were looked at and found good: the demo, each row of the look comanche, the
-// example scenes.
+// Small pictures against approved ones: the demo, each row of the look comanche, the example scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::kAnyDifference, test::kMaxDifference;
 
-// The picture as a file of the tests, `name`.png, against the golden one; `where` tells who has made it.
+// The picture as a file of the tests, `name`.png, against the golden one; `where` names its origin.
 void expect_golden(const std::string& picture, const std::string& name, int most, const std::string& where = "") {
   if (!where.empty() && std::getenv("SCARP_NEW_GOLDEN")) return;  // the golden pictures are the CPU's
   test::expect_golden(picture, fs::path(SCARP_SOURCE_DIR) / "test" / "golden" / (name + ".png"), most,
@@ -76,7 +75,7 @@ std::vector<std::string> arguments_of(const Golden& wanted, const std::string& p
   return arguments;
 }
 
-TEST_P(GoldenPicture, IsAsItWas) {
+TEST_P(GoldenPicture, IsUnchanged) {
   const Golden& wanted = GetParam();
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
@@ -89,7 +88,7 @@ TEST_P(GoldenPicture, IsAsItWas) {
 
 // The picture that ./dev demo has just made in a clean clone (./dev test names it), against the one that the README
 // shows.
-TEST(GoldenDemo, MatchesThePictureOfTheReadme) {
+TEST(GoldenDemo, MatchesTheReadme) {
   const char* picture = std::getenv("SCARP_DEMO_PICTURE");
   if (!picture || !*picture) GTEST_SKIP() << "SCARP_DEMO_PICTURE names no picture; ./dev test sets it";
   test::expect_golden(picture, fs::path(SCARP_SOURCE_DIR) / "doc" / "images" / "jacksboro.png", kMaxDifference,
@@ -97,8 +96,8 @@ TEST(GoldenDemo, MatchesThePictureOfTheReadme) {
 }
 
 #ifdef SCARP_VULKAN
-// The very pictures of the CPU.
-TEST_P(GoldenPicture, IsTheSameOnADevice) {
+// Exactly the pictures of the CPU.
+TEST_P(GoldenPicture, MatchesOnADevice) {
   const Golden& wanted = GetParam();
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
@@ -115,8 +114,8 @@ TEST_P(GoldenPicture, IsTheSameOnADevice) {
 #endif
 
 #ifdef SCARP_MESH_ON_DEVICE
-// Drawn and asked on a CPU device, which is the same everywhere.
-TEST(GoldenMesh, AsItWasLookedAt) {
+// Drawn and computed on a CPU device, which is the same everywhere.
+TEST(GoldenMesh, MatchesTheReviewedPicture) {
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
   const test::Scratch scratch;
@@ -157,8 +156,8 @@ TEST(GoldenMesh, AsItWasLookedAt) {
 
 class GoldenScene : public testing::TestWithParam<const char*> {};
 
-// One sample in the middle of each of few pixels. With sanitizers functions are slow: two scenes must do there.
-TEST_P(GoldenScene, AsItWasLookedAt) {
+// One sample in the middle of each of few pixels. Functions are slow with sanitizers: there, two scenes must suffice.
+TEST_P(GoldenScene, MatchesTheReviewedPicture) {
   const std::string name = GetParam();
 #ifndef SCARP_MESHES_IN_SCENES
   if (name == "balloons" || name == "lake") GTEST_SKIP() << "built without SCARP_EMBREE or SCARP_MESH";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The look hillshade against what gdaldem makes of the same file.
+// The look hillshade against gdaldem's output for the same file.
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-// Grey levels of gdaldem with its default sun, which is ours too: from the north-west, 45 degrees high.
+// Grey levels of gdaldem with its default sun, which is also Scarp's: from the north-west, 45 degrees high.
 std::vector<std::uint8_t> gdaldem(const std::string& path, int* side) {
   GDALAllRegister();
   const std::unique_ptr<GDALDataset> dem(GDALDataset::Open(path.c_str()));
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> gdaldem(const std::string& path, int* side) {
   return error == CE_None ? grey : std::vector<std::uint8_t>();
 }
 
-TEST(Hillshade, IsThatOfGdaldem) {
+TEST(Hillshade, MatchesGdaldem) {
   const test::Scratch scratch;
   const std::string dem = scratch.path("dem.tif"), picture = scratch.path("hillshade.png");
   ASSERT_EQ(test::run({"generate", "--size", "257", "--seed", "3", "--wavelength", "40", "-o", dem}).status, 0);

@@ -21,7 +21,7 @@ std::string large_raster(const test::Scratch& scratch) {
 <DstRect xOff="0" yOff="0" xSize="8001" ySize="8000"/></SimpleSource></VRTRasterBand></VRTDataset>)");
 }
 
-TEST(LargeRaster, IsShownByAveragesAndWithFullByAllOfItsSamples) {
+TEST(LargeRaster, IsAveragedUnlessFullIsGiven) {
   const test::Scratch scratch;
   const std::string dem = large_raster(scratch), few = scratch.path("few.png"), all = scratch.path("all.png");
   const std::vector<std::string> look{"--top", "--size", "64x64", "--look", "height"};

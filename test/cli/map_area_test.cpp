@@ -39,7 +39,7 @@ class MapArea : public testing::Test {
   test::Scratch scratch_;
 };
 
-TEST_F(MapArea, IsAPartOfTheWholeMap) {
+TEST_F(MapArea, MatchesThatPartOfTheWholeMap) {
   const test::Rgb whole = map({"--size", "128x128"});
   // Its south-west: columns from 16 to 80, rows from 32 on, of 16 m a pixel.
   const test::Rgb part = map({"--size", "64x96", "--area", "256,0,1280,1536"});
@@ -61,7 +61,7 @@ TEST_F(MapArea, IsAPartOfTheWholeMap) {
   EXPECT_EQ(shaped.width, 853);  // two thirds
 }
 
-TEST_F(MapArea, IsRefusedWithoutSense) {
+TEST_F(MapArea, RejectsInvalidAreas) {
   refused({"--area", "0,0,10,10"}, "--area has no effect without --top");
   refused({"--top", "--area", "10,0,0,10"}, "--area '10,0,0,10': expected W below E, and S below N");
   refused({"--top", "--area", "10,0,0"}, "--area '10,0,0': expected W,S,E,N");

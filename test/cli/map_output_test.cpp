@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maps as files: georeferenced TIFF, other formats, and what is drawn on them.
+// Maps as files: georeferenced TIFF, other formats, and overlays.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -86,8 +86,8 @@ class MapOutput : public testing::Test {
   std::string dem_;
 };
 
-// Of 400 x 300 pixels over 40 x 30 cells: ten pixels a cell.
-TEST_F(MapOutput, APixelLiesWhereItsGroundIs) {
+// 400 x 300 pixels over 40 x 30 cells: ten pixels per cell.
+TEST_F(MapOutput, PixelsAreGeoreferenced) {
   for (const bool south_up : {false, true}) {
     const std::string dem = south_up ? write("up.tif", {600000, 30, 0, 4000000 - 31 * 30, 0, 30}, 32616, true) : dem_;
     const auto result = render(dem, "map.tif", {"--top", "--size", "400x300", "--aa", "1", "--unlit"});
@@ -113,7 +113,7 @@ TEST_F(MapOutput, APixelLiesWhereItsGroundIs) {
 }
 
 // The rim's pixels are partly covered, and have the colour of their ground alone: none is tinted by the sky.
-TEST_F(MapOutput, RimsArePartlyOpaqueAndKeepTheirColour) {
+TEST_F(MapOutput, RimsArePartlyOpaqueAndUntinted) {
   ASSERT_EQ(render(dem_, "map.tif", {"--top", "--size", "401x301", "--unlit", "--ramp", "magma"}).status, 0);
   const Rgba map = read_map(scratch_.path("map.tif"));
   int partial = 0;
@@ -129,7 +129,7 @@ TEST_F(MapOutput, RimsArePartlyOpaqueAndKeepTheirColour) {
   EXPECT_GT(partial, 50);
 }
 
-TEST_F(MapOutput, IsAnOverlayForItsOwnGround) {
+TEST_F(MapOutput, OverlaysItsOwnTerrain) {
   ASSERT_EQ(render(dem_, "map.tif", {"--top", "--size", "400x300", "--aa", "1", "--contours", "10"}).status, 0);
   ASSERT_EQ(render(dem_, "again.tif", {"--top", "--size", "400x300", "--unlit", "--overlay", scratch_.path("map.tif")})
                 .status,
@@ -152,7 +152,7 @@ TEST_F(MapOutput, IsAnOverlayForItsOwnGround) {
   for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) EXPECT_GT(difference(dx, dy), 1.5 * same);
 }
 
-TEST_F(MapOutput, WithoutGeoreferenceSaysSo) {
+TEST_F(MapOutput, ReportsMissingGeoreference) {
   const std::string plain = write("plain.tif", {}, 0);
   const auto result = render(plain, "map.tif", {"--top", "--size", "80x60"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -171,7 +171,7 @@ TEST_F(MapOutput, EveryLookHasTheSameOpacity) {
   }
 }
 
-TEST_F(MapOutput, FormatsAreThoseOfTheTable) {
+TEST_F(MapOutput, WritesEveryListedFormat) {
   const auto refused = [&](const std::string& output, const Names& options, const std::string& fragment) {
     const auto result = render(dem_, output, options);
     EXPECT_NE(result.status, 0) << output;
@@ -202,7 +202,7 @@ TEST_F(MapOutput, FormatsAreThoseOfTheTable) {
 }
 
 #ifdef SCARP_CAIRO
-TEST_F(MapOutput, AFigureStandsBesideThePicture) {
+TEST_F(MapOutput, BesideLayoutExtendsThePage) {
   const Names map{"--top", "--size", "400x300", "--aa", "1", "--contours", "10"};
   ASSERT_EQ(render(dem_, "plain.png", map).status, 0);
   Names all = map;
@@ -227,7 +227,7 @@ TEST_F(MapOutput, AFigureStandsBesideThePicture) {
 }
 
 // A meridian and a parallel of round numbers, where PROJ puts them.
-TEST_F(MapOutput, TheGraticuleLiesOnItsCoordinates) {
+TEST_F(MapOutput, GraticuleMatchesItsCoordinates) {
   const Names options{"--top", "--size", "400x300", "--aa", "1", "--unlit"};
   ASSERT_EQ(render(dem_, "plain.png", options).status, 0);
   Names lined = options;

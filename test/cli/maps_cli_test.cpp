@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp viewshed`, `shadow`, `los` and `profile`: what they write, and what they refuse in one line.
+// `scarp viewshed`, `shadow`, `los` and `profile`: their output, and their one-line errors.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -103,7 +103,7 @@ TEST_F(MapsCli, ViewshedIsAGeoreferencedRaster) {
   EXPECT_EQ(scratch_.files(), (Names{"dem.asc", "seen.tif"}));
 }
 
-TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
+TEST_F(MapsCli, AcceptsGdalViewshedFlags) {
   const auto ours =
       run(on_dem("viewshed") + Names{"--observer", "500105,5000105", "--observer-height", "3", "--max-distance", "150",
                                      "--visible-value", "255", "-o", path("a.tif")});
@@ -120,7 +120,7 @@ TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
   expect_refused({"viewshed", "-ox", "500105", dem_, path("c.tif")}, "give both");
 }
 
-TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
+TEST_F(MapsCli, AppliesViewshedPixelValues) {
   const Names view = on_dem("viewshed") +
                      Names{"--observer", "500105,5000105", "--max-distance", "150", "--cc", "0", "-o", path("a.tif")};
   struct Seen {
@@ -152,7 +152,7 @@ TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
   EXPECT_EQ(crowded.nodata, 252);
   EXPECT_EQ(crowded.beyond, 254);
   EXPECT_EQ(crowded.share, plain.share);
-  // As gdal_viewshed has them: hidden and out of range are one value.
+  // As in gdal_viewshed: hidden and out of range have the same value.
   const Seen theirs = seen({"-vv", "255", "-iv", "0", "-ov", "0", "-a_nodata", "0"});
   EXPECT_EQ(theirs.nodata, 0);
   EXPECT_EQ(theirs.visible, 255);
@@ -168,7 +168,7 @@ TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
                  "--nodata-value 0: is also a value of the map");
 }
 
-TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
+TEST_F(MapsCli, CountsObserversAndFindsLeastVisibleHeights) {
   const std::string table = scratch_.write("towers.csv", "name,x,y,z\na,500105,5000105,2\nb,500285,5000105,2\n");
   ASSERT_EQ(run(on_dem("viewshed") + Names{"--observers", table, "--mode", "count", "-o", path("count.tif")}).status,
             0);
@@ -205,7 +205,7 @@ TEST_F(MapsCli, AnglesCountFromTheHorizontal) {
   EXPECT_EQ(pixels_of(*open(path("angle.tif"))).at(15, 9), one.at(15, 9));
 }
 
-TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
+TEST_F(MapsCli, ShadowWritesOneBandPerSun) {
   ASSERT_EQ(run(on_dem("shadow") + Names{"--sun", "90,45", "--sun", "270,45", "-o", path("sun.tif")}).status, 0);
   const auto dataset = open(path("sun.tif"));
   ASSERT_EQ(dataset->GetRasterCount(), 2);
@@ -223,7 +223,7 @@ TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
   EXPECT_NEAR(part.at(17, 9), 0, 1e-6);
 }
 
-TEST_F(MapsCli, ShadowTakesTimes) {
+TEST_F(MapsCli, ShadowAcceptsTimes) {
   const auto result = run(on_dem("shadow") + Names{"--time", "2026-06-21T12:00+02:00", "-o", path("noon.tif")});
   if (result.err.find("SCARP_ERFA") != std::string::npos) GTEST_SKIP() << "built without ERFA";
   ASSERT_EQ(result.status, 0) << result.err;
@@ -248,8 +248,8 @@ TEST_F(MapsCli, ShadowTakesTimes) {
   expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
 }
 
-// The parts put together are the whole, pixel by pixel, and lie where their rows do.
-TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
+// The parts together are the whole map, pixel by pixel, and each is georeferenced by its rows.
+TEST_F(MapsCli, PartsMatchTheWhole) {
   const Names maps[] = {
       Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9"},
       Names{"viewshed", "--observer", "500105,5000105,2", "--mode", "ground", "--max-distance", "60"},
@@ -287,7 +287,7 @@ TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
 }
 
 // Between the samples of a saddle the ground is higher than on any grid line that a diagonal crosses.
-TEST_F(MapsCli, SurfaceMayBeBilinear) {
+TEST_F(MapsCli, SupportsBilinearSurface) {
   const std::string saddle =
       scratch_.write("saddle.asc", "ncols 2\nnrows 2\nxllcorner -5\nyllcorner -5\ncellsize 10\n0 30\n30 0\n");
   const Names line{"los", saddle, "--crs", "map", "--cc", "0", "--from", "0,10,8", "--to", "10,0,8"};
@@ -313,7 +313,7 @@ TEST_F(MapsCli, SurfaceMayBeBilinear) {
   expect_refused({"shadow", row, "--sun", "90,45", "--surface", "bilinear", "-o", path("x.tif")}, "row.asc: ");
 }
 
-TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
+TEST_F(MapsCli, LosWritesCsvAndGeoJson) {
   const Names places{"--from", "500105,5000105,2", "--to", "500185,5000105", "--to", "500285,5000105,5", "--cc", "0"};
   const auto csv = run(on_dem("los") + places);
   ASSERT_EQ(csv.status, 0) << csv.err;
@@ -334,7 +334,7 @@ TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
   EXPECT_EQ(lines(again.out), 3);
 }
 
-TEST_F(MapsCli, ProfileIsATableOrAFigure) {
+TEST_F(MapsCli, ProfileWritesATableOrAFigure) {
   const Names line = on_dem("profile") + Names{"--from", "500105,5000105,2", "--to", "500285,5000105,5"};
   const auto csv = run(line);
   ASSERT_EQ(csv.status, 0) << csv.err;
@@ -364,8 +364,8 @@ TEST_F(MapsCli, ProfileIsATableOrAFigure) {
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
 }
 
-// Green where the observer sees the ground, grey where not, the colours of heights where nothing was asked.
-TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
+// Green where the observer sees the ground, grey where not, height colours outside of the map.
+TEST_F(MapsCli, PreviewOverlaysTheMap) {
   const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("v.tif")};
 #ifndef SCARP_CAIRO
   expect_refused(view + Names{"--preview", path("v.png")}, "SCARP_CAIRO");
@@ -404,7 +404,7 @@ TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
 #endif
 }
 
-TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
+TEST_F(MapsCli, ReportsBadInputInOneLineWithoutOutput) {
   const std::string out = path("x.tif");
   const Names view = on_dem("viewshed") + Names{"-o", out};
   expect_refused(view, "no observer");
@@ -438,8 +438,8 @@ TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
   expect_refused(on_dem("los") + Names{"--lines", dem_}, "dem.asc");
 }
 
-// What else people type, one line each.
-TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
+// Other usage errors, one line each.
+TEST_F(MapsCli, ValidatesPlacesTimesAndFiles) {
   const std::string out = path("x.tif");
   const Names view = on_dem("viewshed") + Names{"-o", out, "--observer"};
   for (const char* place : {"500105", "nan,5000105", "500105,5000105,1e300", "500105,5000105,2,3", ""})
@@ -476,13 +476,13 @@ TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
     expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out},
                    "--raster-crs");
 #endif
-  // Found before the work.
+  // Found before the work starts.
   const Names there = on_dem("viewshed") + Names{"--observer", "500105,5000105", "--of", "GTiff", "-o"};
   expect_refused(there + Names{path("none/x.tif")}, "'" + path("none") + "' does not exist");
   expect_refused(there + Names{path("")}, path(""));
 }
 
-TEST_F(MapsCli, InputsAreKept) {
+TEST_F(MapsCli, NeverOverwritesInputs) {
   const std::string lines_file = scratch_.write("lines.csv", "x,y,tx,ty\n500105,5000105,500185,5000105\n");
   const std::string tower = scratch_.write("tower.csv", "x,y\n500105,5000105\n");
   fs::create_hard_link(dem_, path("link.tif"));
@@ -500,7 +500,7 @@ TEST_F(MapsCli, InputsAreKept) {
 #endif
 }
 
-TEST_F(MapsCli, AFullDiskLeavesNothing) {
+TEST_F(MapsCli, FullDiskLeavesNoOutput) {
   const auto expect_full = [&](const Names& arguments, std::uint64_t bytes, const std::string& name) {
     const auto before = scratch_.files();
     const auto result = [&] {
@@ -524,7 +524,7 @@ TEST_F(MapsCli, AFullDiskLeavesNothing) {
 #ifdef SCARP_CAIRO
   expect_full(on_dem("profile") + line + Names{"-o", path("x.svg")}, kFew, "x.svg");
   expect_full(on_dem("profile") + line + Names{"-o", path("x.png")}, kFew, "x.png");
-  // The map is there, its picture is not.
+  // The map exists, its picture does not.
   constexpr std::uint64_t kSome = 6000;
   scratch_.write("x.tif", "old");
   expect_full(view + Names{"-o", path("x.tif"), "--preview", path("x.png")}, kSome, "x.png");
@@ -538,7 +538,7 @@ TEST_F(MapsCli, AFullDiskLeavesNothing) {
 }
 
 // Ctrl-C in the middle of long work.
-TEST_F(MapsCli, AnInterruptLeavesNothing) {
+TEST_F(MapsCli, InterruptLeavesNoOutput) {
   std::string text = "ncols 400\nnrows 400\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n", table = "x,y\n";
   for (int i = 0; i < 400 * 400; ++i) text += fmt::format("{} ", i * 7919 % 31);
   for (int i = 0; i < 40000; ++i) table += fmt::format("{},{}\n", 500005 + i % 200 * 10, 5000005 + i / 200 * 10);
@@ -548,7 +548,7 @@ TEST_F(MapsCli, AnInterruptLeavesNothing) {
     Program program({"viewshed", dem, "--raster-crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o",
                      path("x.tif"), "--preview", path("x.png")});
 #ifdef SCARP_CAIRO
-    // The picture's file is reserved when the work begins.
+    // The picture's file is reserved when the work starts.
     for (int i = 0; i < 2000 && scratch_.files() == before; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_NE(scratch_.files(), before);
@@ -572,7 +572,7 @@ TEST_F(MapsCli, DryRunWritesNothing) {
 }
 
 // A degree has another length in the north of a large raster than in its south.
-TEST_F(MapsCli, DegreesAreRefusedWherePlaneIsWrong) {
+TEST_F(MapsCli, RejectsDegreesWhereThePlaneErrorIsLarge) {
   std::string text = "ncols 200\nnrows 200\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n";
   for (int i = 0; i < 200 * 200; ++i) text += "1 ";
   const std::string dem = scratch_.write("degrees.asc", text);

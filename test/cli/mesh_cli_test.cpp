@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render --mesh`: a mesh among terrain, and what is refused.
+// `scarp render --mesh`: a mesh on terrain, and errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class MeshOption : public testing::Test {
 
   Result render(const std::vector<std::string>& more, bool device = true) const {
     std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "64x64", "--top"};
-    // Of the look shaded.
+    // Pictures of the look shaded.
     if (std::find(more.begin(), more.end(), "--look") == more.end()) arguments.insert(arguments.end(), {"--aa", "1"});
     if (device) arguments.insert(arguments.end(), {"--device", "auto"});
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -51,7 +51,7 @@ class MeshOption : public testing::Test {
                     roof_ = scratch_.write("roof.obj", kRoof);
 };
 
-TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
+TEST_F(MeshOption, StandsAtMeshAt) {
   if (!has_device()) GTEST_SKIP() << "no Vulkan device";
   // 64 pixels for 64 cells of 30 m: a roof of 300 m in the middle, 100 m above the highest ground, or to the west.
   const auto reds = [&](const std::vector<std::string>& more) {
@@ -79,7 +79,7 @@ TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
   const std::vector<int> north_west = reds({"--mesh-at", "480,1440,9000"});
   EXPECT_NEAR(north_west[1], 16, 2);
   EXPECT_NEAR(north_west[2], 16, 2);
-  // On the ground in the middle, where hills hide a part of what is level.
+  // On the ground in the middle, where hills hide part of the level roof.
   const std::vector<int> on_ground = reds({});
   EXPECT_GT(on_ground[0], 5);
   EXPECT_LT(on_ground[0], 100);
@@ -88,7 +88,7 @@ TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
   EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
 }
 
-TEST_F(MeshOption, OpenMeshesHaveNoVoxels) {
+TEST_F(MeshOption, OpenMeshesCannotBeVoxelised) {
   const auto refusal = [&](const std::string& mesh, const std::string& voxel) {
     const auto result = run({"voxelise", mesh, "--voxel", voxel, "-o", scratch_.path("v.binvox")});
     EXPECT_NE(result.status, 0);
@@ -102,7 +102,7 @@ TEST_F(MeshOption, OpenMeshesHaveNoVoxels) {
   EXPECT_EQ(run({"voxelise", closed, "--voxel", "1", "-o", scratch_.path("v.binvox")}).status, 0);
 }
 
-TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
+TEST_F(MeshOption, ReportsErrorsInOneLine) {
   expect_refusal({"--mesh-at", "1,2"}, "--mesh-at has no effect without --mesh FILE");
   expect_refusal({"--mesh", roof_, "--mesh-up", "x"}, "--mesh-up 'x': expected y or z");
   expect_refusal({"--mesh", roof_, "--mesh-scale", "0"}, "--mesh-scale '0': expected a finite number above 0");

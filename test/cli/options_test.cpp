@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of the command line as such: numbers are finite and in their range, help is complete, and options without
+// Options of the command line in general: numbers are finite and in their range, help is complete, and options without
 // effect are refused.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,14 +28,14 @@ namespace {
 using test::run;
 using Names = std::vector<std::string>;
 
-// What the program declares.
+// The declarations of the program.
 const cli::Program& declared() {
   static cli::Program program;
   if (program.commands().empty()) cli::add_commands(program);
   return program;
 }
 
-TEST(Options, AllFloatingPointNumbersAreFinite) {
+TEST(Options, RejectNonFiniteNumbers) {
   std::size_t found = 0;
   for (const cli::Command* command : declared().commands()) {
     for (const cli::Declared& option : command->options()) {
@@ -54,7 +54,7 @@ TEST(Options, AllFloatingPointNumbersAreFinite) {
 }
 
 // Topics, looks, marches and other options that a declaration names exist.
-TEST(Options, NameWhatExists) {
+TEST(Options, ReferToExistingNames) {
   for (const cli::Command* command : declared().commands()) {
     for (const cli::Declared& option : command->options()) {
       const std::string what = command->name() + " " + option.name;
@@ -81,7 +81,7 @@ TEST(Options, NameWhatExists) {
   }
 }
 
-TEST(Help, FitsAScreen) {
+TEST(Help, FitsOnAScreen) {
   for (const cli::Command* command : declared().commands()) {
     for (const std::string topic : {"", "all"}) {
       const std::string text = cli::help_text(*command, topic);
@@ -94,7 +94,7 @@ TEST(Help, FitsAScreen) {
   }
 }
 
-TEST(Help, HasEveryOptionAndEveryTopic) {
+TEST(Help, ListsEveryOptionAndTopic) {
   const cli::Command& render = *declared().find("render");
   const std::string common = run({"render", "--help"}).out, all = run({"render", "--help", "all"}).out;
   EXPECT_NE(common.find("\nExamples:\n  scarp render "), std::string::npos) << common;
@@ -114,12 +114,12 @@ TEST(Help, HasEveryOptionAndEveryTopic) {
   EXPECT_EQ(unknown.err.find("scarp: error: --help 'wather': unknown topic of 'scarp render' (topics: all, general, "),
             0u)
       << unknown.err;
-  // Whatever else was typed.
+  // Regardless of other options.
   EXPECT_EQ(run({"render", "--watr", "3", "--fov", "x", "--help", "fog"}).status, 0);
   EXPECT_EQ(run({"--help", "cast"}).out, run({"cast", "--help"}).out);
 }
 
-TEST(Options, NumbersAreInTheirRange) {
+TEST(Options, RejectNumbersOutOfRange) {
   const struct {
     Names arguments;
     std::string fragment;
@@ -143,8 +143,8 @@ TEST(Options, NumbersAreInTheirRange) {
   }
 }
 
-// Whatever the order of the options, the message is the same.
-TEST(Options, AreRefusedInTheOrderTyped) {
+// The message does not depend on the order of the options.
+TEST(Options, AreCheckedInTheOrderTyped) {
   const Names first{"--fov", "0"}, second{"--waves", "2"};
   const auto message = [](const Names& a, const Names& b) {
     Names arguments{"render", "dem.tif", "-o", "out.png"};
@@ -162,8 +162,8 @@ TEST(Options, AreRefusedInTheOrderTyped) {
   }
 }
 
-// A preset is applied before the settings that were typed, wherever it stands.
-TEST(Options, OfAMarchOverrideAPreset) {
+// A preset is applied before typed settings, in any order on the command line.
+TEST(Options, OverrideAPreset) {
   test::Scratch scratch;
   const std::string out = scratch.path("out.png");
   const Names render{"render", "--function", "hills", "-o", out, "--size", "16x12", "--look", "steps"};
@@ -211,7 +211,7 @@ class WithoutEffect : public testing::Test {
                     scene_ = scratch_.write("scene.json", R"({"objects": [{"shape": {"sphere": {"radius": 3}}}]})");
 };
 
-TEST_F(WithoutEffect, IsRefusedOfVoxels) {
+TEST_F(WithoutEffect, IsRejectedForVoxels) {
   const Names render{"render", vox_, "-o", out_}, info{"info", vox_}, make{"voxelise", vox_, "-o", out_ + ".vox"};
   for (const Names& options : {Names{"--exaggeration", "2"},
                                {"--solid"},
@@ -244,7 +244,7 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
             0);
 }
 
-TEST_F(WithoutEffect, IsRefusedOfTerrain) {
+TEST_F(WithoutEffect, IsRejectedForTerrain) {
   const Names render{"render", dem_, "-o", out_}, cast{"cast", dem_, "--rays", scratch_.path("rays.csv")};
   for (const Names& options : {Names{"--frame", "0"}, {"--hidden"}, {"--up", "z"}, {"--normals", "flat"}}) {
     expect_refused(render, options, "applies to voxels only");
@@ -282,7 +282,7 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused({"render", dem_, "-o", scratch_.path("out-##.png"), "--path", "p.csv"}, {"--view", "1,2"}, "table");
 }
 
-TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
+TEST_F(WithoutEffect, IsRejectedForScenesAndFunctions) {
   const Names render{"render", scene_, "-o", out_}, info{"info", scene_}, make{"voxelise", scene_, "-o", out_ + ".vox"};
   for (const Names& options : {Names{"--nodata", "5"}, {"--hidden"}}) {
     expect_refused(render, options, "a scene file describes its own content");
@@ -301,12 +301,12 @@ TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
   expect_refused(function, {"--refine-halvings", "3", "--march", "naive"}, "--refine bisect");
 }
 
-// Each option of a picture is refused by the looks that do not read it, and makes another picture with those that do.
-TEST_F(WithoutEffect, IsRefusedOfLooks) {
+// Each option of a picture is rejected by the looks that do not read it, and changes the picture with those that do.
+TEST_F(WithoutEffect, IsRejectedForLooks) {
   struct Case {
-    Names options;     // the one that is meant, and its value
+    Names options;     // the option, and its value
     Names looks;       // that read it
-    Names others{};    // that it needs
+    Names others{};    // that it requires
     bool seen = true;  // in a picture as small as this one
   };
   const Names soft{"--samples", "4"}, fog{"--fog", "height"}, lake{"--water", "30"}, lit{"shaded", "comanche"},
@@ -388,7 +388,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       EXPECT_TRUE(picture(look, c.options, c.others) != without[key]) << what;
     }
   }
-  // Whoever adds an option says here which looks read it.
+  // A new option must be listed here with the looks that read it.
   const Names of_all = {"--size", "--look", "--no-plinth", "--lowres", "--reach"};
   using cli::Topic;
   for (const auto& [topic, options] : cli::options_by_topic(render)) {
@@ -410,7 +410,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
   }
 }
 
-TEST_F(WithoutEffect, IsNoLongerTheAngleOfViewOfFunctions) {
+TEST_F(WithoutEffect, DoesNotIncludeFovForFunctions) {
   const auto picture = [&](const Names& options) {
     Names arguments{"render", "--function", "hills", "-o", out_, "--size", "16x12"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -420,7 +420,7 @@ TEST_F(WithoutEffect, IsNoLongerTheAngleOfViewOfFunctions) {
   EXPECT_NE(picture({"--fov", "100"}), picture({}));
 }
 
-TEST_F(WithoutEffect, DepthGoesWithScenes) {
+TEST_F(WithoutEffect, DoesNotIncludeDepthForScenes) {
 #ifdef SCARP_OPENEXR
   const std::string exr = scratch_.path("out.exr");
   const Names arguments{"render", scene_, "-o", exr, "--size", "8x8"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Positions in map coordinates, in degrees and above ground, and what is refused.
+// Positions in map coordinates, in degrees and above ground, and errors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ class Places : public testing::Test {
                     out_ = scratch_.path("out.png");
 };
 
-TEST_F(Places, AreTheSameInAllCoordinates) {
+TEST_F(Places, AgreeInAllCoordinateSystems) {
   const Names local{"--eye", "20,10,150", "--target", "100,100,110"};
   const std::string expected = picture(local);
   EXPECT_EQ(picture({"--coords", "local", "--eye", "20,10,150", "--target", "100,100,110"}), expected);
@@ -80,7 +80,7 @@ TEST_F(Places, AreTheSameInAllCoordinates) {
   EXPECT_EQ(picture(lonlat, degrees), picture(map, degrees));
 }
 
-TEST_F(Places, AreAboveGroundAndAboveWater) {
+TEST_F(Places, CountHeightsFromGroundAndWater) {
   const std::string target = "100,100,110";
   const auto from = [&](const Names& eye) {
     Names all{"--target", target};
@@ -97,7 +97,7 @@ TEST_F(Places, AreAboveGroundAndAboveWater) {
             picture({"--eye", "20,100,150", "--target", "100,150,100"}));
 }
 
-TEST_F(Places, OfPathsFollowTheGround) {
+TEST_F(Places, OnPathsFollowTheGround) {
   const std::string frames = scratch_.path("frame-#.png");
   const auto flight = [&](const std::string& table, const Names& more) {
     Names arguments{"render",
@@ -143,7 +143,7 @@ TEST_F(Places, OfPathsFollowTheGround) {
             std::string::npos);
 }
 
-TEST_F(Places, WhatIsWrongIsSaidInOneLine) {
+TEST_F(Places, ReportErrorsInOneLine) {
   expect_refused({"--eye", "5,5"}, "--eye '5,5': expected X,Y,Z, or X,Y with --eye-above M");
   expect_refused({"--eye", "5,5,200", "--eye-above", "2"}, "--eye-above replaces Z");
   expect_refused({"--eye-above", "2"}, "--eye-above has no effect without --eye X,Y or --path FILE");
@@ -157,7 +157,7 @@ TEST_F(Places, WhatIsWrongIsSaidInOneLine) {
                  {"--function", "hills"});
 }
 
-TEST_F(Places, AreAboveFunctionsAndScenes) {
+TEST_F(Places, CountHeightsFromFunctionsAndScenes) {
   const auto view = [&](const Names& input, const Names& eye) {
     Names arguments{"render", "-o", out_, "--size", "24x18", "--target", "0,0,0"};
     arguments.insert(arguments.end(), input.begin(), input.end());

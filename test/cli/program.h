@@ -56,7 +56,7 @@ inline std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Whether signals that this process ignores are ignored by what it starts.
+/// Whether child processes ignore the signals that this process ignores.
 enum class Ignored : bool { reset, inherited };
 
 /// How a process is started. The tests themselves may run under nohup.
@@ -81,11 +81,11 @@ class StartAttributes {
   ::posix_spawnattr_t attributes_;
 };
 
-/// How a run of `scarp` went.
+/// The result of a run of `scarp`.
 struct Result {
   int status;  ///< exit status, or 1000 + the signal that ended it
   std::string out, err;
-  std::uint64_t peak = 0;  ///< bytes of memory in use at most; 0: not known, of programs that are not forked
+  std::uint64_t peak = 0;  ///< peak memory in bytes; 0: unknown, for programs that are not forked
 };
 
 inline Result result_of(int status, const Streams& streams, std::uint64_t peak = 0) {
@@ -94,7 +94,7 @@ inline Result result_of(int status, const Streams& streams, std::uint64_t peak =
           std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err), peak};
 }
 
-/// The built program, running; its output goes into files of a folder of its own.
+/// The running program; its output goes into files of a separate folder.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const char* out_path = nullptr,
@@ -130,19 +130,19 @@ class Program {
   ::pid_t pid_ = 0;
 };
 
-/// Whether the leak sanitizer looks at what is run.
+/// Whether the leak sanitizer checks the program.
 enum class Leaks : bool { found, kept };
 
-/// Runs `scarp`. SCARP_STARTER: forked by a process that has loaded it (starts.h); else the built program, which those
-/// tests ask for that are about starts and ends, and then without limits.
+/// Runs `scarp`. SCARP_STARTER: forked by a process that has loaded it (starts.h); otherwise the built program without
+/// limits, for tests about startup and exit.
 inline Result run(const std::vector<std::string>& arguments, const std::string& in_path = "/dev/null",
                   Leaks leaks = Leaks::found, [[maybe_unused]] const Limits& limits = {}) {
   const bool kept = leaks == Leaks::kept;
-  // And of what the driver's compiler frees less is kept, as in the tests that open one themselves
+  // The driver's compiler also keeps less freed memory, as in the tests that open a driver themselves
   // (test/CMakeLists.txt).
   if (kept) ::setenv("ASAN_OPTIONS", "detect_leaks=0:quarantine_size_mb=32", 1);
 #ifdef SCARP_STARTER
-  // A sanitizer reads its options once, when its process is started.
+  // A sanitizer reads its options once, at the start of the process.
   const auto start = [] {
     return std::make_unique<const Starter>(SCARP_STARTER, StartAttributes(Ignored::reset).get());
   };
@@ -159,8 +159,8 @@ inline Result run(const std::vector<std::string>& arguments, const std::string& 
   return result;
 }
 
-/// As run(), where `scarp` opens a Vulkan driver: what Mesa's lavapipe keeps when it is unloaded is no leak of Scarp's,
-/// and the leak sanitizer cannot tell any more whose it is.
+/// As run(), where `scarp` opens a Vulkan driver: memory that Mesa's lavapipe keeps when it is unloaded is not a leak
+/// of Scarp, but the leak sanitizer can no longer tell.
 inline Result run_on_device(const std::vector<std::string>& arguments) {
   return run(arguments, "/dev/null", Leaks::kept);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render --device`: a picture on whatever device there is, and what is refused.
+// `scarp render --device`: a picture on any available device, and errors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class RenderOnDevice : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_on_device(std::move(arguments));
   }
-  // One line that says `what`, and no file.
+  // One line that contains `what`, and no file.
   void expect_refusal(const Result& result, const std::string& what) const {
     EXPECT_NE(result.status, 0);
     EXPECT_EQ(lines(result.err), 1) << result.err;
@@ -39,7 +39,7 @@ class RenderOnDevice : public testing::Test {
   const std::string dem_ = scratch_.path("dem.tif"), picture_ = scratch_.path("picture.png");
 };
 
-TEST_F(RenderOnDevice, MakesThePictureAndNamesTheDevice) {
+TEST_F(RenderOnDevice, RendersAndNamesTheDevice) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const auto cpu = render({"--look", "error"});
@@ -59,7 +59,7 @@ TEST_F(RenderOnDevice, MakesThePictureAndNamesTheDevice) {
   EXPECT_EQ(read_png(picture_).width, 60);
 }
 
-TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
+TEST_F(RenderOnDevice, RendersFunctionsAndScenes) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const std::string plain = scratch_.write("plain.json", R"({"type": "fbm", "octaves": 2})");
@@ -85,7 +85,7 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
     const auto device = run_on_device(arguments);
     ASSERT_EQ(device.status, 0) << device.err;
     EXPECT_NE(device.out.find(", on "), std::string::npos) << device.out;
-    // Points of the ground move by millimetres over some kilometres: below a colour's last bit but for where light and
+    // Points of the ground move by millimetres over some kilometres: below a colour's last bit except where light and
     // shade, or ground and sky, meet.
     const auto picture = read_png(picture_);
     int unlike = 0;
@@ -102,8 +102,8 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
   }
 }
 
-// Hits on voxels are those of the CPU to the bit, so pictures and tables are.
-TEST_F(RenderOnDevice, MakesTheSamePicturesOfVoxels) {
+// Hits on voxels are those of the CPU to the bit, and therefore pictures and tables, too.
+TEST_F(RenderOnDevice, RendersVoxelsAsTheCpu) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const std::string model = scratch_.path("hills.vox"), there = scratch_.path("there.png");
@@ -167,12 +167,12 @@ TEST_F(RenderOnDevice, MakesTheSamePicturesOfVoxels) {
   }
 }
 
-TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
+TEST_F(RenderOnDevice, RejectsMarchesWithoutDeviceSupport) {
   expect_refusal(render({"--device", "auto", "--march", "exhaustive"}),
                  "--device auto: march 'exhaustive' does not run on Vulkan devices (available: max-mip, ");
 }
 
-TEST_F(RenderOnDevice, StepsOfComancheHaveSoftLightThere) {
+TEST_F(RenderOnDevice, ComancheStepsSupportSoftLight) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
   const std::vector<std::string> arguments{"render",   dem_,    "-o",      picture_,     "--look",   "comanche",
@@ -189,7 +189,7 @@ TEST_F(RenderOnDevice, StepsOfComancheHaveSoftLightThere) {
   EXPECT_NE(read_png(picture_).bytes, hard);
 }
 
-TEST_F(RenderOnDevice, RefusesDevicesThatAreNotThere) {
+TEST_F(RenderOnDevice, RejectsUnknownDevices) {
   expect_refusal(render({"--device", "no such card"}), "'no such card'");
   expect_refusal(render({"--device", ""}), "--device");
   ::setenv("VK_DRIVER_FILES", "/nonexistent", 1);

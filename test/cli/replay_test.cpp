@@ -13,7 +13,7 @@ using test::run;
 
 const std::string kField = "scarp-rays 1\nfield float32 3 2\nrow 0 4 0\nrow 0 4 0\n";
 
-TEST(Replay, PutsAllMarchesSideBySide) {
+TEST(Replay, ComparesAllMarches) {
   const test::Scratch scratch;
   const std::string file =
       scratch.write("rays.txt", kField +
@@ -30,7 +30,7 @@ TEST(Replay, PutsAllMarchesSideBySide) {
   }
 }
 
-TEST(Replay, RefusesBadInputInOneLine) {
+TEST(Replay, ReportsBadInputInOneLine) {
   const test::Scratch scratch;
   const auto expect_refused = [&](const std::string& text, const std::string& fragment) {
     const auto result = run({"replay", scratch.write("rays.txt", text)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes on the command line: what is printed, which options go with them, what is written.
+// Scenes on the command line: printed output, accepted options, written files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ class Scenes : public testing::Test {
   const std::string path_ = scratch_.path("scene.json"), picture_ = scratch_.path("out.png");
 };
 
-TEST_F(Scenes, AreRenderedAsTheirFilesSay) {
+TEST_F(Scenes, RenderWithTheirFileSettings) {
   const auto result = test::run({"render", path_, "-o", picture_});
   ASSERT_EQ(result.status, 0) << result.err;
   const test::Rgb image = test::read_png(picture_);
@@ -49,7 +49,7 @@ TEST_F(Scenes, AreRenderedAsTheirFilesSay) {
   EXPECT_GT(pixel(32, 39)[0], pixel(32, 39)[2]);
 }
 
-TEST_F(Scenes, GiveWayToOptions) {
+TEST_F(Scenes, AreOverriddenByOptions) {
   ASSERT_EQ(test::run({"render", path_, "-o", picture_, "--size", "16x8", "--view", "0,90", "--look", "steps"}).status,
             0);
   EXPECT_EQ(test::read_png(picture_).width, 16);
@@ -62,8 +62,8 @@ TEST_F(Scenes, GiveWayToOptions) {
   EXPECT_NE(test::run({"render", path_, path_, "-o", picture_}).err.find("stands alone"), std::string::npos);
 }
 
-// Sky, water and fog of the file, and what options make of them.
-TEST_F(Scenes, HaveAnEnvironment) {
+// Sky, water and fog of the file, and options that change them.
+TEST_F(Scenes, ApplyTheirEnvironment) {
   const auto scene = [&](const std::string& environment) {
     std::ofstream(path_)
         << R"({"picture": {"size": [48, 32], "aa": 1}, "camera": {"eye": [0, -20, 5], "target": [0, 0, 0]},)"
@@ -138,7 +138,7 @@ TEST_F(Scenes, HaveAnEnvironment) {
 }
 
 // The look comanche flies over terrain by itself, but not where the file has a camera.
-TEST_F(Scenes, HaveTheirOwnCameraInEveryLook) {
+TEST_F(Scenes, UseTheirCameraInEveryLook) {
   const auto picture = [&](const std::string& camera) {
     std::ofstream(path_) << "{" << camera
                          << R"("objects": [{"heights": {"generate": {"size": [33, 33], "cell": 4}}}]})";
@@ -153,8 +153,8 @@ TEST_F(Scenes, HaveTheirOwnCameraInEveryLook) {
 }
 
 #ifdef SCARP_CAIRO
-// Of one ramp over heights.
-TEST_F(Scenes, HaveALegendWhereARampColoursThem) {
+// Colours of one ramp over heights.
+TEST_F(Scenes, ShowALegendWhenColouredByARamp) {
   const auto rendered = [&](const std::string& materials) {
     std::ofstream(path_) << R"({"camera": {"eye": [0, -20, 5], "target": [0, 0, 0]}, "materials": {)" << materials
                          << R"(}, "objects": [{"function": 0, "material": "low"}]})";
@@ -186,10 +186,9 @@ TEST_F(Scenes, AreDescribedByInfo) {
   EXPECT_EQ(Json::parse(test::run({"info", path_, "--json"}).out)["objects"][0]["fields"][0]["samples"], 72);
 }
 
-// A million levels: one line with where that is, and no stack used up.
-TEST_F(Scenes, RefuseDepth) {
-  // Who calls itself for each of them needs more than the usual stack of 8 MiB, at the 32 bytes that a call takes at
-  // least.
+// A million levels: one line with the position, and no stack overflow.
+TEST_F(Scenes, RejectDeepNesting) {
+  // A recursive parser would need more than the usual stack of 8 MiB, at 32 bytes or more per call.
   constexpr int kLevels = 1 << 18;
   const auto nested = [&](const std::string& before, const std::string& level, const std::string& core,
                           const std::string& after, const std::string& last) {
@@ -216,7 +215,7 @@ TEST_F(Scenes, RefuseDepth) {
   }
 }
 
-TEST_F(Scenes, LeaveNothingBehindWhenTheyAreWrong) {
+TEST_F(Scenes, LeaveNoOutputOnErrors) {
   std::ofstream(path_) << R"({"objects": [{"shape": {"sphere": {"radius": -1}}}]})";
   const auto result = test::run({"render", path_, "-o", picture_});
   EXPECT_NE(result.status, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A picture that shows nothing has a warning that says why.
+// A picture that shows nothing comes with a warning that says why.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ class Seen : public testing::Test {
   static double hill(int col, int row) { return std::round(200 + 100 * std::sin(col * 0.5) * std::cos(row * 0.4)); }
   std::string hills() const { return grid("hills.asc", 100, hill); }
 
-  // What a run says beside its notes; it must succeed.
+  // Output of a run other than its notes; it must succeed.
   std::string warning(const std::string& input, Names options, const std::string& output = "out.png") const {
     Names arguments{"render", input, "-o", scratch_.path(output), "--size", "48x27"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -51,7 +51,7 @@ class Seen : public testing::Test {
   test::Scratch scratch_;
 };
 
-TEST_F(Seen, PicturesOfSomethingHaveNoWarning) {
+TEST_F(Seen, VisiblePicturesGiveNoWarning) {
   const std::string file = hills();
   for (const Names& options :
        {Names{}, {"--top"}, {"--water", "200"}, {"--look", "error", "--top"}, {"--fog", "distance"}})
@@ -60,7 +60,7 @@ TEST_F(Seen, PicturesOfSomethingHaveNoWarning) {
   EXPECT_EQ(warning(file, {"--turntable", "--frames", "2"}, "frame-##.png"), "");
 }
 
-TEST_F(Seen, WhereTheEyeIs) {
+TEST_F(Seen, WarnsAboutTheEyePosition) {
   const std::string file = hills();
   expect_warning("m below the ground", file, {"--eye", "1000,1000,-500", "--target", "1000,1000,-900"});
   expect_warning("is behind the eye", file, {"--eye", "1000,-500,900", "--target", "1000,-900,800"});
@@ -70,7 +70,7 @@ TEST_F(Seen, WhereTheEyeIs) {
   expect_warning(": --area has little of the scene in it", file, {"--top", "--area", "-90000,-90000,90000,90000"});
 }
 
-TEST_F(Seen, WhatStandsInTheWay) {
+TEST_F(Seen, WarnsAboutObstruction) {
   const std::string file = hills();
   const Names above{"--eye", "1000,-1000,9000", "--target", "1000,1000,0"};
   const auto from_above = [&](Names options) {
@@ -86,7 +86,7 @@ TEST_F(Seen, WhatStandsInTheWay) {
   EXPECT_NE(low.err.find("note: --water 10 is below all ground, whose lowest is 10"), std::string::npos) << low.err;
 }
 
-TEST_F(Seen, WhatTheSamplesAre) {
+TEST_F(Seen, WarnsAboutTheSamples) {
   expect_warning("heights span 200 m (100 to 300) over 0.023 m of ground", grid("thin.asc", 0.001, hill),
                  {"--crs", "none"});
   expect_warning("99.3056 % of the samples are holes",
@@ -97,7 +97,7 @@ TEST_F(Seen, WhatTheSamplesAre) {
                  {"--eye", "1150,1150,500", "--target", "1150,1150,0", "--look", "hillshade"});
 }
 
-TEST_F(Seen, FramesAreCountedAndOtherOutputsAndInputsChecked) {
+TEST_F(Seen, CountsBlankFramesAndChecksOtherFormats) {
   const std::string file = hills();
   const std::string path = scratch_.write("path.csv",
                                           "x,y,z,dx,dy,dz\n1000,1000,900,0,0.1,-1\n1000,1000,900,0,0.1,1\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spiteful rasters: damaged files, files that are no files, and arrays that are no heights.
+// Adversarial rasters: damaged files, paths that are not files, and arrays that are not heights.
 #pragma once
 
 #include <sys/stat.h>
@@ -12,7 +12,7 @@
 
 namespace scarp::test {
 
-// A TIFF of little-endian float samples whose single strip of `strip_bytes` is said to hold all rows.
+// A TIFF of little-endian float samples whose single strip of `strip_bytes` claims to hold all rows.
 inline std::string tiff_header(std::uint32_t cols, std::uint32_t rows, std::uint32_t strip_bytes) {
   std::string bytes("II*\0\x08\0\0\0\x09\0", 10);
   const auto entry = [&](std::uint16_t tag, std::uint32_t value) {
@@ -88,7 +88,7 @@ inline SpitefulRasters broken_files(const SpitefulFiles& f) {
   refuse("a .hgt of a wrong size", f.bytes("N47E008.hgt", std::string(5000, '\1')), ".hgt");
   refuse("raw samples that are too few", f.bytes("few.raw", std::string(100, '\1')), "bytes|raw");
   all.back().options = {"--raw", "24x16:i16le"};
-  // An archive stays open between its members, or only the last one is in it.
+  // The archive must stay open between its members, otherwise it contains only the last one.
   const std::string archive = "/vsizip/" + f.path("two.zip");
   VSILFILE* zip = VSIFOpenL(archive.c_str(), "wb");
   for (const char* name : {"/a.tif", "/b.tif"}) {

@@ -22,31 +22,32 @@
 
 namespace scarp::test::spite {
 
-// A call takes some hundredths of a second. Nothing here may keep the machine busy, or take its memory.
+// A call takes some hundredths of a second. No case may take much time or memory.
 constexpr Limits kLimits{10, std::uint64_t{3} << 29};
 
-/// Memory: 4 times the file's bytes or voxels, the larger of the two, and what threads and their heaps take. Canvases
-/// beyond 2^26 voxels count as that many: what is not in the file must not be in memory.
+/// Memory: 4 times the file's bytes or voxels, the larger of the two, plus an allowance for threads and their heaps.
+/// Canvases beyond 2^26 voxels count as that many: content that is not in the file must not be in memory.
 constexpr std::uint64_t kAllowance = std::uint64_t{48} << 20, kLargestCanvas = std::uint64_t{1} << 26;
 
 constexpr double kLeastShare = 0.005;
 
-/// What a MagicaVoxel artist expects of a file.
+/// Expectations of a MagicaVoxel artist for a file.
 struct Wanted {
   enum class How { shown, refused, either, nothing };
 
   How how = How::shown;
   std::string word{};                   ///< in the refusal
-  std::int64_t voxels = -1;             ///< solid voxels of all models, by `info`; -1: not looked at
-  std::optional<Size> size{};           ///< of the box round what is shown
-  std::string note{};                   ///< in what `info` and stderr say besides
+  std::int64_t voxels = -1;             ///< solid voxels of all models, by `info`; -1: not checked
+  std::optional<Size> size{};           ///< of the box around the shown voxels
+  std::string note{};                   ///< in the other output of `info` and stderr
   bool tiny = false;                    ///< too small for the picture: a warning is due instead
   std::int64_t canvas = 0;              ///< voxels in the boxes of its models, where the file has fewer bytes
   std::vector<std::string> options{};   ///< of all commands
   std::optional<std::int64_t> solid{};  ///< voxels in the world, by `voxelise`
   std::vector<std::string> also{};      ///< other commands to try: `section`, `cast`, `voxelise`
-  bool of_option = false;               ///< the fault is an option's, which is named instead of the file
-  bool whole = false;  ///< of another kind and not damaged: a refusal says what is read, not to fetch it again
+  bool of_option = false;               ///< the error is in an option, which is named instead of the file
+  bool whole = false;  ///< of another kind and not damaged: an error lists the supported formats, and does not advise
+                       ///< to fetch it again
 
   Wanted noting(std::string text) && { return note = std::move(text), std::move(*this); }
   Wanted too_small() && { return tiny = true, std::move(*this); }
@@ -60,9 +61,9 @@ struct Wanted {
 
 inline Wanted shown(std::int64_t voxels, std::optional<Size> size = {}) { return {.voxels = voxels, .size = size}; }
 inline Wanted refused(std::string word) { return {.how = Wanted::How::refused, .word = std::move(word)}; }
-/// Nothing to see: this word in refusals.
+/// Nothing to see: errors contain this word.
 inline Wanted nothing(std::string word) { return {.how = Wanted::How::nothing, .word = std::move(word)}; }
-/// Shown as these voxels, or refused with this word.
+/// Shown as these voxels, or rejected with this word.
 inline Wanted either(std::string word, std::int64_t voxels = -1, std::optional<Size> size = {}) {
   return {.how = Wanted::How::either, .word = std::move(word), .voxels = voxels, .size = size};
 }
@@ -82,8 +83,8 @@ inline std::vector<std::string> lines_of(const std::string& text) {
   return found;
 }
 
-/// The share of pixels that are not sky. From above the horizon or below, the sky has one colour in each row, and
-/// pictures leave room to the left or right of all that is in them: what differs from both ends of its row is an
+/// The fraction of pixels that are not sky. From above the horizon or below, the sky has one colour in each row, and
+/// pictures leave a margin to the left or right of all objects: a pixel that differs from both ends of its row is an
 /// object. 12 of 255 levels are more than the sky's own gradient.
 inline double share_of_objects(const Rgb& picture) {
   constexpr int kLevels = 12;
@@ -102,7 +103,7 @@ inline double share_of_objects(const Rgb& picture) {
 /// One call on one file.
 class Look {
  public:
-  /// `out`: what it writes; none: nothing.
+  /// `out`: the written file, if any.
   Look(const Scratch& folder, const std::string& file, std::vector<std::string> words, const std::string& out = {})
       : folder_(folder), file_(folder.path(file)), command_(words[0]), out_(out.empty() ? "" : folder.path(out)) {
     before_ = folder.files();
@@ -119,7 +120,7 @@ class Look {
     return "scarp " + command_ + ": status " + std::to_string(result.status) + ", stderr: " + result.err.substr(0, 600);
   }
 
-  /// Ends by itself, and says nothing that only programmers understand.
+  /// Exits normally, and prints nothing that only programmers understand.
   bool expect_sane() const {
     EXPECT_LT(result.status, 1000) << "crash, hang or limit: " << said();
     for (const char* word : {"std::", "bad_alloc", "what()", "json.exception", "terminate", "basic_string", "inf to"})
@@ -168,7 +169,7 @@ class Look {
   }
 
  private:
-  // Words in parentheses, or what should be there instead. Files that are not there or empty explain themselves.
+  // Words in parentheses, or the expected content. Missing and empty files need no explanation.
   static bool advises(const std::string& line) {
     for (const char* enough : {"expected", "instead of", " need", "cannot be opened", "(0 bytes)"}) {
       if (has(line, enough)) return true;
@@ -207,7 +208,7 @@ inline std::int64_t voxels_of_vox(const std::string& bytes) {
   return found;
 }
 
-/// Runs `info`, `render` and what else the case names on a file of a folder.
+/// Runs `info`, `render` and the other commands of the case on a file of a folder.
 inline void check_file(const Scratch& folder, const std::string& file, const Case& c) {
   const Wanted& wanted = c.wanted;
   SCOPED_TRACE("case '" + c.name + "'");
@@ -219,7 +220,7 @@ inline void check_file(const Scratch& folder, const std::string& file, const Cas
     first.insert(first.end(), wanted.options.begin(), wanted.options.end());
     return first;
   };
-  // Whether it is to be judged as shown.
+  // Whether to judge it as shown.
   const auto judged = [&](const Look& look) {
     if (!look.expect_sane()) return false;
     const bool hollow =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Voxel files byte by byte, right and wrong. Made from the published layouts alone and not with the readers' own
-// writers, which refuse what is wrong.
+// Voxel files byte by byte, valid and invalid, made only from the published layouts and not with the readers' own
+// writers, which reject invalid data.
 //
 // Sources: ephtracy/voxel-model (.vox); P. Min, "binvox"; Minddesk, "Qubicle Binary" (.qb); K. Silverman, Voxlap's
 // notes on .vox, .kv6 and .vxl.
@@ -62,7 +62,7 @@ inline std::string size_chunk(std::int64_t x, std::int64_t y, std::int64_t z) {
   return chunk("SIZE", numbers({x, y, z}));
 }
 
-/// An XYZI chunk that states another count than it has where `count` is not negative.
+/// An XYZI chunk that states the count `count`, if it is not negative.
 inline std::string dots_chunk(const std::vector<Dot>& dots, std::int64_t count = -1) {
   std::string content = number(count < 0 ? static_cast<std::int64_t>(dots.size()) : count);
   for (const Dot& dot : dots) content += bytes({dot.x, dot.y, dot.z, dot.index});
@@ -152,14 +152,14 @@ inline std::string binvox(const std::string& header, const std::vector<std::pair
   return out;
 }
 
-/// A Qubicle Binary file. `size` may be what a matrix cannot have.
+/// A Qubicle Binary file. `size` may be invalid.
 inline std::string qubicle(bool compressed, const std::array<std::int64_t, 3>& size, const std::string& voxels,
                            std::int64_t matrices = 1) {
   return bytes({1, 1, 0, 0}) + numbers({0, 1, compressed ? 1 : 0, 0, matrices}) + bytes({5}) + "stone" +
          numbers({size[0], size[1], size[2], 0, 0, 0}) + voxels;
 }
 
-/// Voxels of a .qb: so many red ones.
+/// This many red voxels of a .qb.
 inline std::string qubicle_reds(std::int64_t count) {
   std::string out;
   for (std::int64_t i = 0; i < count; ++i) out += bytes({255, 0, 0, 255});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spiteful rasters: odd geotransforms and coordinate reference systems, and odd bands and pictures.
+// Adversarial rasters: odd geotransforms and coordinate reference systems, and odd bands and pictures.
 #pragma once
 
 #include <filesystem>
@@ -152,7 +152,7 @@ inline SpitefulRasters pictures_and_bands(const SpitefulFiles& f) {
   using enum Expected;
   SpitefulRasters all;
   const auto add = [&](SpitefulRaster raster) {
-    if (!raster.inputs.front().empty()) all.push_back(std::move(raster));  // else GDAL has no driver for it
+    if (!raster.inputs.front().empty()) all.push_back(std::move(raster));  // otherwise GDAL has no driver for it
   };
   std::vector<double> grey;
   for (const double h : hills()) grey.push_back((h - 60) / 60 * 65000);

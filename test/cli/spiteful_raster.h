@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A raster file with something odd about it, and what a GIS analyst expects of a program that is given it. And the
-// means to write such files.
+// An odd raster file, and a GIS analyst's expectations of a program that reads it; with functions to write such files.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,7 +22,7 @@ enum class Expected {
   drawn,             ///< a picture with ground in it
   drawn_or_warned,   ///< a picture, and a warning if there is next to no ground in it
   right_or_refused,  ///< drawn_or_warned with the numbers that are stated, or refused
-  described,         ///< `info` works, but there is nothing to draw: refused by `render`
+  described,         ///< `info` works, but there is nothing to draw: rejected by `render`
   refused,           ///< one line that names the file
 };
 
@@ -33,7 +32,7 @@ struct Heights {
 };
 
 struct SpitefulRaster {
-  std::string kind;  ///< what is odd about it
+  std::string kind;  ///< its oddity
   std::vector<std::string> inputs;
   Expected expected = Expected::drawn;
   std::string words = {};  ///< one of them must be in the notes or in the error, without regard to case: "nodata|hole"
@@ -74,7 +73,7 @@ inline std::vector<double> hills_with(double value, int side = 1) {
   return samples;
 }
 
-/// Writes files into a folder that goes away with it.
+/// Writes files into a temporary folder that it removes.
 class SpitefulFiles {
  public:
   using Edit = std::function<void(GDALDataset&)>;
@@ -90,7 +89,7 @@ class SpitefulFiles {
   std::string path(const std::string& name) const { return folder_.path(name); }
   std::string bytes(const std::string& name, const std::string& content) const { return folder_.write(name, content); }
 
-  /// An ESRI ASCII grid of the hills, whose header's last three lines are given.
+  /// An ESRI ASCII grid of the hills with the given last three header lines.
   std::string asc(const std::string& name, const std::string& place, const std::vector<double>& samples = hills(),
                   const char* format = "{} ", const std::string& end = "\n") const {
     std::string text = fmt::format("ncols {}{}nrows {}{}", kCols, end, kRows, end) + place + end;

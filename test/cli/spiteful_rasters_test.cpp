@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rasters made in spite, from outside: no crash, no blank picture without a warning, one line for each error, nothing
-// wrong in silence, and memory in proportion to the file.
+// Adversarial rasters, from outside: no crash, no blank picture without a warning, one line for each error, no silent
+// mistakes, and memory in proportion to the file.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -26,7 +26,7 @@ using test::SpitefulRaster;
 using Names = std::vector<std::string>;
 using Problems = std::vector<std::string>;
 
-// Less of a picture than this on terrain counts as blank.
+// A picture with a smaller fraction of terrain counts as blank.
 constexpr double kBlank = 0.005;
 constexpr auto kPatience = std::chrono::seconds(20);  // sanitizers are slow
 constexpr double kMiB = 1 << 20;
@@ -37,7 +37,7 @@ struct MeasuredResult {
   bool hung = false;
 };
 
-// As test::run, but in a process of its own, with its peak memory, and ended when it takes too long.
+// Like test::run, but in a separate process, with its peak memory, and stopped if it takes too long.
 MeasuredResult run_measured(const Names& arguments) {
   test::Program program(arguments);
   const auto end = std::chrono::steady_clock::now() + kPatience;
@@ -51,7 +51,7 @@ MeasuredResult run_measured(const Names& arguments) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  measured.result = program.result();  // texts; it has been waited for
+  measured.result = program.result();  // texts; the process has been waited for
   measured.result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
   measured.peak_bytes = static_cast<double>(usage.ru_maxrss) * 1024;
   return measured;
@@ -78,8 +78,8 @@ double share_of_ground(const test::Rgb& heights) {
   return 3.0 * static_cast<double>(ground) / static_cast<double>(heights.bytes.size());
 }
 
-// Where heights have ground, a picture has other colours than the sky's in its upper left corner. Half of them: haze
-// and white summits come close to a sky.
+// Where heights have ground, a picture has other colours than the sky's in its upper left corner. Half of them suffice:
+// haze and white summits resemble the sky.
 bool shows_ground(const test::Rgb& picture, const test::Rgb& heights) {
   int ground = 0, different = 0;
   for (int y = 0; y < heights.height; ++y) {
@@ -110,7 +110,7 @@ bool close(double value, double expected, double share) {
   return std::isnan(expected) || std::abs(value - expected) <= share * std::abs(expected);
 }
 
-// What is wrong with how the program treats a raster.
+// Finds errors in the program's treatment of a raster.
 class Judge {
  public:
   explicit Judge(const SpitefulRaster& raster) : raster_(raster) {}
@@ -140,7 +140,7 @@ class Judge {
         hung_ = true;
         return result;
       }
-      // Nothing of these files is worth keeping.
+      // These files are not worth keeping.
       if (measured.peak_bytes > kMostForNothing) wrong(fmt::format("{:.0f} MiB", measured.peak_bytes / kMiB));
     } else {
       result = test::run(words);
@@ -248,14 +248,14 @@ class Judge {
 
   void map_and_rays() {
     if (!peaks_in_north_east(heights_from({"--top", "--size", "96x54"}))) wrong("the peak is not in the north-east");
-    // Straight down beside the north-eastern and the south-western sample, in metres of the raster.
+    // Rays straight down next to the north-eastern and the south-western sample, in metres of the raster.
     const double width = std::isnan(raster_.width_m) ? 23 : raster_.width_m, depth = width * 15 / 23;
     const std::string rays =
         out_.write("rays.csv", fmt::format("x,y,z,dx,dy,dz\n{},{},1000,0,0,-1\n{},{},1000,0,0,-1\n", 0.95 * width,
                                            0.95 * depth, 0.05 * width, 0.05 * depth));
     const Result hits = call("cast", {"--rays", rays, "--crs", "local", "-o", "-"});
-    // Of the hills: 60 + 60 x 0.95^2 and 60 + 60 x 0.05^2, rounded by half a metre at the samples. A raster that is 1 %
-    // wider than stated has the eastern place 0.6 m lower.
+    // Heights of the hills: 60 + 60 x 0.95^2 and 60 + 60 x 0.05^2, rounded by half a metre at the samples. In a raster
+    // that is 1 % wider than stated the eastern position is 0.6 m lower.
     constexpr double kTolerance = 0.5 + 0.6;
     const std::vector<double> expected{114.15, 60.15};
     std::istringstream in(hits.out);
@@ -335,8 +335,8 @@ TEST(SpitefulRasters, BrokenFiles) {
   judge(test::broken_files(files));
 }
 
-// Beside inputs: what options name.
-TEST(SpitefulRasters, PipesAreRefusedAsOptions) {
+// Besides inputs: files of options.
+TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
   const test::SpitefulFiles files;
   const std::string terrain = files.tiff("hills.tif", GDT_Int16, test::hills());
   const struct {
@@ -358,8 +358,8 @@ TEST(SpitefulRasters, PipesAreRefusedAsOptions) {
   }
 }
 
-// Beyond what the program takes for four samples.
-TEST(SpitefulRasters, MemoryIsAtMostFourTimesTheSamples) {
+// Beyond the program's memory for four samples.
+TEST(SpitefulRasters, MemoryStaysBelowFourTimesTheSamples) {
   const test::SpitefulFiles files;
   const auto peak = [&](const std::string& file) {
     const MeasuredResult measured = run_measured({"render", file, "-o", files.path("p.png"), "--size", "96x54"});

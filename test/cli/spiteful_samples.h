@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spiteful rasters: text grids, and odd values and types of samples.
+// Adversarial rasters: text grids, and odd values and types of samples.
 #pragma once
 
 #include "cli/spiteful_raster.h"

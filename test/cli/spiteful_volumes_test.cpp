@@ -79,7 +79,7 @@ TEST(SpitefulBinvox, Runs) {
       "m.binvox");
 }
 
-TEST(SpitefulVolume, BareNumbers) {
+TEST(SpitefulVolume, RawNumbers) {
   const std::string nan = test::spite::number(0x7fc00000), one = test::spite::number(std::bit_cast<std::int32_t>(1.0F)),
                     inf = test::spite::number(0x7f800000);
   const auto times = [](const std::string& what, int count) {
@@ -157,8 +157,8 @@ TEST(SpitefulVolume, Arrays) {
       "m.npy");
 }
 
-// Files of Qubicle and Voxlap. If they are read, they come out right; else the program says what it reads, and does not
-// ask for another copy of a file that is whole.
+// Files of Qubicle and Voxlap. Either they are read correctly, or the program lists the formats that it reads, and does
+// not ask for another copy of an undamaged file.
 
 TEST(SpitefulOthers, Qubicle) {
   // y is up in Qubicle.

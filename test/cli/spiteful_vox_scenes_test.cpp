@@ -28,7 +28,7 @@ std::string at(std::int64_t x, std::int64_t y, std::int64_t z) {
   return std::to_string(x) + ' ' + std::to_string(y) + ' ' + std::to_string(z);
 }
 
-// What the reader says of a file, without the time that the program takes to start.
+// The reader's error for a file, without the startup time of the program.
 std::string refusal_of(const std::string& bytes) {
   try {
     parse_vox(bytes);
@@ -78,7 +78,7 @@ TEST(SpitefulScene, Nodes) {
 }
 
 // The bits of _r: the columns of the entries of rows 0 and 1, and three signs. 6 permutations with 8 signs are
-// rotations and reflections; 207 of the 256 bytes are nothing. Bit 7 has no meaning; the editor does not set it.
+// rotations and reflections; 207 of the 256 bytes are invalid. Bit 7 has no meaning; the editor does not set it.
 TEST(SpitefulScene, AllRotationBytes) {
   std::string right;
   std::vector<Attributes> places;
@@ -183,8 +183,8 @@ TEST(SpitefulScene, Layers) {
   });
 }
 
-// Between them is nothing, which takes no memory, and no picture of this size shows both.
-TEST(SpitefulScene, FarApart) {
+// The empty space between them takes no memory, and no picture of this size shows both.
+TEST(SpitefulScene, DistantModels) {
   const auto apart = [](std::int64_t by) { return scene(placed({{{"_t", at(0, 0, 2)}}, {{"_t", at(by, 0, 2)}}})); };
   check_all({
       {"two models 100 apart", apart(100), shown(64, Size{104, 4, 4}).trying({"voxelise"}).worth(128)},
@@ -194,7 +194,7 @@ TEST(SpitefulScene, FarApart) {
        either("apart", 64, Size{16'000'004, 4, 4}).too_small().trying({"cast"})},
       {"two models 2^30 apart", apart(1 << 30), refused("1073741824")},
   });
-  // 100,000 voxels are more than a file can have: said soon, and without the memory for them.
+  // 100,000 voxels are more than a file can have: rejected quickly, and without the memory for them.
   const test::Scratch folder;
   folder.write("m.vox", apart(100'000));
   const Look look(folder, "m.vox", {"voxelise"}, "o.vox");
@@ -203,7 +203,7 @@ TEST(SpitefulScene, FarApart) {
   look.expect_memory(200, least_memory("render", "p.png"));
 }
 
-TEST(SpitefulScene, Crowds) {
+TEST(SpitefulScene, ManyInstances) {
   // The walls of a box of 126^3, at 10,000 places.
   constexpr int kSide = 126;
   std::vector<Dot> walls;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// MagicaVoxel files made to break readers: headers, chunks, models, palettes, truncation. Each is expected to do what
-// an artist would expect of it.
+// MagicaVoxel files made to break readers: headers, chunks, models, palettes, truncation. Each must do what an artist
+// would expect.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ using namespace test::spite;
 constexpr Size kFour{4, 4, 4}, kTwo{2, 2, 2};
 const std::string kBlock = block(kFour);
 
-// Commands that are tried on some of the cases.
+// Commands for some of the cases.
 const std::vector<std::string> kAll{"cast", "section", "voxelise"};
 
 // About as much as an editor writes: two models in a scene, a layer, a palette, materials, its own settings.
@@ -42,7 +42,7 @@ TEST(SpitefulVox, Versions) {
   });
 }
 
-TEST(SpitefulVox, Packs) {
+TEST(SpitefulVox, PackChunks) {
   const auto pack = [](std::int64_t count) { return chunk("PACK", numbers({count})); };
   check_all({
       {"PACK of one", vox(pack(1) + kBlock), shown(64, kFour)},
@@ -81,7 +81,7 @@ TEST(SpitefulVox, Sizes) {
 }
 
 // Canvases of 256^3 with dots in two corners: a few kilobytes that state gigabytes, side by side and in one another.
-TEST(SpitefulVox, ManyAlmostEmptyCanvases) {
+TEST(SpitefulVox, ManyNearlyEmptyModels) {
   constexpr int kModels = 300;
   const auto file = [](int step) {
     std::string models, nodes;
@@ -140,8 +140,8 @@ TEST(SpitefulVox, Palettes) {
   });
 }
 
-// Red by the default palette, by entry kRed - 1 of RGBA whatever IMAP says; not by the entry of the index itself.
-TEST(SpitefulVox, ColoursAreThoseOfTheEditor) {
+// Red by the default palette, by entry kRed - 1 of RGBA regardless of IMAP; not by the entry of the index itself.
+TEST(SpitefulVox, ColoursMatchTheEditor) {
   std::string rgba = palette(0x0000ff, kRed - 1).substr(12) + test::spite::bytes({255, 0, 0, 255});
   rgba += palette(0x0000ff, 256 - kRed).substr(12);
   const std::string own = chunk("RGBA", rgba);
@@ -164,7 +164,7 @@ TEST(SpitefulVox, ColoursAreThoseOfTheEditor) {
   }
 }
 
-TEST(SpitefulVox, ChunksOfOtherPrograms) {
+TEST(SpitefulVox, ForeignChunks) {
   const auto material = [](int id, const Attributes& of) { return chunk("MATL", number(id) + attributes(of)); };
   check_all({
       {"materials of unknown types", vox(kBlock + material(1, {{"_type", "_plasma"}}) + material(2, {})), shown(64)},
@@ -188,7 +188,7 @@ TEST(SpitefulVox, ChunksOfOtherPrograms) {
 }
 
 // Names are for people: what they contain must neither break JSON nor reach a terminal.
-TEST(SpitefulVox, NamesOfNoAlphabet) {
+TEST(SpitefulVox, NamesWithArbitraryBytes) {
   const std::string scene = moved(0, 1, {{}}, 0, {{"_name", "a\x1b[31mb\nc"}}) + shape(1);
   const std::string bytes = vox(kBlock + scene + layer(0, {{"_name", "\xff\xfe\x1b]0;x\x07"}}) +
                                     chunk("MATL", number(1) + attributes({{"_type", "\xc3\x28\x1b[2J\n"}})),
@@ -201,7 +201,7 @@ TEST(SpitefulVox, NamesOfNoAlphabet) {
   EXPECT_EQ(text.result.status, 0) << text.said();
 }
 
-TEST(SpitefulVox, NamesOfFiles) {
+TEST(SpitefulVox, FileNames) {
   const std::string broken = vox(kBlock, 99);
   for (const char* name : {"M.VOX", "a b.vox", "100%{}.vox", "-m.vox", "m.vox.vox"})
     check({name, vox(kBlock), shown(64)}, name);
@@ -217,7 +217,7 @@ TEST(SpitefulVox, NamesOfFiles) {
   EXPECT_EQ(test::lines(look.result.err), 1) << "a file's name with a line break: " << look.said();
 }
 
-TEST(SpitefulVox, CutAtEveryTenth) {
+TEST(SpitefulVox, TruncatedAtEveryTenthByte) {
   const std::string whole = editors_file();
   for (std::size_t tenth = 1; tenth < 10; ++tenth) {
     check({std::to_string(tenth) + " tenths of an editor's file", whole.substr(0, whole.size() * tenth / 10),
@@ -232,7 +232,7 @@ TEST(SpitefulVox, CutAtEveryTenth) {
 }
 
 // Files of other kinds are not fetched again: that would not help.
-TEST(SpitefulVox, OtherThingsOfThisName) {
+TEST(SpitefulVox, OtherFormatsNamedVox) {
   // Width, depth and height, then a byte each, 255 empty, and a palette of 6 bits: Voxlap's .vox.
   const std::string slab = numbers({2, 2, 2}) + std::string(8, '\x01') + std::string(768, '\x3f');
   check_all({
@@ -247,7 +247,7 @@ TEST(SpitefulVox, OtherThingsOfThisName) {
   });
 }
 
-TEST(SpitefulVox, NoFile) {
+TEST(SpitefulVox, MissingFile) {
   const test::Scratch folder;
   std::filesystem::create_directory(folder.path("folder.vox"));
   std::filesystem::create_symlink(folder.path("nowhere"), folder.path("dangling.vox"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The other side of starts.h. It does nothing before it forks but load: what `scarp` does when it runs, and all its
-// threads, begin in the process of the call.
+// The other side of starts.h. Before it forks it only loads: the work of `scarp` and all its threads start in the
+// process of the call.
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -68,7 +68,7 @@ int main() {
          receive_words(kStarterSocket, arguments) && receive_bytes(kStarterSocket, &limits, sizeof limits)) {
     const ::pid_t pid = ::fork();
     if (pid < 0) return EXIT_FAILURE;
-    // Ends as main() of a program does: by exit(), which is where leaks are looked for.
+    // Ends like main() of a program, by exit(), where the leak check runs.
     if (pid == 0) return call(streams, settings, arguments, limits);
     Ended ended;
     ::rusage used{};

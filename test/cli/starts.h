@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Calls `scarp` without starting it: a process that has loaded the command line and its libraries, and no more, forks
-// itself for each call. Most calls of the tests take less time than the system does to load GDAL's hundred libraries.
+// itself for each call. Most calls of the tests take less time than loading GDAL's hundred libraries.
 //
-// The process (starter.cpp) is spoken to over a socket: a call is lists of words and limits, its answer how it ended.
+// The process (starter.cpp) communicates over a socket: a call consists of lists of words and limits, its answer of the
+// exit state.
 #pragma once
 
 #include <fcntl.h>
@@ -27,17 +28,17 @@ struct Streams {
   std::string in, out, err;
 };
 
-/// What a call may use before a signal ends it or it gets no more memory; 0: no limit. A call that only waits ends
-/// after ten times the seconds.
+/// Resources after which a signal ends a call or an allocation fails; 0: no limit. A call that only waits ends after
+/// ten times the seconds.
 struct Limits {
   std::uint64_t seconds = 0;  ///< of processor time
   std::uint64_t bytes = 0;    ///< of memory
 };
 
-/// How a call ended.
+/// The exit state of a call.
 struct Ended {
   int status = 0;          ///< of waitpid()
-  std::uint64_t peak = 0;  ///< bytes of memory in use at most, the loaded libraries included
+  std::uint64_t peak = 0;  ///< peak memory in bytes, including the loaded libraries
 };
 
 inline bool send_bytes(int socket, const void* bytes, std::size_t size) {
@@ -64,7 +65,7 @@ inline bool send_words(int socket, const std::vector<std::string>& words) {
   return true;
 }
 
-/// False where the other side is gone.
+/// False if the other side is gone.
 inline bool receive_words(int socket, std::vector<std::string>& words) {
   std::uint64_t count = 0;
   if (!receive_bytes(socket, &count, sizeof count)) return false;

@@ -49,7 +49,7 @@ class CliVox : public testing::Test {
   std::string model_ = scratch_.path("model.vox");
 };
 
-TEST_F(CliVox, InfoSaysWhatIsInTheFile) {
+TEST_F(CliVox, InfoDescribesTheFile) {
   const auto text = run({"info", model_});
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_NE(text.out.find("1 objects, 1 hidden"), std::string::npos) << text.out;
@@ -80,7 +80,7 @@ TEST_F(CliVox, InfoListsPaletteLayersAndMaterials) {
 }
 
 // Two voxels in the corners of each model: their boxes are large, the models are not.
-TEST_F(CliVox, MemoryFollowsTheVoxels) {
+TEST_F(CliVox, MemoryDependsOnSolidVoxels) {
   VoxFile file;
   file.version = 200;
   VoxGroup group;
@@ -96,14 +96,14 @@ TEST_F(CliVox, MemoryFollowsTheVoxels) {
   file.nodes[1].content = group;
   write_vox(model_, file);
   const auto json = nlohmann::json::parse(run({"info", model_, "--json"}).out);
-  // Of 3.3 MB that each would take if all its voxels were stored.
+  // Each would take 3.3 MB if all its voxels were stored.
   EXPECT_LT(json["bytes"].get<int>(), kModels * 60'000);
   // Octants take 8 bytes per voxel of the boxes.
   expect_refused({"render", model_, "-o", path("out.png"), "--march", "voxel-octants"}, "1.1 GB of memory");
 }
 
 // The plate moves 8 voxels east in 4 frames. One of its voxels is empty by its palette index.
-TEST_F(CliVox, FramesOfAnAnimation) {
+TEST_F(CliVox, RendersAnimationFrames) {
   VoxFile file = read_vox(model_);
   std::get<VoxTransform>(file.nodes[0].content).frames = {{{"_t", "0 0 0"}}, {{"_f", "4"}, {"_t", "8 0 0"}}};
   file.models[0].voxels.push_back({1, 1, 2, 0});
@@ -125,7 +125,7 @@ TEST_F(CliVox, FramesOfAnAnimation) {
   EXPECT_EQ(past.status, 0);
   EXPECT_NE(past.err.find("note: frame 9: the animation ends at frame 4, which is shown\n"), std::string::npos)
       << past.err;
-  // Scene files note it with the name of the file.
+  // For scene files the note includes the name of the file.
   const std::string scene =
       scratch_.write("scene.json", R"({"objects": [{"voxels": {"file": "model.vox", "frame": 5}}]})");
   const auto placed = run({"render", scene, "-o", path("placed.png"), "--size", "30x30"});
@@ -134,9 +134,9 @@ TEST_F(CliVox, FramesOfAnAnimation) {
       << placed.err;
 }
 
-// From four sides, and along a path: as an input, and in a scene. The tower in the plate's eastern corner is in another
-// place of each picture.
-TEST_F(CliVox, TurnsAndFliesRound) {
+// From four sides, and along a path: as an input, and in a scene. The tower in the plate's eastern corner is at a
+// different position in each picture.
+TEST_F(CliVox, RendersTurntablesAndPaths) {
   VoxFile file = read_vox(model_);
   for (std::uint8_t z = 1; z < 3; ++z) file.models[0].voxels.push_back({2, 0, z, 1});
   write_vox(model_, file);
@@ -158,7 +158,7 @@ TEST_F(CliVox, TurnsAndFliesRound) {
   EXPECT_EQ(frames(scene, "scene", 4, turn), turned);
   const std::vector<std::string> fly{"--path", flight, "--frames", "3", "--sun", "235,45"};
   EXPECT_EQ(frames(scene, "flown", 3, fly), frames(model_, "flight", 3, fly));
-  // A quarter turn is what --view shows from there.
+  // After a quarter turn the picture is that of --view.
   ASSERT_EQ(run({"render", model_, "-o", path("a.png"), "--size", "48x32", "--turntable"}).status, 1);
   ASSERT_EQ(run({"render", model_, "-o", path("a.png"), "--size", "48x32", "--haze", "0", "--view", "290,30"}).status,
             0);
@@ -169,7 +169,7 @@ TEST_F(CliVox, TurnsAndFliesRound) {
   EXPECT_EQ(test::text_of(path("a.png")), test::text_of(path("b1.png")));
 }
 
-// The default palette's entry 216 is a pure red; from above, in full sun, it stays what it is.
+// The default palette's entry 216 is a pure red; from above, in full sun, it does not change.
 TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
   std::string first;
   for (const char* march : {"voxel-exhaustive", "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-cubes-jump",
@@ -188,7 +188,7 @@ TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
   EXPECT_EQ(middle[2], 0);
 }
 
-TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
+TEST_F(CliVox, ReportsBadFilesInOneLine) {
   const std::string out = path("out.png");
   expect_refused({"render", model_, "-o", out, "--march", "max-mip"}, "voxel-exhaustive, voxel-planes");
   expect_refused({"render", model_, "-o", out, "--look", "pretty"}, "expected shaded, hillshade, height, steps");
@@ -231,7 +231,7 @@ TEST_F(CliVox, ReadsBinvoxAndVolumes) {
   EXPECT_EQ(json["models"][0]["voxels"], 9);
 }
 
-TEST_F(CliVox, VoxelsBecomeVoxels) {
+TEST_F(CliVox, VoxelisesVoxels) {
   const std::string copy = path("copy.vox");
   ASSERT_EQ(run({"voxelise", model_, "-o", copy}).status, 0);
   const auto original = nlohmann::json::parse(run({"info", model_, "--json"}).out);
@@ -247,7 +247,7 @@ TEST_F(CliVox, VoxelsBecomeVoxels) {
 }
 
 // 8 x 8 cells of 10 m: 4 x 4 columns of voxels of 20 m.
-TEST_F(CliVox, TerrainBecomesVoxels) {
+TEST_F(CliVox, VoxelisesTerrain) {
   const std::string dem = path("dem.tif"), out = path("dem.vox");
   ASSERT_EQ(run({"generate", "--size", "9", "--cell", "10", "-o", dem}).status, 0);
   const auto made = run({"voxelise", dem, "-o", out, "--voxel", "20", "--exaggeration", "30"});
@@ -260,7 +260,7 @@ TEST_F(CliVox, TerrainBecomesVoxels) {
   EXPECT_GT(json["colours_used"], 1);
 }
 
-TEST_F(CliVox, VoxelsKeepTheSideThatTheirFileStates) {
+TEST_F(CliVox, KeepsTheVoxelSideOfTheFile) {
   const std::string dem = path("dem.tif"), world = path("world.vdb"), copy = path("copy.vdb");
   ASSERT_EQ(run({"generate", "--size", "9", "--cell", "10", "-o", dem}).status, 0);
   const auto made = run({"voxelise", dem, "-o", world, "--voxel", "2.5", "--exaggeration", "30"});
@@ -273,7 +273,7 @@ TEST_F(CliVox, VoxelsKeepTheSideThatTheirFileStates) {
   EXPECT_TRUE(copied.out.ends_with(made.out.substr(end))) << copied.out << made.out;
 }
 
-TEST_F(CliVox, CastReportsTheVoxelsOfTheFile) {
+TEST_F(CliVox, CastReportsVoxelsOfTheFile) {
   VoxFile file = parse_vox(test::text_of(model_));
   file.models = {{{10, 12, 9}, {{5, 6, 7, 216}}}};
   file.nodes = {{0, {}, VoxTransform{1, -1, -1, {{{"_r", "20"}, {"_t", "7 8 9"}}}}}, {1, {}, VoxShape{}}};
@@ -307,7 +307,7 @@ TEST_F(CliVox, InfoPrintsDecimalsOfOpenVdb) {
   EXPECT_EQ(std::fmod(json["high"][2].get<double>() - json["low"][2].get<double>(), 2.75), 0) << json["high"];
 }
 
-TEST_F(CliVox, EachLookIsAnother) {
+TEST_F(CliVox, EveryLookDiffers) {
   std::vector<std::string> pictures;
   const std::string overlay = path("overlay.png");
   ASSERT_EQ(run({"render", model_, "-o", overlay, "--top", "--size", "9x9", "--look", "height"}).status, 0);
@@ -331,8 +331,8 @@ TEST_F(CliVox, EachLookIsAnother) {
   }
 }
 
-// A plate of 3 x 3 with 2 voxels of room: 49 cells, 40 of them with the number that they are away.
-TEST_F(CliVox, ASectionHasTheNumbers) {
+// A plate of 3 x 3 with 2 voxels of room: 49 cells, 40 of them with the number of their distance.
+TEST_F(CliVox, SectionPrintsDistances) {
   const std::string svg = path("section.svg");
   const auto count = [](const std::string& text, const std::string& part) {
     int found = 0;
@@ -351,8 +351,8 @@ TEST_F(CliVox, ASectionHasTheNumbers) {
   EXPECT_EQ(count(cubes, "<text"), 32);
 }
 
-// 2^21 times the same model: groups of two that are the same.
-TEST_F(CliVox, TooLargeASceneIsNamed) {
+// 2^21 times the same model: nested groups of two equal children.
+TEST_F(CliVox, ErrorNamesOversizedScenes) {
   constexpr int kLevels = 21;
   VoxFile file;
   file.version = 200;
@@ -367,13 +367,13 @@ TEST_F(CliVox, TooLargeASceneIsNamed) {
   write_vox(model_, file);
   expect_refused({"render", model_, "-o", path("out.png")}, named);
   expect_refused({"info", model_}, named);
-  // Hidden ones are counted by info alone.
+  // Only info counts hidden ones.
   file.nodes[0].attributes = {{"_hidden", "1"}};
   write_vox(model_, file);
   expect_refused({"info", model_}, named);
 }
 
-TEST_F(CliVox, SectionsOfLargeModelsAreRefused) {
+TEST_F(CliVox, RejectsSectionsOfLargeModels) {
   const std::string model = scratch_.write("long.raw", std::string(600, 'a'));
   const auto err = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"section", model, "--volume", "600x1x1:u8", "-o", path("out.svg")};
@@ -390,7 +390,7 @@ TEST_F(CliVox, SectionsOfLargeModelsAreRefused) {
       std::string::npos);
 }
 
-TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
+TEST_F(CliVox, ReportsInvalidOptionsInOneLine) {
   const std::string out = path("out.png");
   expect_refused({"render", model_, "-o", out, "--rounded", "0.6"}, "0 to 0.5");
   expect_refused({"render", model_, "-o", out, "--each"}, "--rounded");

@@ -75,7 +75,7 @@ void expect_box(const DistanceField& field, const dvec3& p, const std::string& n
   }
 }
 
-TEST(DistanceField, SignIsThatOfSets) {
+TEST(DistanceField, SignMatchesSetMembership) {
   for (const NamedShape& named : shape_zoo()) {
     if (is_smooth(named.name)) continue;
     const DistanceField field(named.shape);
@@ -92,7 +92,7 @@ TEST(DistanceField, SignIsThatOfSets) {
   }
 }
 
-TEST(DistanceField, ValuesChangeByAMetrePerMetre) {
+TEST(DistanceField, IsOneLipschitz) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(2);
@@ -106,8 +106,8 @@ TEST(DistanceField, ValuesChangeByAMetrePerMetre) {
   }
 }
 
-// Trees that nobody thought of: the same.
-RC_GTEST_PROP(DistanceField, RandomTreesHaveTheSignOfSets, (unsigned seed)) {
+// The same for random trees.
+RC_GTEST_PROP(DistanceField, SignMatchesSetMembershipOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const Shape shape = random_shape(random, 1 + static_cast<int>(seed % 4), false);
   const DistanceField field(shape);
@@ -118,7 +118,7 @@ RC_GTEST_PROP(DistanceField, RandomTreesHaveTheSignOfSets, (unsigned seed)) {
   }
 }
 
-RC_GTEST_PROP(DistanceField, RandomTreesChangeByAMetrePerMetre, (unsigned seed)) {
+RC_GTEST_PROP(DistanceField, IsOneLipschitzOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const DistanceField field(random_shape(random, 1 + static_cast<int>(seed % 4), true));
   for (int i = 0; i < 40; ++i) {
@@ -130,8 +130,8 @@ RC_GTEST_PROP(DistanceField, RandomTreesChangeByAMetrePerMetre, (unsigned seed))
   }
 }
 
-// Solids tell the distance itself: so far along the gradient, and no nearer, is the surface.
-TEST(DistanceField, SingleSolidsAreExactOutside) {
+// Solids return the exact distance: the surface is this far along the gradient, and no nearer.
+TEST(DistanceField, IsExactOutsideSingleSolids) {
   for (const NamedShape& named : shape_zoo()) {
     const bool exact = named.name.find("sphere") != std::string::npos || named.name == "box" ||
                        named.name == "rounded box" || named.name == "half space" || named.name == "capsule" ||
@@ -151,7 +151,7 @@ TEST(DistanceField, SingleSolidsAreExactOutside) {
   }
 }
 
-TEST(DistanceField, RoundingIsWithinItsBound) {
+TEST(DistanceField, RoundingStaysWithinItsBound) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     if (!field.program().functions.empty() || !field.program().fields.empty()) continue;  // heights are doubles
@@ -167,7 +167,7 @@ TEST(DistanceField, RoundingIsWithinItsBound) {
   }
 }
 
-TEST(DistanceField, GradientsAreThoseOfDifferences) {
+TEST(DistanceField, GradientsMatchFiniteDifferences) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(5);
@@ -186,17 +186,17 @@ TEST(DistanceField, GradientsAreThoseOfDifferences) {
       };
       const double h = 1e-4;
       const dvec3 coarse = differences(2 * h), fine = differences(h);
-      // Central differences are off by a third of what doubling the step changes, which tells by how much.
+      // The error of central differences is a third of their change when the step is doubled.
       const double off = length(coarse - fine) + 4 * field.rounding(kReach) / h;
       creases += length(field.gradient(p) - fine) > off + 1e-7;
       ASSERT_NEAR(length(field.normal(p)), 1, 1e-12) << named.name;
     }
-    // Nearer than 0.1 mm to a crease: one in a hundred that are within 0.1 m of a surface's edge.
+    // Positions closer than 0.1 mm to a crease are one in a hundred of those within 0.1 m of a surface's edge.
     EXPECT_LE(creases, samples / 100) << named.name;
   }
 }
 
-TEST(DistanceField, SegmentBoundsAreNeverExceeded) {
+TEST(DistanceField, SegmentBoundsHold) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     std::string tightness = named.name + ": rest over length";
@@ -233,8 +233,8 @@ TEST(DistanceField, SegmentBoundsAreNeverExceeded) {
   }
 }
 
-// Guards may leave out what cannot change the value, and nothing else.
-TEST(DistanceField, AUnionOfManyIsTheLeastOfAll) {
+// Guards may skip only nodes that cannot change the value.
+TEST(DistanceField, UnionIsTheMinimumOfItsParts) {
   std::vector<Shape> parts;
   std::vector<DistanceField> fields;
   FunctionRandom random(8);
@@ -268,8 +268,8 @@ TEST(DistanceField, KeepsMaterials) {
   const auto painted = [](const Shape& shape, int material) { return make_shape(Painted{shape, material}); };
   const Shape ball = painted(make_shape(Sphere{1}), 3), block = make_shape(Box{{2, 2, 0.5}});
   const DistanceField cut(painted(make_shape(Subtraction{block, ball}), 7));
-  EXPECT_EQ(cut.material({1.9, 0, 0.5}), 7);  // the inner material goes first, the outer is for what has none
-  EXPECT_EQ(cut.material({0.99, 0, 0}), 3);   // the cut has that of what was cut out
+  EXPECT_EQ(cut.material({1.9, 0, 0.5}), 7);  // the inner material takes precedence, the outer is the default
+  EXPECT_EQ(cut.material({0.99, 0, 0}), 3);   // the cut has the material of the subtracted solid
   const DistanceField bare(make_shape(Union{{block, make_shape(Moved{ball, {5, 0, 0}})}}));
   EXPECT_EQ(bare.material({0, 0, 0.5}), 0);
   EXPECT_EQ(bare.material({5, 0, 1}), 3);
@@ -290,14 +290,14 @@ TEST(DistanceField, SmoothOperationsStayWithinAQuarterOfTheRadius) {
     if (std::abs(x - y) >= 0.8) {
       ASSERT_LE(rounded, slack);
     }
-    // An intersection may be more: that is the distance to its box.
+    // An intersection may be larger: it is the distance to its box.
     ASSERT_GE(common.value(p), std::max(x, y) - slack);
     ASSERT_TRUE(cut.value(p) >= std::max(x, -y) - slack && cut.value(p) <= std::max(x, -y) + 0.2 + slack);
   }
   EXPECT_GT(most, 0.15);
 }
 
-TEST(DistanceField, TellsTheNormalWhereTheGradientFails) {
+TEST(DistanceField, HasANormalWhereTheGradientVanishes) {
   const DistanceField ball(make_shape(Sphere{1}));
   EXPECT_NEAR(length(ball.normal({0, 0, 0})), 1, 1e-12);
   EXPECT_EQ(ball.normal({0, -3, 0}), dvec3(0, -1, 0));
@@ -307,7 +307,7 @@ std::string refusal(Form form) {
   return test::refusal([&] { make_shape(std::move(form)); });
 }
 
-TEST(DistanceField, RefusesWhatIsOutOfRange) {
+TEST(DistanceField, RejectsValuesOutOfRange) {
   const double nan = std::nan("");
   const Shape ball = make_shape(Sphere{});
   EXPECT_EQ(refusal(Sphere{-1}), "shape: sphere radius is -1 (must be between 2^-20 and 2^30)");
@@ -339,7 +339,7 @@ TEST(DistanceField, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(DistanceField(nullptr), Error);
 }
 
-TEST(DistanceField, RefusesWhatIsTooDeepOrTooLarge) {
+TEST(DistanceField, RejectsTreesThatAreTooDeepOrLarge) {
   Shape deep = make_shape(Sphere{});
   for (int i = 1; i < kDeepestShape; ++i) deep = make_shape(Moved{deep, {1, 0, 0}});
   EXPECT_NEAR(DistanceField(deep).value({0, 0, 0}), kDeepestShape - 2, 1e-9);

@@ -24,7 +24,7 @@ HeightField small(const HeightFieldSettings& settings = {}) {
 
 using test::refusal;
 
-TEST(HeightField, PutsTheSouthWestSampleAtTheOriginAndRowsSouthwards) {
+TEST(HeightField, PlacesTheSouthWestSampleAtTheOrigin) {
   const HeightField field = small({.cell_x = 10, .cell_y = 5});
   EXPECT_DOUBLE_EQ(field.width(), 20);
   EXPECT_DOUBLE_EQ(field.depth(), 5);
@@ -35,12 +35,12 @@ TEST(HeightField, PutsTheSouthWestSampleAtTheOriginAndRowsSouthwards) {
   EXPECT_EQ(field.world_from_grid(2, 1, 32), dvec3(20, 0, 32));
 }
 
-TEST(HeightField, IsBilinearInACell) {
+TEST(HeightField, InterpolatesBilinearly) {
   const HeightField field = small();
   EXPECT_DOUBLE_EQ(field.height(0.25, 0.5).value(), 0.5 * ((0.75 * 8 + 0.25 * 16) + (0.75 * 1 + 0.25 * 2)));
 }
 
-TEST(HeightField, HasNoHeightOutsideAndForNaN) {
+TEST(HeightField, HasNoHeightOutsideOrAtNaN) {
   const HeightField field = small();
   for (const auto& [x, y] :
        std::vector<std::pair<double, double>>{{-1e-9, 0.5}, {2.1, 0.5}, {1, 1.0001}, {1, -0.1}, {std::nan(""), 0.5}}) {
@@ -48,14 +48,14 @@ TEST(HeightField, HasNoHeightOutsideAndForNaN) {
   }
 }
 
-TEST(HeightField, ScalesOffsetsAndExaggeratesSamples) {
+TEST(HeightField, AppliesScaleOffsetAndExaggeration) {
   const HeightField field = small({.scale = 0.5, .offset = 100, .exaggeration = 2});
   EXPECT_DOUBLE_EQ(field.height(0, 0).value(), (8 * 0.5 + 100) * 2);
   EXPECT_DOUBLE_EQ(field.min_height(), 201);
   EXPECT_DOUBLE_EQ(field.max_height(), 232);
 }
 
-// A hole far away takes the general way to the same bits.
+// With a hole far away, the general code returns the same bits.
 TEST(HeightField, ShadingNormalsDoNotDependOnHolesElsewhere) {
   constexpr int kSide = 8;
   std::vector<float> samples;
@@ -71,7 +71,7 @@ TEST(HeightField, ShadingNormalsDoNotDependOnHolesElsewhere) {
   }
 }
 
-TEST(HeightField, MakesAHoleOfEveryCellThatTouchesNodata) {
+TEST(HeightField, TreatsCellsThatTouchNodataAsHoles) {
   const HeightField field =
       HeightField::own<std::int16_t>({1, 2, 3, 4, -9999, 6, 7, 8, 9, 10, 11, 12}, 4, 3, {.nodata = -9999});
   EXPECT_EQ(field.nodata_count(), 1);
@@ -80,7 +80,7 @@ TEST(HeightField, MakesAHoleOfEveryCellThatTouchesNodata) {
   for (const Cell cell : {Cell{1, 0}, Cell{2, 1}}) EXPECT_TRUE(field.cell_heights(cell));
 }
 
-TEST(HeightField, TakesNaNAsAHoleWhateverTheNodataValue) {
+TEST(HeightField, TreatsNaNAsAHoleForAnyNodataValue) {
   const HeightField field = HeightField::own<float>({1, kNaN, -5, 4}, 2, 2, {.nodata = -5});
   EXPECT_EQ(field.nodata_count(), 2);
   EXPECT_EQ(field.max_sample(), 4);
@@ -94,7 +94,7 @@ TEST(HeightField, IgnoresANodataValueThatTheSampleTypeCannotHold) {
   EXPECT_EQ(HeightField::own<float>({0, 2, 3, 4}, 2, 2, {.nodata = 0}).nodata_count(), 1);
 }
 
-TEST(HeightField, RefusesWhatItCannotBeInOneLine) {
+TEST(HeightField, RejectsInvalidFieldsInOneLine) {
   EXPECT_NE(refusal([] {
               HeightField::own<float>({1, 2, 3}, 2, 2);
             }).find("3 samples given for 2 x 2"),
@@ -118,11 +118,11 @@ TEST(HeightField, RefusesWhatItCannotBeInOneLine) {
             std::string::npos);
 }
 
-TEST(HeightField, TakesAnInfinityThatIsDeclaredNodata) {
+TEST(HeightField, AcceptsInfinityDeclaredAsNodata) {
   EXPECT_EQ(HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2, {.nodata = HUGE_VAL}).nodata_count(), 1);
 }
 
-TEST(HeightField, ViewsTheCallersMemoryWithAnyStrideAndCopiesNothing) {
+TEST(HeightField, ViewsCallerMemoryWithoutCopying) {
   std::array<float, 12> memory{0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1};
   const HeightField field = HeightField::view(memory.data(), 3, 3, {}, 4);
   EXPECT_DOUBLE_EQ(field.height(0, 0).value(), 6);
@@ -139,7 +139,7 @@ TEST(HeightField, HasNoCellsWithASingleRowOrColumn) {
   EXPECT_FALSE(HeightField::own<float>({1, 2, 3}, 3, 1).height(1, 0));
 }
 
-TEST(HeightField, PointsItsNormalUphillBackwards) {
+TEST(HeightField, NormalPointsDownhill) {
   // Rises by 3 m per metre to the east and by 2 to the north.
   std::vector<float> samples;
   for (int row = 0; row < 4; ++row) {
@@ -154,21 +154,21 @@ TEST(HeightField, PointsItsNormalUphillBackwards) {
   }
 }
 
-RC_GTEST_PROP(HeightField, GradientIsTheDifferenceQuotientOfTheHeight, ()) {
+RC_GTEST_PROP(HeightField, GradientMatchesFiniteDifferences, ()) {
   const auto value = [] { return static_cast<float>(*rc::gen::inRange(-1000, 1000)); };
   const HeightField field =
       HeightField::own<float>({value(), value(), value(), value()}, 2, 2, {.cell_x = 3, .cell_y = 7, .scale = 0.25});
   const double x = *rc::gen::inRange(1, 99) * 0.03, y = *rc::gen::inRange(1, 99) * 0.07;
   const dvec2 slope = field.gradient(x, y).value();
-  // Along one axis a bilinear surface is linear: central differences are exact but for the rounding of heights up to
+  // Along one axis a bilinear surface is linear: central differences are exact except for the rounding of heights up to
   // 250 m over a step of 1/64 m.
   const double d = 0x1p-6, rounding = 8 * 250 * 0x1p-52 / d;
   RC_ASSERT(std::abs((field.height(x + d, y).value() - field.height(x - d, y).value()) / (2 * d) - slope.x) < rounding);
   RC_ASSERT(std::abs((field.height(x, y + d).value() - field.height(x, y - d).value()) / (2 * d) - slope.y) < rounding);
 }
 
-TEST(HeightField, CountsHolesInLongRowsOfAnyKind) {
-  // Rows longer than what is looked at as one, with holes here and there; 0 marks -0, too.
+TEST(HeightField, CountsHolesInLongRows) {
+  // Rows longer than a chunk of the count, with scattered holes; 0 also marks -0.
   constexpr int kCols = 150;
   std::vector<float> samples(2 * kCols, 3);
   samples[5] = 0, samples[70] = -0.0f, samples[149] = std::numeric_limits<float>::quiet_NaN(), samples[160] = -7;

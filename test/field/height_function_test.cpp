@@ -23,7 +23,7 @@ namespace {
 const int kSamples = cases(1'000'000, 100'000, 20'000);
 constexpr double kSizes[] = {0.1, 1, 10, 100, 1000};
 
-TEST(HeightFunction, GradientsAreThoseOfDifferences) {
+TEST(HeightFunction, GradientsMatchFiniteDifferences) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(1);
@@ -51,16 +51,16 @@ TEST(HeightFunction, GradientsAreThoseOfDifferences) {
       ++creases;
       if (named.smooth) ADD_FAILURE() << named.name << " at " << x << ", " << y << ": off by " << error;
     }
-    EXPECT_LE(creases, 30) << named.name;  // one position in a hundred is nearer than 2 mm to a crease: too many
+    EXPECT_LE(creases, 30) << named.name;  // one position in a hundred is closer than 2 mm to a crease: too many
   }
 }
 
-// All that is asked of a bound over [x, x + size] x [y, y + size].
+// All quantities bounded over [x, x + size] x [y, y + size].
 struct Seen {
   double low = 1e300, high = -1e300, slope = 0;
 };
 
-TEST(HeightFunction, RectangleBoundsAreNeverExceeded) {
+TEST(HeightFunction, RectangleBoundsHold) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     std::string tightness = named.name + ": range, slope bound over seen";
@@ -95,7 +95,7 @@ TEST(HeightFunction, RectangleBoundsAreNeverExceeded) {
   }
 }
 
-TEST(HeightFunction, SegmentBoundsAreNeverExceeded) {
+TEST(HeightFunction, SegmentBoundsHold) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     std::string tightness = named.name + ": range, line over seen";
@@ -141,7 +141,7 @@ TEST(HeightFunction, SegmentBoundsAreNeverExceeded) {
   }
 }
 
-TEST(HeightFunction, HeightsStayWithinTheBoundOfThePlane) {
+TEST(HeightFunction, HeightsStayWithinTheGlobalBound) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     for (const FunctionUse use : {FunctionUse::march, FunctionUse::shadow, FunctionUse::normal}) {
@@ -157,7 +157,7 @@ TEST(HeightFunction, HeightsStayWithinTheBoundOfThePlane) {
   }
 }
 
-TEST(HeightFunction, OctavesDifferByUse) {
+TEST(HeightFunction, OctavesDependOnUse) {
   const HeightFunction function(make_function(Fractal{.octaves = {3, 2, 5}}));
   EXPECT_NE(function.value(10, 20), function.value(10, 20, FunctionUse::shadow));
   const HeightFunction coarse(make_function(Fractal{.octaves = {2, 2, 2}}));
@@ -170,7 +170,7 @@ std::uint64_t bits(double x) {
   return b;
 }
 
-TEST(HeightFunction, HeightsAreTheSameBitsEverywhere) {
+TEST(HeightFunction, HeightsAreBitIdenticalEverywhere) {
   // Hashes of 1000 heights, as first computed; sines are the C library's and left out.
   const std::map<std::string, std::uint64_t> known{{"perlin fbm", 3542965959583933750u},
                                                    {"simplex ridged", 9851071123495928902u},
@@ -192,7 +192,7 @@ std::string refusal(FunctionShape shape) {
   return test::refusal([&] { make_function(std::move(shape)); });
 }
 
-TEST(HeightFunction, RefusesWhatIsOutOfRange) {
+TEST(HeightFunction, RejectsValuesOutOfRange) {
   const double nan = std::nan("");
   const Function plane = make_function(Plane{});
   EXPECT_EQ(refusal(Plane{nan}), "terrain function: plane height is nan (must be between -2^30 and 2^30)");
@@ -213,7 +213,7 @@ TEST(HeightFunction, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(HeightFunction(nullptr), Error);
 }
 
-TEST(HeightFunction, RefusesWhatIsTooDeepOrTooLarge) {
+TEST(HeightFunction, RejectsTreesThatAreTooDeepOrLarge) {
   Function deep = make_function(Plane{});
   for (int i = 1; i < kDeepestFunction; ++i) deep = make_function(Sum{deep, deep, 0.5, 0.5, 0});
   // Shared nodes are computed once: 2^255 paths, 256 instructions.

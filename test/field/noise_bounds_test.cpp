@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bounds of noise (NoiseBound) proven: whatever the lattice holds, a derivative of order k in a direction e is at
-// most the sum over the corners of the length of what the corner's direction g is multiplied with,
+// The bounds of noise (NoiseBound) proven: for any lattice values, a derivative of order k in a direction e is at most
+// the sum over the corners of the length of what the corner's direction g is multiplied with,
 //
 //   d^k/de^k  w(p) (g . d)  =  g . ( w^(k) d + k w^(k-1) e )        d: from the corner to the place, |g| = |e| = 1
 //
@@ -50,7 +50,7 @@ Derivatives fade_over(const Interval& t) {
   }
   return d;
 }
-// Of 1 - fade.
+// The same of 1 - fade.
 Derivatives rest_of(const Derivatives& d) { return {1.0 - d[0], -d[1], -d[2], -d[3]}; }
 
 // A unit vector whose angle is in an interval of less than a right angle that holds no axis but at its ends.
@@ -124,7 +124,7 @@ bool counts(NoiseKind kind, const Box& box) {
   return box.y.lower() <= 0.58 * box.x.upper();
 }
 
-// How many boxes it takes to prove that no sum is above `bound`; 0 when it cannot be proven.
+// Number of boxes that prove that no sum is above `bound`; 0 if it cannot be proven.
 int boxes_to_prove(NoiseKind kind, std::size_t k, double bound) {
   std::vector<Box> open;
   constexpr int kQuadrants = 2;  // e and -e are one
@@ -187,14 +187,14 @@ void expect_proven(NoiseKind kind) {
     const int boxes = boxes_to_prove(kind, k, kLooser * bounds[k]);
     EXPECT_GT(boxes, 0) << "order " << k;
     std::printf("order %d: %d boxes\n", static_cast<int>(k), boxes);
-    // The proof is not of something else: somewhere the sum is nearly the bound.
+    // A check that the proof is of the right sum: somewhere the sum is nearly the bound.
     EXPECT_GE(largest_found(kind, k), 0.95 * bounds[k]) << "order " << k;
   }
 }
 
-TEST(NoiseBounds, OfValueNoise) { expect_proven(NoiseKind::value); }
-TEST(NoiseBounds, OfPerlinNoise) { expect_proven(NoiseKind::perlin); }
-TEST(NoiseBounds, OfSimplexNoise) { expect_proven(NoiseKind::simplex); }
+TEST(NoiseBounds, HoldForValueNoise) { expect_proven(NoiseKind::value); }
+TEST(NoiseBounds, HoldForPerlinNoise) { expect_proven(NoiseKind::perlin); }
+TEST(NoiseBounds, HoldForSimplexNoise) { expect_proven(NoiseKind::simplex); }
 
 }  // namespace
 }  // namespace scarp::test

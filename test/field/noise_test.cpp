@@ -23,7 +23,7 @@ class Random {
   std::mt19937_64 engine_{7};
 };
 
-TEST(Noise, LatticeIsIntegersAlone) {
+TEST(Noise, LatticeUsesOnlyIntegers) {
   EXPECT_EQ(lattice_hash(0, 0, 0), 0u);
   EXPECT_EQ(lattice_hash(1, 2, 3), lattice_hash(1, 2 + (std::int64_t{1} << 32), 3));
   EXPECT_NE(lattice_hash(1, 2, 3), lattice_hash(1, 3, 2));
@@ -31,7 +31,7 @@ TEST(Noise, LatticeIsIntegersAlone) {
   EXPECT_NE(octave_seed(1, 0), octave_seed(std::uint64_t{1} << 32, 0));
 }
 
-TEST(Noise, DerivativesAreThoseOfDifferences) {
+TEST(Noise, DerivativesMatchFiniteDifferences) {
   Random random;
   for (const NoiseKind kind : kKinds) {
     for (int i = 0; i < 20000; ++i) {
@@ -65,7 +65,7 @@ TEST(Noise, StaysWithinItsBounds) {
   }
 }
 
-TEST(Noise, TakesAnyPosition) {
+TEST(Noise, AcceptsAnyPosition) {
   for (const NoiseKind kind : kKinds) {
     for (const double x : {1e300, -1e300, 0x1p53, -0x1p52, std::numeric_limits<double>::infinity(), std::nan("")}) {
       EXPECT_LE(std::abs(noise(kind, 1, x, 0.25)), 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Extents after edits are those of all samples, looked at one by one.
+// Extents after edits equal those computed from all samples one by one.
 #include "scarp/field/sample_extent.h"
 
 #include <gtest/gtest.h>
@@ -70,9 +70,9 @@ class SampleExtentTest : public testing::Test {};
 using SampleTypes = testing::Types<std::int16_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(SampleExtentTest, SampleTypes);
 
-TYPED_TEST(SampleExtentTest, ForgetsAnExtremeThatIsOverwritten) {
+TYPED_TEST(SampleExtentTest, ForgetsOverwrittenExtremes) {
   Ground<TypeParam> ground({});
-  // In the midst of a tile, where four meet, and in all corners of the field.
+  // In the interior of a tile, where four meet, and in all corners of the field.
   for (const SampleRect& at : std::vector<SampleRect>{{70, 80, 1, 1},
                                                       {63, 63, 2, 2},
                                                       {0, 0, 1, 1},
@@ -89,7 +89,7 @@ TYPED_TEST(SampleExtentTest, ForgetsAnExtremeThatIsOverwritten) {
   }
 }
 
-TYPED_TEST(SampleExtentTest, LooksAgainAtTilesThatAreWhollyOverwritten) {
+TYPED_TEST(SampleExtentTest, RescansFullyOverwrittenTiles) {
   Ground<TypeParam> ground({});
   ground.fill({64, 64, 64, 64}, 900);
   ground.fill({128, 128, kCols - 128, kRows - 128}, 100);  // cut off by both borders
@@ -99,7 +99,7 @@ TYPED_TEST(SampleExtentTest, LooksAgainAtTilesThatAreWhollyOverwritten) {
   EXPECT_EQ(ground.extent().max, 300);
 }
 
-TYPED_TEST(SampleExtentTest, HoldsTheWholeRangeOfTheType) {
+TYPED_TEST(SampleExtentTest, CoversTheFullRangeOfTheType) {
   Ground<TypeParam> ground({});
   const auto lowest = std::numeric_limits<TypeParam>::lowest(), highest = std::numeric_limits<TypeParam>::max();
   ground.fill({0, 0, kCols, kRows}, lowest);
@@ -107,8 +107,8 @@ TYPED_TEST(SampleExtentTest, HoldsTheWholeRangeOfTheType) {
   ground.fill({5, 5, 1, 1}, lowest);
 }
 
-TYPED_TEST(SampleExtentTest, CountsNodataThatComesAndGoes) {
-  // Above all samples and below all: taken for ground, either would show.
+TYPED_TEST(SampleExtentTest, CountsNodataAddedAndRemoved) {
+  // Above all samples and below all: either would show if taken for ground.
   for (const int nodata : {0, 9999}) {
     Ground<TypeParam> ground(static_cast<TypeParam>(nodata));
     ground.fill({kCols - 3, kRows - 3, 3, 3}, static_cast<TypeParam>(nodata));
@@ -124,7 +124,7 @@ TYPED_TEST(SampleExtentTest, CountsNodataThatComesAndGoes) {
   }
 }
 
-TEST(SampleExtent, CountsNaNBesideADeclaredValueAndAlone) {
+TEST(SampleExtent, CountsNaNWithAndWithoutDeclaredNodata) {
   for (const std::optional<float> nodata : {std::optional<float>(), std::optional<float>(0.0f)}) {
     Ground<float> ground(nodata);
     ground.fill({50, 50, 40, 40}, -std::numeric_limits<float>::quiet_NaN());
@@ -135,7 +135,7 @@ TEST(SampleExtent, CountsNaNBesideADeclaredValueAndAlone) {
   }
 }
 
-TYPED_TEST(SampleExtentTest, IsThatOfAllSamplesAfterAnyEdits) {
+TYPED_TEST(SampleExtentTest, MatchesAFullScanAfterEdits) {
   std::mt19937 random(5);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   for (const std::optional<TypeParam> nodata : {std::optional<TypeParam>(), std::optional<TypeParam>(TypeParam{7})}) {

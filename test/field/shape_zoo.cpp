@@ -156,7 +156,7 @@ Shape random_shape(FunctionRandom& random, int depth, bool smooth) {
       for (int axis = 0; axis < 3; ++axis) {
         if (random.between(0, 1) < 0.5) period[axis] = extent[axis] * random.between(1.0001, 1.5);
         count[static_cast<std::size_t>(axis)] = static_cast<int>(random.between(0, 3));
-        // What has no end cannot be repeated again; so each has one.
+        // Unbounded repetitions cannot be repeated again, so all are bounded.
         if (count[static_cast<std::size_t>(axis)] == 0) count[static_cast<std::size_t>(axis)] = 1;
       }
       return make_shape(Repeated{s, period, count});
@@ -222,7 +222,7 @@ struct Holds {
       const double period = r.period[static_cast<int>(i)];
       if (period == 0) continue;
       const double near = std::round(p[static_cast<int>(i)] / period), count = r.count[i];
-      // Shapes lie anywhere: more than enough copies.
+      // Shapes are at any position: more than enough copies.
       from[i] = near - 20, to[i] = near + 20;
       if (count > 0) from[i] = -count, to[i] = count;
     }

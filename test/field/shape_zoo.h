@@ -18,7 +18,7 @@ struct NamedShape {
 /// All solids, all operations, grounds of both kinds; within some 20 m of the origin.
 std::vector<NamedShape> shape_zoo();
 
-/// Solids, one or two metres large.
+/// Solids of one or two metres in size.
 Shape random_solid(FunctionRandom& random);
 /// Nested at most `depth` deep. Without `smooth` its solid is that of sets, and solid_holds() tells it.
 Shape random_shape(FunctionRandom& random, int depth, bool smooth);

@@ -15,7 +15,7 @@
 namespace scarp::test {
 namespace {
 
-// What a grid should be: a table of optional entries.
+// Reference model of a grid: a table of optional entries.
 struct Model {
   ivec3 size;
   std::vector<VoxelGrid::Voxel> voxels;
@@ -44,7 +44,7 @@ struct Model {
 
 using Grids = testing::TestWithParam<VoxelGridKind>;
 
-TEST_P(Grids, EditsChangeWhatTheySayAndNothingElse) {
+TEST_P(Grids, EditsChangeOnlyTheirVoxels) {
   Random random(3);
   for (int round = 0; round < 4; ++round) {
     VoxelGrid grid = GetParam().make(random);
@@ -63,7 +63,7 @@ TEST_P(Grids, EditsChangeWhatTheySayAndNothingElse) {
 }
 
 // Many at once, beyond the grid and twice in one place as well: as one after the other.
-TEST_P(Grids, ManyVoxelsAreSetAsEachIs) {
+TEST_P(Grids, SettingManyVoxelsMatchesSettingEach) {
   Random random(5);
   for (int round = 0; round < 4; ++round) {
     VoxelGrid grid = GetParam().make(random);
@@ -83,7 +83,7 @@ TEST_P(Grids, ManyVoxelsAreSetAsEachIs) {
   }
 }
 
-TEST_P(Grids, TurnAndTurnBack) {
+TEST_P(Grids, RotationsAreInvertible) {
   Random random(4);
   const VoxelGrid grid = GetParam().make(random);
   for (const LatticeRotation& turn : lattice_rotations()) {
@@ -92,7 +92,7 @@ TEST_P(Grids, TurnAndTurnBack) {
     for_each_voxel(grid.box(), [&](const ivec3& v) {
       const ivec3 at = rotated_voxel(v, grid.size(), turn);
       ASSERT_EQ(turned.solid(at), grid.solid(v));
-      // The middle of a voxel turns with the middle of the grid.
+      // The centre of a voxel is rotated with the centre of the grid.
       ASSERT_EQ(dvec3(at) + 0.5 - 0.5 * dvec3(turned.size()), turn(dvec3(v) + 0.5 - 0.5 * dvec3(grid.size())));
     });
   }
@@ -118,7 +118,7 @@ TEST_P(Grids, CombineVoxelByVoxel) {
   }
 }
 
-TEST_P(Grids, KeepTheEntriesThatCanBeSeen) {
+TEST_P(Grids, KeepVisibleEntries) {
   Random random(6);
   VoxelGrid grid = GetParam().make(random);
   Model expected(grid);
@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(All, Grids, testing::ValuesIn(spiteful_voxel_grids()), 
   return name;
 });
 
-TEST(VoxelGrid, PacksEntriesOfEachWidth) {
+TEST(VoxelGrid, PacksEntriesOfEveryWidth) {
   for (int bits = 1; bits <= VoxelGrid::kMaxEntryBits; ++bits) {
     VoxelGrid grid({17, 33, 5}, bits);
     const std::uint32_t all = (1u << bits) - 1;
@@ -164,7 +164,7 @@ TEST(VoxelGrid, PacksEntriesOfEachWidth) {
 }
 
 // More pages than one, so that some are stored before.
-TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
+TEST(VoxelGrid, StaysConsistentAfterAThrowingEdit) {
   VoxelGrid grid({48, 32, 16}, 4);
   grid.set({20, 20, 8}, 5);
   std::vector<VoxelGrid::Placed> placed;
@@ -174,7 +174,7 @@ TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
   EXPECT_THROW(grid.set(placed), Error);
   before.expect(grid);
 
-  // By an entry that does not fit, and by itself: as it fills, and as it clears.
+  // Overlapping itself, with an entry that does not fit: when it fills, and when it clears.
   const auto edit = [&](const VoxelGrid::Voxel& to, const std::function<VoxelGrid::Voxel()>& last) {
     int asked = 0;
     grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) { return ++asked == 20'000 ? last() : to; });
@@ -188,7 +188,7 @@ TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
   Model(grid).expect(grid);
 }
 
-TEST(VoxelGrid, RefusesSizesOutOfRange) {
+TEST(VoxelGrid, RejectsSizesOutOfRange) {
   EXPECT_THROW(VoxelGrid({0, 1, 1}), Error);
   EXPECT_THROW(VoxelGrid({1, 16385, 1}), Error);
   EXPECT_THROW(VoxelGrid({1, 1, 1}, 0), Error);
@@ -199,8 +199,8 @@ TEST(VoxelGrid, RefusesSizesOutOfRange) {
   EXPECT_THROW(grid.unite(VoxelGrid({4, 4, 5})), Error);
 }
 
-// Pages that the source knows, and full ones that share their masks, hold what voxels one by one would; also after
-// edits.
+// Pages that the source knows, and full ones that share their masks, have the same content as voxels set one by one,
+// also after edits.
 TEST(VoxelGrid, BuildsWorldsPageByPage) {
   for (const ivec3& size : {ivec3(300, 20, 24), ivec3(256, 16, 20), ivec3(70, 33, 50)}) {
     const auto height = [](int x, int y) { return 12 + (x / 40 + y / 5) % 4 - (y >= 4 && y < 8 ? 9 : 0); };
@@ -256,7 +256,7 @@ TEST(VoxelGrid, BuildsWorldsPageByPage) {
   }
 }
 
-TEST(VoxelGrid, GroundIsSolidBelowItsTops) {
+TEST(VoxelGrid, FillsGroundBelowItsTops) {
   for (const ivec3& size : {ivec3(300, 21, 60), ivec3(256, 32, 64), ivec3(5, 7, 40)}) {
     std::vector<std::int32_t> tops;
     for (int y = 0; y < size.y; ++y) {
@@ -294,7 +294,7 @@ TEST(VoxelGrid, StoresNoEmptyPages) {
   EXPECT_LE(static_cast<std::int64_t>(grid.bytes()), VoxelGrid::bytes_of(grid.size(), 2, 2, 8) + 64);
 }
 
-TEST(VoxelGrid, IsBuiltFromBricksAsByEdits) {
+TEST(VoxelGrid, BuildFromBricksMatchesEdits) {
   const ivec3 size(70, 9, 33);
   const auto entry_at = [](const ivec3& v) { return (v.x * 7 + v.y * 31 + v.z * 3) % 5 == 0 ? v.x % 9 + 1 : 0; };
   VoxelGrid edited(size, 5);
@@ -324,8 +324,8 @@ TEST(VoxelGrid, IsBuiltFromBricksAsByEdits) {
   EXPECT_THROW(VoxelGrid::built(size, 5, too_large), Error);
 }
 
-// The post's object: 32^3, each solid voxel with a colour of its own.
-TEST(VoxelGrid, HoldsTheStandardObjectInFewBytes) {
+// The object of the post: 32^3, each solid voxel with its own colour.
+TEST(VoxelGrid, StoresTheStandardObjectCompactly) {
   VoxelGrid grid({32, 32, 32}, 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     const dvec3 from_middle = dvec3(v) + 0.5 - 16.0;

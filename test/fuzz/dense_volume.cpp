@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as the form of a volume, as the header of one, and as its samples: understood, or refused with an Error of
-// one line; no sample is read that is not there.
+// Any bytes as the form of a volume, as the header of one, and as its samples: parsed, or rejected with an Error of one
+// line; nothing is read out of bounds.
 #include "scarp/source/dense_volume.h"
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the fuzz targets share. A target is one file that defines LLVMFuzzerTestOneInput() and aborts on what must not
-// be; libFuzzer calls it with inputs of its own invention, replay.cpp with those of test/fuzz/corpus.
+// Shared by the fuzz targets. A target is one file that defines LLVMFuzzerTestOneInput() and aborts on errors;
+// libFuzzer calls it with generated inputs, replay.cpp with those of test/fuzz/corpus.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as a Qubicle file: voxels inside their parts, or refused with an Error of one line.
+// Any bytes as a Qubicle file: voxels inside their parts, or an Error of one line.
 #include "scarp/source/qubicle.h"
 
 #include <string_view>

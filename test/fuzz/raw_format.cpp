@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any text as --raw: what is taken is in its ranges and reads back from its own text, the rest is refused.
+// Any text as --raw: accepted values are in range and survive a round trip, the rest is rejected.
 #include "scarp/source/raw_format.h"
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as a table of rays in CSV: understood, or refused with an Error of one line.
+// Any bytes as a table of rays in CSV: parsed, or rejected with an Error of one line.
 #include <cmath>
 #include <cstdint>
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as an array of rays: understood, or refused with an Error.
+// Any bytes as an array of rays: parsed, or rejected with an Error.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as a .vox file: a document that its own bytes give again, or refused with an Error of one line.
+// Any bytes as a .vox file: a document that survives a round trip, or an Error of one line.
 #include "scarp/source/vox_file.h"
 
 #include <string>
@@ -41,7 +41,7 @@ void parse(std::string_view bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   parse(bytes);
-  // A length that fits is hard to guess: the same bytes as the children of a whole MAIN.
+  // A valid length is hard to guess: the same bytes as the children of a whole MAIN.
   std::string file("VOX \xc8\0\0\0MAIN\0\0\0\0", 16);
   for (int i = 0; i < 4; ++i) file += static_cast<char>(size >> (8 * i) & 255);
   file += bytes;

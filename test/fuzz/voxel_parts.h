@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the targets of formats that are read as parts share.
+// Shared by the targets of formats that are read as parts.
 #pragma once
 
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace scarp::fuzz {
 
-/// Aborts when a voxel is outside its part, or when the refusal is empty or has several lines.
+/// Aborts if a voxel is outside its part, or if the error is empty or has several lines.
 template <class Parse>
 void expect_parts(const Parse& parse, std::string_view bytes) {
   try {

@@ -1,15 +1,18 @@
 # Text for users and callers is plain English. This test finds patterns that native engineers do not write (`rules` below).
 #   cmake -D ROOT=<checkout> [-D SCARP=<program>] -P prose.cmake
-# It skips code blocks and `inline code`, and reads only the comments of headers. Before it checks the checkout, it proves
+# It skips code blocks and `inline code`, and reads only the comments of code. Before it checks the checkout, it proves
 # itself on planted text. To cover more text, add one line to one of these lists.
 cmake_minimum_required(VERSION 3.25)
 
-set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md)
-# folders whose *.h are checked, subfolders included, for example scarp/vk
-set(header_folders scarp/accel scarp/analysis scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/source scarp/vk)
-# single headers, besides those of the folders and the common ones (doc/api/common_headers.txt)
-set(headers scarp/march/height/queries.h scarp/march/height/queries_vk.h scarp/scene/placement.h)
-set(help_calls)      # calls of the program whose output is checked, for example "render --help"
+set(documents README.md CHANGELOG.md CONTRIBUTING.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md doc/dev/decisions/*.md .github/*.md
+    .github/ISSUE_TEMPLATE/*.md)
+# folders whose code is checked, subfolders included
+set(code_folders scarp app bench test examples)
+set(code_files h cpp comp vert frag)
+# calls of the program whose output is checked; only of subcommands that every build has
+set(help_calls "--help" "render --help all" "cast --help all" "composite --help all" "viewshed --help all" "shadow --help all"
+    "los --help all" "profile --help all" "info --help all" "generate --help all" "replay --help all" "voxelise --help all"
+    "section --help all" "marches --help" "marches" "marches --presets")
 
 # PATTERN => remedy. < is the start of a sentence, > the end of a paragraph or a table cell, @ a word boundary.
 set(rules
@@ -33,6 +36,7 @@ set(rules
     "[a-z] but for [a-z] => except for"
     "@of (yours|mine|theirs|ours|one's own|the caller's)@ => your, caller-owned"
     "@to be had@ => available"
+    "@anew@ => again, re-"
     "@mend(s|ed)?@ => fix"
     "@(leave it out|(if|as) (you|one) likes?)@ => is only valid for, optional")
 
@@ -93,7 +97,7 @@ function(check name text out)
   set(${out} "${found}" PARENT_SCOPE)
 endfunction()
 
-# comments_of(TEXT RESULT): a header's comments; code in between ends a paragraph.
+# comments_of(TEXT RESULT): the comments of code; the code in between ends a paragraph.
 function(comments_of text result)
   string(REPLACE ";" "," text "${text}")
   string(REPLACE "[" "(" text "${text}")
@@ -119,7 +123,7 @@ function(prove_the_check)
       "Who asks waits." "Batches are sorted: who calls waits." "Good for those who wait." "Misses are told as hits."
       "A note tells the unit." "The field is asked twice." "Cells are looked at once." "A touch is no hit." "There run two."
       "It takes the options that there are." "The option goes with terrain." "Where from: here." "It reads none but rasters."
-      "It is right but for rounding." "Memory of yours." "No answer is to be had." "This is mended." "Give a name, if you like.")
+      "It is right but for rounding." "Memory of yours." "No answer is to be had." "It is built anew." "This is mended." "Give a name, if you like.")
   set(clean
       "Of course the person who reads `what is told` is no longer lost, and there is no\nhit. Who is it for? So far, two are told apart."
       "It tells the compiler to inline all but one function, but for others it does not. The user is asked to wait. What is it? It goes without saying."
@@ -159,19 +163,18 @@ foreach(pattern IN LISTS documents)
   endif()
   list(APPEND files ${matching})
 endforeach()
-foreach(folder IN LISTS header_folders)
-  file(GLOB_RECURSE matching RELATIVE ${ROOT} ${ROOT}/${folder}/*.h)
+foreach(folder IN LISTS code_folders)
+  list(TRANSFORM code_files PREPEND "${ROOT}/${folder}/*." OUTPUT_VARIABLE patterns)
+  file(GLOB_RECURSE matching RELATIVE ${ROOT} ${patterns})
   if(NOT matching)
-    message(FATAL_ERROR "no header in '${folder}'")
+    message(FATAL_ERROR "no code in '${folder}'")
   endif()
   list(APPEND files ${matching})
 endforeach()
-file(STRINGS ${ROOT}/doc/api/common_headers.txt common_headers)
-list(APPEND files ${common_headers} ${headers})
-list(REMOVE_DUPLICATES files)
+list(JOIN code_files "|" code_files)
 foreach(file IN LISTS files)
   file(READ ${ROOT}/${file} text)
-  if(file MATCHES "[.]h$")
+  if(file MATCHES "[.](${code_files})$")
     comments_of("${text}" text)
   endif()
   check(${file} "${text}" breaches)

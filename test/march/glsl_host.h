@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shader text of the marches, compiled as C++: what it asks of its host, over a field in memory.
+// The host functions that the marches' shader text requires, compiled as C++, over a field in memory.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ inline float scarp_minimum(int level, int col, int row) {
   return host_pyramid->minima()[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col];
 }
 
-/// The quads of ground_buffers.glsl.h, as max_quads.comp makes them.
+/// The quads of ground_buffers.glsl.h, as max_quads.comp builds them.
 class HostQuads {
  public:
   HostQuads(const HeightField& field, const MaxPyramid& pyramid) {

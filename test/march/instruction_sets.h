@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each set of instructions that the build has and the machine can run, for tests of what is compiled once for each.
+// Each set of instructions that the build has and the machine can run, for tests of code that is compiled once for
+// each.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ inline std::vector<std::int64_t> instruction_sets() {
   return sets;
 }
 
-/// As long as it lives; afterwards the choice is the machine's again.
+/// During its lifetime; afterwards the default of the machine applies again.
 class InstructionSet {
  public:
   explicit InstructionSet(std::int64_t set) { hwy::SetSupportedTargetsForTest(set); }

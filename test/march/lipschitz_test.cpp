@@ -19,7 +19,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Lipschitz, ClosesInOnASlopeFromAbove) {
+TEST(Lipschitz, ApproachesASlopeFromAbove) {
   std::vector<float> samples;
   for (int row = 0; row < 64; ++row) {
     for (int col = 0; col < 64; ++col) samples.push_back(static_cast<float>(2 * col));
@@ -38,7 +38,7 @@ TEST(Lipschitz, ClosesInOnASlopeFromAbove) {
   EXPECT_GT(stats.steps, 3u);
 }
 
-TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
+TEST(Lipschitz, AcceptsAShrinkFactorInsteadOfTheSlope) {
   const HeightField field = HeightField::own(std::vector<float>(81, 0.f), 9, 9);
   const MaxPyramid pyramid(field);
   MarchSettings settings;
@@ -51,8 +51,9 @@ TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
   EXPECT_THROW(validate(settings), Error);
 }
 
-// As shaders whose factor was found by trial: rays pass through slopes, and hit where they are found under the ground.
-TEST(Lipschitz, HitsUnderTheGroundWithAFactorThatTheSlopeDoesNotProve) {
+// Like shaders whose factor was found by trial and error: rays pass through slopes, and hit where they are found under
+// the ground.
+TEST(Lipschitz, HitsBelowGroundWithAnUnprovenFactor) {
   const HeightField field = waves();
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid, slope_bound(field)};
@@ -103,13 +104,13 @@ TEST(Lipschitz, NeverPassesTheSurface) {
         const HeightTarget target{&field, &pyramid, slope_bound(field)};
         for (int i = 0; i < kRays; ++i) {
           const Ray ray = rays.make(field, random);
-          // From the surface the first cell is not looked at.
+          // From the surface the first cell is skipped.
           if (ray.start == RayStart::on_surface) continue;
           const Hit hit = march_lipschitz(target, ray), judge = march_exhaustive(target, ray);
           hits += bool(hit), exhausted += hit.status == HitStatus::exhausted, judged_hits += bool(judge);
           if (!judge || hit.status == HitStatus::exhausted || hit.status == HitStatus::below) continue;
-          // 2^-18 of a cell: what leaving a block by a little may pass at the rim of a hole. A ray that the judge lets
-          // touch within rounding (32 roundings, as in oracle_test.cpp) may be let by.
+          // 2^-18 of a cell: the distance that a ray leaving a block may pass at the rim of a hole. It may miss a touch
+          // that the judge allows within rounding (32 roundings, as in oracle_test.cpp).
           const double cell = std::max(field.settings().cell_x, field.settings().cell_y) / length(ray.direction);
           if (hit && hit.t <= judge.t + 0x1p-18 * cell) continue;
           Ray before = ray;
@@ -120,7 +121,7 @@ TEST(Lipschitz, NeverPassesTheSurface) {
             const double reach = std::abs(p.z) + length(ray.origin) + field.width() + field.depth();
             return ground && p.z < *ground - 0x1p-48 * reach * (1 + target.slope);
           };
-          // From under the ground it may pass what it is above it for a little.
+          // From below the ground it may pass a short stretch above it.
           const double later = judge.t + 0x1p-10 * cell;
           EXPECT_FALSE(is_under(later) && later < before.t_max && !is_under(judge.t - 0x1p-10 * cell))
               << fields.name << ", " << rays.name << ": passed t = " << judge.t << ", got "

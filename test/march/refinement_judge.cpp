@@ -10,9 +10,9 @@ namespace scarp::test {
 namespace {
 
 constexpr int kRays = 400;
-constexpr double kNear = 2;  // cells: of the same crossing, not of one before that the march has passed
+constexpr double kNear = 2;  // in cells: within the same crossing, not an earlier one that the march has passed
 
-// Height off the ground that is a hit, per distance.
+// Height above the ground that counts as a hit, per distance.
 double tolerance_of(std::string_view march, const MarchSettings& settings) {
   return march == "naive" ? settings.naive.tolerance : march == "relaxed" ? settings.relaxed.tolerance : 0;
 }
@@ -53,7 +53,7 @@ RefinementErrors refinement_errors(std::string_view march, Refinement refinement
     ++errors.hits;
     errors.plain += off(plain[i].t) <= kRefinedTo;
     errors.refined += off(refined[i].t) <= kRefinedTo;
-    // The ray comes to the limit where one that is lower by it meets the ground.
+    // The ray reaches the limit where a ray lower by the limit meets the ground.
     Ray lower = ray;
     lower.direction.z -= tolerance * speed;
     const Hit judge = march_exhaustive({&field}, lower);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What refinement does to the hits of naive, fixed-step and relaxed over a height field, by `exhaustive`.
+// The effect of refinement on the hits of naive, fixed-step and relaxed over a height field, by `exhaustive`.
 #pragma once
 
 #include <functional>
@@ -20,11 +20,11 @@ struct RefinementErrors {
   int hits = 0;   ///< of rays that both settings call a hit
   int plain = 0;  ///< of them, those within kRefinedTo of the limit of the march's test without refinement
   int refined = 0;
-  double along_plain = 0;  ///< sum of distances along the ray from where it first comes to that limit, cells
+  double along_plain = 0;  ///< sum of distances along the ray from where it first reaches that limit, in cells
   double along_refined = 0;
 };
 
-/// Answers rays with a march of these settings.
+/// Traces rays with a march of these settings.
 using CastAll = std::function<std::vector<Hit>(const HeightField&, std::span<const Ray>, const MarchSettings&)>;
 
 /// Rays down to hills, which `cast` answers without refinement and with this one.

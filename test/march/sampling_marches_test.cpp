@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// naive, fixed-step and relaxed: they do what their texts say, including what they are known to get wrong.
+// naive, fixed-step and relaxed: they follow their documentation, including their known errors.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -38,7 +38,7 @@ TEST(Naive, StopsWithinItsToleranceAboveAPlane) {
   EXPECT_GT(stats.steps, 3u);
 }
 
-TEST(Naive, StepsOverAThinWallWithLongStepsAndFindsItWithShortOnes) {
+TEST(Naive, FindsAThinWallOnlyWithShortSteps) {
   const HeightField field = wall();
   const Ray ray{{0, 50.5, 20}, {1, 0, 0}};
   MarchSettings settings;
@@ -48,7 +48,7 @@ TEST(Naive, StepsOverAThinWallWithLongStepsAndFindsItWithShortOnes) {
   EXPECT_TRUE(march_naive({&field, nullptr}, ray, settings));
 }
 
-TEST(Naive, ReportsUsedUpStepsAsExhausted) {
+TEST(Naive, ReportsExhaustionAtTheStepLimit) {
   const HeightField field = flat();
   MarchSettings settings;
   settings.naive.max_steps = 3;
@@ -58,7 +58,7 @@ TEST(Naive, ReportsUsedUpStepsAsExhausted) {
   EXPECT_TRUE(std::isfinite(hit.t));
 }
 
-TEST(FixedStep, PutsTheHitOnASampleOrBetweenTwo) {
+TEST(FixedStep, HitsAtASampleOrBetweenTwo) {
   const HeightField field = flat();
   const Ray ray{{10, 50, 30}, {0.8, 0, -0.6}};
   MarchSettings settings;
@@ -74,7 +74,7 @@ TEST(FixedStep, PutsTheHitOnASampleOrBetweenTwo) {
   EXPECT_NEAR(sample.t, 50.4, 1e-12);
 }
 
-TEST(FixedStep, StepsOverAThinWallWithLongStepsAndFindsItWithShortOnes) {
+TEST(FixedStep, FindsAThinWallOnlyWithShortSteps) {
   const HeightField field = wall();
   const Ray ray{{0, 50.5, 20}, {1, 0, 0}};
   MarchSettings settings;
@@ -86,7 +86,7 @@ TEST(FixedStep, StepsOverAThinWallWithLongStepsAndFindsItWithShortOnes) {
   EXPECT_NEAR(hit.t, 59.4, 1e-9);  // the wall rises by 50 from 59 to 60
 }
 
-TEST(FixedStep, LooksAtTheEndOfTheRaysRange) {
+TEST(FixedStep, SamplesTheEndOfTheRayRange) {
   const HeightField field = flat();
   Ray ray{{10, 50, 30}, {0.8, 0, -0.6}};
   MarchSettings settings;
@@ -97,7 +97,7 @@ TEST(FixedStep, LooksAtTheEndOfTheRaysRange) {
   EXPECT_EQ(march_fixed_step({&field, nullptr}, ray, settings).status, HitStatus::miss);
 }
 
-TEST(FixedStep, TellsBelowWallsAndUsedUpSteps) {
+TEST(FixedStep, ReportsBelowWallsAndExhaustion) {
   const HeightField field = flat();
   EXPECT_EQ(march_fixed_step({&field, nullptr}, {{10, 50, -1}, {1, 0, 0}}, {}).status, HitStatus::below);
   MarchSettings settings;
@@ -112,7 +112,7 @@ TEST(FixedStep, TellsBelowWallsAndUsedUpSteps) {
   EXPECT_EQ(hit.t, 10);
 }
 
-TEST(Relaxed, ClosesInOnAPlane) {
+TEST(Relaxed, ApproachesAPlane) {
   const HeightField field = flat();
   const Hit hit = march_relaxed({&field, nullptr}, {{10, 50, 30}, {0.8, 0, -0.6}});
   ASSERT_TRUE(hit);
@@ -131,13 +131,13 @@ TEST(Relaxed, FollowsItsRecurrence) {
   EXPECT_EQ(stats.steps, steps);
 }
 
-TEST(Relaxed, ReportsUsedUpStepsAsExhaustedAndNotAsAHit) {
+TEST(Relaxed, ReportsExhaustionRatherThanAHit) {
   // Level flight at a height that 300 steps of 0.4 h do not bring to the border.
   const HeightField field = flat();
   EXPECT_EQ(march_relaxed({&field, nullptr}, {{0, 50, 0.5}, {1, 0, 0}}).status, HitStatus::exhausted);
 }
 
-TEST(Relaxed, SaysBelowWhenItStartsBelow) {
+TEST(Relaxed, ReportsBelowWhenStartingBelow) {
   const HeightField field = flat();
   EXPECT_EQ(march_relaxed({&field, nullptr}, {{50, 50, -5}, {1, 0, 0}}).status, HitStatus::below);
 }
@@ -162,7 +162,7 @@ TEST(SamplingMarches, RefineTheirHits) {
 }
 
 // From over a hole there is no clearance to refine from, and a line that ends over one leaves the hit where it was.
-TEST(SamplingMarches, RefineNothingAcrossHoles) {
+TEST(SamplingMarches, DoNotRefineAcrossHoles) {
   constexpr float kNodata = -99;
   std::vector<float> samples(101 * 101, 0.f);
   for (std::size_t row = 0; row < 101; ++row) samples[101 * row + 50] = kNodata;
@@ -188,7 +188,7 @@ TEST(SamplingMarches, RefineNothingAcrossHoles) {
   EXPECT_EQ(march_naive({&field, nullptr}, ray, settings).status, HitStatus::miss) << "out of the hole, under ground";
 }
 
-TEST(SamplingMarches, TakeMetresOffTheGroundAtAnyDistance) {
+TEST(SamplingMarches, AcceptTolerancesInMetresAtAnyDistance) {
   const HeightField field = flat();
   MarchSettings settings;
   settings.naive.tolerance = settings.relaxed.tolerance = 0;
@@ -210,7 +210,7 @@ TEST(SamplingMarches, DoNotDependOnTheLengthOfTheDirection) {
   }
 }
 
-TEST(MarchTable, NamesAreUniqueAndFoundAndTheOracleIsFirst) {
+TEST(MarchTable, NamesAreUniqueAndTheOracleIsFirst) {
   EXPECT_EQ(height_marches().front().name, "exhaustive");
   for (const HeightMarchEntry& entry : height_marches()) EXPECT_EQ(&find_height_march(entry.name), &entry);
   try {
@@ -222,7 +222,7 @@ TEST(MarchTable, NamesAreUniqueAndFoundAndTheOracleIsFirst) {
   }
 }
 
-TEST(MarchSettings, AreCheckedOneByOne) {
+TEST(MarchSettings, AreValidatedIndividually) {
   EXPECT_NO_THROW(validate({}));
   const auto refused = [](auto&& change) {
     MarchSettings settings;

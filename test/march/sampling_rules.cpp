@@ -14,7 +14,7 @@ double step_of(const FixedStepSettings& settings, const HeightField& field, cons
   return settings.step * std::min(field.settings().cell_x, field.settings().cell_y) / length(ray.direction);
 }
 
-// Whether some sample of fixed-step could be taken for another by rounding.
+// Whether rounding could change the decision at some sample of fixed-step.
 bool undecided(const FixedStepSettings& settings, const HeightField& field, const Ray& ray,
                const RoundingJudge& judge) {
   const DeviceRay way = sampled_device_ray(field, ray);
@@ -50,11 +50,11 @@ std::string sampling_objection(std::string_view march, const MarchSettings& sett
     if (hit && !hit.wall && !on_surface && (clearance.low > tolerance || clearance.high < -tolerance))
       return "a hit outside its tolerance";
   } else if (march == "lipschitz") {
-    // What a ray from the surface steps over unseen is no hit that it passes.
+    // A hit that a ray from the surface may step over does not count as passed.
     if (on_surface) return {};
     const double shrink = 1 / std::hypot(1.0, slope);
     if (hit.status == HitStatus::miss && !judge.may_miss()) return "passes a hit";
-    // Where it is as near as rounding it may still be on either side.
+    // Within rounding it may still be on either side.
     const double near = (0x1p-20 + settings.lipschitz.tolerance) * travelled / metres_per_t;
     if ((hit || hit.status == HitStatus::exhausted) && !judge.may_pass(hit.t - near)) return "passes a hit before";
     // The distance travelled is a float.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Steep waves and rays down to them, for shrink factors of lipschitz that are too large.
+// Steep waves and rays that descend to them, for shrink factors of lipschitz that are too large.
 #pragma once
 
 #include <gtest/gtest.h>

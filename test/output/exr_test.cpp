@@ -32,7 +32,7 @@ class ExrFile : public testing::Test {
   fs::path folder_;
 };
 
-// Numbers that no compressor makes small.
+// Incompressible numbers.
 std::vector<float> noise(std::size_t count) {
   std::mt19937 random(1);
   std::vector<float> numbers(count);
@@ -40,8 +40,8 @@ std::vector<float> noise(std::size_t count) {
   return numbers;
 }
 
-TEST_F(ExrFile, WhatIsWrittenIsReadBack) {
-  // More rows than are handed over at once, and rows that do not fill the last block.
+TEST_F(ExrFile, RoundTrips) {
+  // More rows than are passed at once, and rows that do not fill the last block.
   for (const auto& [width, height] : {std::pair(1, 1), {17, 3}, {3, 17}, {5, 600}}) {
     const std::size_t pixels = static_cast<std::size_t>(width * height);
     std::vector<float> depth = noise(pixels), triples = noise(3 * pixels);
@@ -76,12 +76,12 @@ TEST_F(ExrFile, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(files(), 1) << "temporary files were left behind";
 }
 
-TEST_F(ExrFile, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
+TEST_F(ExrFile, FullDiskKeepsTheOldPicture) {
   const std::vector<float> depth = noise(200 * 200);
   write_exr(path("whole.exr"), {200, 200, {{"Z", depth.data()}}});
   const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole.exr")));
   write_exr(path("a.exr"), {2, 2, {{"Z", depth.data()}}});
-  // Full within the header, among the lines, before the last byte; and for a picture so small that nothing of it
+  // The disk is full within the header, among the lines, before the last byte; and for a picture so small that nothing
   // reaches the disk before the file is closed.
   for (const auto& [side, limit_of_size] :
        {std::pair(200, std::uint64_t{100}), {200, size / 2}, {200, size - 1}, {3, std::uint64_t{100}}}) {
@@ -98,7 +98,7 @@ TEST_F(ExrFile, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
   }
 }
 
-TEST_F(ExrFile, WhatCannotBeAPictureIsRefused) {
+TEST_F(ExrFile, RejectsInvalidPictures) {
   const float number = 1;
   const ExrChannel good{"Z", &number};
   for (const ExrView& bad : {ExrView{0, 1, {good}},

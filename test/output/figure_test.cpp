@@ -33,7 +33,7 @@ struct Canvas {
     width = drawn.width, height = drawn.height;
     rgb = std::move(drawn.rgb);
   }
-  // The box around the pixels that are not of the colour.
+  // The box around the pixels that differ from the colour.
   std::array<int, 4> box_of_others(Colour colour, int x0 = 0, int y0 = 0, int x1 = 1 << 20, int y1 = 1 << 20) const {
     std::array<int, 4> box{width, height, -1, -1};
     for (int y = y0; y < std::min(y1, height); ++y) {
@@ -74,7 +74,7 @@ TEST(Figure, NumbersAreWholeOnRequest) {
 }
 
 // The longest piece of the line of labels without a gap of some pixels: one label.
-TEST(Figure, LabelsDoNotTouch) {
+TEST(Figure, LabelsDoNotOverlap) {
   const auto longest = [](const std::vector<FigureTick>& ticks) {
     Canvas canvas;
     canvas.draw({.legend = FigureLegend{"", {{90, 90, 90}, {90, 90, 90}}, ticks}});
@@ -97,7 +97,7 @@ TEST(Figure, LabelsDoNotTouch) {
   EXPECT_LE(longest(ticks), one + 2) << "rounded to whole pixels";
 }
 
-TEST(Figure, TheBarAndTheLegendDoNotOverlap) {
+TEST(Figure, ScaleBarAndLegendDoNotOverlap) {
   Canvas canvas;
   const FigureLegend legend{"steps", {{1, 2, 3}}, {{0, "0"}, {1, "1"}}};
   const auto draw = [&](double pixels) {
@@ -109,7 +109,7 @@ TEST(Figure, TheBarAndTheLegendDoNotOverlap) {
   EXPECT_EQ(canvas.rgb, before);
 }
 
-TEST(Figure, TheBarIsAsLongAsSaid) {
+TEST(Figure, ScaleBarHasItsStatedLength) {
   Canvas canvas;
   canvas.draw({.scale = FigureScale{200, "", {{0, ""}, {1, ""}}}});
   // One piece, black: the longest run of black pixels in any row, the outline's half a line at either end included.
@@ -125,7 +125,7 @@ TEST(Figure, TheBarIsAsLongAsSaid) {
   EXPECT_EQ(canvas.at(canvas.width / 2 + 50, canvas.height / 4), (Colour{90, 90, 90}));
 }
 
-TEST(Figure, TheLegendHasTheColoursItExplains) {
+TEST(Figure, LegendShowsItsColours) {
   Canvas canvas;
   const std::vector<Colour> colours{{200, 10, 20}, {30, 210, 40}, {50, 60, 220}};
   canvas.draw({.legend = FigureLegend{"height, m", colours, {{0, "0"}, {1, "1000"}}}});
@@ -140,11 +140,11 @@ TEST(Figure, TheLegendHasTheColoursItExplains) {
   EXPECT_LT(first[0], first[1]);
   EXPECT_LT(first[1], first[2]);
   EXPECT_GT(counts[1], 100);
-  EXPECT_NEAR(counts[0], counts[2], 0.2 * counts[1]);  // but for the outline
+  EXPECT_NEAR(counts[0], counts[2], 0.2 * counts[1]);  // except for the outline
   EXPECT_GT(first[0], canvas.width / 3);               // on the right
 }
 
-TEST(Figure, NeedsRoom) {
+TEST(Figure, RejectsPicturesThatAreTooSmall) {
   std::vector<std::uint8_t> rgb(std::size_t{3} * 64 * 48);
   const Figure figure{.scale = FigureScale{100, "", {{0, "0"}, {1, "1 km"}}}};
   EXPECT_THROW(draw_figure({rgb.data(), 64, 48}, figure), Error);
@@ -161,7 +161,7 @@ Figure whole_figure(FigureLayout layout) {
   return figure;
 }
 
-TEST(Figure, BesideLeavesThePixelsOfThePicture) {
+TEST(Figure, BesideLayoutKeepsThePicture) {
   Figure figure = whole_figure(FigureLayout::beside);
   figure.graticule.clear();
   Canvas canvas;
@@ -174,7 +174,7 @@ TEST(Figure, BesideLeavesThePixelsOfThePicture) {
   while (canvas.at(left, top) != kGround) ++top;
   EXPECT_EQ(canvas.box_of_others(kGround, left, top, left + 640, top + 480)[2], -1);
   EXPECT_NE(canvas.at(left - 1, top), kGround);
-  // Title above, the rest below, and none of it cut off.
+  // Title above, the rest below, nothing cut off.
   EXPECT_LT(canvas.box_of_others(kPaper, 0, 0, 1 << 20, top - 3)[3], top);
   EXPECT_GT(canvas.box_of_others(kPaper, 0, top + 484)[2], canvas.width / 2);
   const auto all = canvas.box_of_others(kPaper);
@@ -185,7 +185,7 @@ TEST(Figure, BesideLeavesThePixelsOfThePicture) {
 }
 
 // A meridian at either border: half of its label stands beyond it.
-TEST(Figure, BesideNoLabelOfTheGraticuleIsCutOff) {
+TEST(Figure, BesideLayoutKeepsGraticuleLabelsWhole) {
   for (const double x : {1.0, 639.0}) {
     Canvas canvas;
     canvas.draw({.graticule = {{{{x, -5}, {x, 500}}, "122°07'12\"W", true}}, .layout = FigureLayout::beside});
@@ -196,7 +196,7 @@ TEST(Figure, BesideNoLabelOfTheGraticuleIsCutOff) {
   }
 }
 
-TEST(Figure, BesideATinyPictureNothingIsCutOff) {
+TEST(Figure, BesideLayoutFitsTinyPictures) {
   Canvas canvas;
   canvas.width = canvas.height = 30;
   canvas.rgb.resize(3 * 30 * 30);
@@ -209,7 +209,7 @@ TEST(Figure, BesideATinyPictureNothingIsCutOff) {
   EXPECT_LE(all[3], canvas.height - 3);
 }
 
-TEST(Figure, TheArrowPointsNorth) {
+TEST(Figure, ArrowPointsNorth) {
   // The arrow's left half is black: the picture's mean of black pixels is on the left of the direction.
   for (const double north : {0.0, 1.5707963267948966}) {
     Canvas canvas;
@@ -231,7 +231,7 @@ TEST(Figure, TheArrowPointsNorth) {
   }
 }
 
-TEST(Figure, LabelsKeepOffOneAnotherAndOffThePanels) {
+TEST(Figure, LabelsAvoidEachOtherAndThePanels) {
   const FigureLabel label{{320, 240}, 0, "1500"};
   Canvas one, three, covered;
   one.draw({.labels = {label}});
@@ -250,7 +250,7 @@ TEST(Figure, LabelsKeepOffOneAnotherAndOffThePanels) {
   EXPECT_EQ(arrow.rgb, same.rgb);
 }
 
-TEST(Figure, TitlesAreBrokenOrRefused) {
+TEST(Figure, TitlesWrapOrAreRejected) {
   std::string title = "word";
   for (int i = 0; i < 12; ++i) title += " another";
   Canvas canvas;
@@ -263,7 +263,7 @@ TEST(Figure, TitlesAreBrokenOrRefused) {
 }
 
 // Bytes of the page: its size in points, and text as text in the system's font.
-TEST(Pdf, HasTheSizeOfThePictureAndText) {
+TEST(Pdf, HasThePageSizeAndText) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("scarp-figure-" + std::to_string(::getpid()) + ".pdf");
   const Canvas canvas;

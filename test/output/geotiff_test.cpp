@@ -51,7 +51,7 @@ std::string wkt_of(int epsg) {
   return wkt;
 }
 
-TEST_F(RasterOutput, WhatIsWrittenIsReadBack) {
+TEST_F(RasterOutput, RoundTrips) {
   for (const auto& [width, height] : {std::pair(3, 2), {700, 300}}) {
     const auto rgb = noise(width, height, 3), alpha = noise(width, height, 1);
     const MapPlace place{{500000, 2.5, 0, 4000000, 0, -2.5}, wkt_of(32616)};
@@ -79,7 +79,7 @@ TEST_F(RasterOutput, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(files(), 1) << "other files were left behind";
 }
 
-TEST_F(RasterOutput, WithoutAPlaceThereIsNone) {
+TEST_F(RasterOutput, WritesNoGeoreferenceWithoutOne) {
   const auto rgb = noise(4, 4, 3);
   ReplaceFile file(path("map.tif"));
   write_geotiff(file, path("map.tif"), {rgb.data(), 4, 4}, {}, {});
@@ -89,7 +89,7 @@ TEST_F(RasterOutput, WithoutAPlaceThereIsNone) {
   EXPECT_EQ(read->GetSpatialRef(), nullptr);
 }
 
-TEST_F(RasterOutput, JpegsAreCloseToThePicture) {
+TEST_F(RasterOutput, JpegIsCloseToThePicture) {
   std::vector<std::uint8_t> rgb(3 * 64 * 48);
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(i / 3 % 64 * 3 + i % 3 * 20);
   ReplaceFile file(path("a.jpg"));
@@ -103,7 +103,7 @@ TEST_F(RasterOutput, JpegsAreCloseToThePicture) {
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(RasterOutput, AFullDiskIsAnErrorAndLeavesNothing) {
+TEST_F(RasterOutput, FullDiskLeavesNoFile) {
   const auto rgb = noise(600, 600, 3);
   for (const bool tiff : {true, false}) {
     const std::string name = path(tiff ? "a.tif" : "a.jpg");

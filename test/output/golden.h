@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares a picture with one that was looked at and found good. After a change that is meant to be seen: run the tests
-// with SCARP_NEW_GOLDEN=1, which copies the new pictures over the old ones, and look at them.
+// Compares a picture with an approved one. After an intended change, run the tests with SCARP_NEW_GOLDEN=1, which
+// replaces the old pictures by the new ones, and look at them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ namespace scarp::test {
 
 /// A byte may round the other way where the mathematical library's pow, exp, sin or cos differs in its last bit.
 inline constexpr int kByteRounding = 2;
-/// And a ray may pass the other side of a crest or a shadow's edge: that changes one of a pixel's four samples, at most
-/// from white to black, and does so in few pixels. Of one sample per pixel it changes all.
+/// A ray may also pass a crest or a shadow's edge on its other side: that changes one of a pixel's four samples, at
+/// most from white to black, and only in few pixels. With one sample per pixel it changes the whole pixel.
 inline constexpr int kMaxDifference = 140, kAnyDifference = 255;
 inline constexpr double kMaxShare = 0.001;
 
@@ -47,7 +47,7 @@ inline void expect_golden(const std::string& picture, const std::filesystem::pat
     for (std::size_t i = pixel; i < pixel + 3; ++i) here = std::max(here, std::abs(now.bytes[i] - golden.bytes[i]));
     largest = std::max(largest, here);
     differing += here > kByteRounding;
-    // Amplified, so that one sees it.
+    // Amplified for visibility.
     std::fill_n(difference.begin() + static_cast<std::ptrdiff_t>(pixel), 3,
                 static_cast<std::uint8_t>(std::min(255, 8 * here)));
   }

@@ -63,7 +63,7 @@ std::vector<HitRow> all_kinds() {
   return rows;
 }
 
-TEST_F(HitTables, Csv) {
+TEST_F(HitTables, WritesCsv) {
   const TextColumns carried{{"id", "a \"quoted\", remark"}, {"x1", "", "two\nlines", "1,5", "", ""}};
   {
     HitTable table(path("h.csv"), TableKind::hits, carried);
@@ -79,8 +79,8 @@ TEST_F(HitTables, Csv) {
             ",,2,exhausted,12.5,,,,,,,,,,,\n");
 }
 
-// What a kind of field does not have is empty.
-TEST_F(HitTables, SceneCsv) {
+// Columns that a kind of field does not have are empty.
+TEST_F(HitTables, WritesSceneCsv) {
   std::vector<HitRow> rows(4, a_hit());
   for (HitRow& row : rows) row.position = {1, 2, 3}, row.hit.object = 5;
   rows[0].material = 2;
@@ -105,7 +105,7 @@ TEST_F(HitTables, SceneCsv) {
   EXPECT_EQ(find_hit_kind("plinth"), std::nullopt);
 }
 
-TEST_F(HitTables, BlockedCsv) {
+TEST_F(HitTables, WritesBlockedCsv) {
   const TextColumns carried;
   HitTable table(path("b.csv"), TableKind::blocked, carried);
   table.add(0, std::vector<std::uint8_t>{0, 1});
@@ -114,7 +114,7 @@ TEST_F(HitTables, BlockedCsv) {
   EXPECT_EQ(bytes_of(path("b.csv")), "ray,blocked\n0,0\n1,1\n2,1\n");
 }
 
-TEST_F(HitTables, NpyIsAnArrayOfNamedDoubles) {
+TEST_F(HitTables, NpyIsAStructuredArrayOfDoubles) {
   const TextColumns carried{{"ray"}, {"a", "b", "c"}};
   HitTable table(path("h.npy"), TableKind::hits, carried);
   table.add(all_kinds());
@@ -141,7 +141,7 @@ TEST_F(HitTables, NpyIsAnArrayOfNamedDoubles) {
   EXPECT_EQ(numbers[3][2], 12.5);
 }
 
-TEST_F(HitTables, ManyRowsComeOutWhole) {
+TEST_F(HitTables, WritesManyRows) {
   const TextColumns carried;
   constexpr std::size_t kRows = 300000;
   for (const char* name : {"many.csv", "many.npy"}) {
@@ -158,13 +158,13 @@ TEST_F(HitTables, ManyRowsComeOutWhole) {
   EXPECT_TRUE(csv.ends_with("\n299999,1\n"));
 }
 
-TEST_F(HitTables, NothingIsLeftWithoutCommit) {
+TEST_F(HitTables, LeavesNoFileWithoutCommit) {
   const TextColumns carried;
   { HitTable(path("h.csv"), TableKind::hits, carried).add(all_kinds()); }
   EXPECT_TRUE(empty());
 }
 
-TEST_F(HitTables, WhatCannotBeIsRefused) {
+TEST_F(HitTables, RejectsInvalidTables) {
   const auto error_of = [](const std::string& file, const TextColumns& carried) -> std::string {
     try {
       HitTable(file, TableKind::hits, carried);

@@ -30,7 +30,7 @@ class Png : public testing::Test {
   fs::path folder_;
 };
 
-// Bytes that no compressor makes small.
+// Incompressible bytes.
 std::vector<std::uint8_t> noise(int width, int height) {
   std::mt19937 random(1);
   std::vector<std::uint8_t> bytes(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -38,7 +38,7 @@ std::vector<std::uint8_t> noise(int width, int height) {
   return bytes;
 }
 
-TEST_F(Png, WhatIsWrittenIsReadBack) {
+TEST_F(Png, RoundTrips) {
   for (const auto& [width, height] : {std::pair(1, 1), {17, 3}, {3, 17}, {64, 64}}) {
     const auto bytes = noise(width, height);
     write_png(path("a.png"), {bytes.data(), width, height});
@@ -50,7 +50,7 @@ TEST_F(Png, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(files(), 1) << "temporary files were left behind";
 }
 
-TEST_F(Png, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
+TEST_F(Png, FullDiskKeepsTheOldPicture) {
   const auto small = noise(2, 2), large = noise(200, 200);
   write_png(path("a.png"), {small.data(), 2, 2});
   std::string message;
@@ -65,7 +65,7 @@ TEST_F(Png, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
   EXPECT_EQ(files(), 1) << "temporary files were left behind";
 }
 
-TEST_F(Png, APictureWithoutPixelsIsRefused) {
+TEST_F(Png, RejectsPicturesWithoutPixels) {
   const std::uint8_t byte = 0;
   EXPECT_THROW(write_png(path("a.png"), {&byte, 0, 1}), Error);
   EXPECT_THROW(write_png(path("a.png"), {nullptr, 1, 1}), Error);

@@ -82,7 +82,7 @@ void expect_no_box_is_lost(const std::vector<WorldBox>& boxes, const Ray& ray) {
   }
 }
 
-TEST(BoxTree, LosesNoBox) {
+TEST(BoxTree, FindsEveryBox) {
   Random random(1);
   for (int i = 0; i < 3000; ++i) {
     const int count = static_cast<int>(uniform(random, 1, 40));
@@ -111,7 +111,7 @@ TEST(BoxTree, FindsBoxesFromFarAway) {
   }
 }
 
-TEST(BoxTree, VisitsNoBoxBeyondTheEnd) {
+TEST(BoxTree, VisitsNoBoxBeyondTMax) {
   std::vector<WorldBox> row;
   for (int i = 0; i < 1000; ++i) row.push_back({dvec3(10.0 * i, 0, 0), dvec3(10.0 * i + 1, 1, 1)});
   const BoxTree tree(row);
@@ -126,7 +126,7 @@ TEST(BoxTree, VisitsNoBoxBeyondTheEnd) {
   EXPECT_EQ(visits, 3);
 }
 
-TEST(BoxTree, TakesManyBoxesInOnePlace) {
+TEST(BoxTree, HandlesManyCoincidentBoxes) {
   const std::vector<WorldBox> same(5000, WorldBox{dvec3(1.0), dvec3(2.0)});
   Ray ray;
   ray.origin = {1.5, 1.5, 9};
@@ -139,8 +139,8 @@ TEST(BoxTree, TakesManyBoxesInOnePlace) {
   BoxTree().traverse(ray, [&](std::uint32_t) { return ADD_FAILURE(), 0.0; });
 }
 
-// What is nearest to a point, from anywhere, in worlds of any size.
-TEST(BoxTree, SearchLosesNoBox) {
+// The nearest box to a point, from any position, in worlds of any size.
+TEST(BoxTree, SearchFindsEveryBox) {
   Random random(5);
   std::size_t visits = 0, possible = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -172,7 +172,7 @@ TEST(BoxTree, SearchLosesNoBox) {
   EXPECT_EQ(visits_to_end, 3);
 }
 
-TEST(BoxTree, BeamsLoseNoBox) {
+TEST(BoxTree, BeamsFindEveryBox) {
   Random random(3);
   int beams = 0, met = 0;
   std::size_t visits = 0, possible = 0;
@@ -217,7 +217,7 @@ TEST(BoxTree, BeamsLoseNoBox) {
   EXPECT_LT(visits, possible / 3);
 }
 
-// Where rays end, so does the beam: at the one that ends last.
+// The beam ends with its rays: at the one that ends last.
 TEST(BoxTree, BeamsEndWithTheirRays) {
   std::vector<WorldBox> row;
   for (int i = 0; i < 1000; ++i) row.push_back({dvec3(10.0 * i, 0, 0), dvec3(10.0 * i + 1, 1, 1)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cast() and occluded() of scarp.h: what the scene answers, rays from surfaces, and the rays that they refuse.
+// cast() and occluded() of scarp.h: answers of the scene, rays from surfaces, and rejected rays.
 #include "scarp/scene/cast.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Terrain roof(Wrap wrap = Wrap::none) {
 
 Ray down(double x) { return {.origin = {x, 20, 30}, .direction = {0, 0, -1}}; }
 
-TEST(Cast, AnswersAsTheScene) {
+TEST(Cast, MatchesTheScene) {
   const Terrain terrain = roof();
   const Scene scene = combine({{terrain}, {terrain, {.origin = {100, 0, 0}}}});
   std::vector<Ray> rays;
@@ -63,7 +63,7 @@ TEST(Cast, StartsOnTheSurfaceOfAHit) {
   EXPECT_EQ(hits[1], cast(terrain, from_there[1]));
 }
 
-TEST(Cast, RefusesRaysThatCannotBeFollowed) {
+TEST(Cast, RejectsInvalidRays) {
   const Terrain terrain = roof();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(refusal([&] { cast(terrain, {.origin = {NAN, 0, 0}}); }), "ray: its origin is not finite");
@@ -92,7 +92,7 @@ TEST(Cast, NamesTheFirstBadRayOfABatch) {
   EXPECT_EQ(refusal([&] { occluded(terrain, rays, blocked); }), "ray 19000 of 20000: its direction is zero");
 }
 
-TEST(Cast, RefusesSpansThatDifferInLength) {
+TEST(Cast, RejectsSpansOfDifferentLengths) {
   const Terrain terrain = roof();
   const std::vector<Ray> rays(3, down(15));
   std::vector<Hit> hits(2);
@@ -104,7 +104,7 @@ TEST(Cast, RefusesSpansThatDifferInLength) {
   EXPECT_EQ(refusal([&] { cast(terrain, rays, hits, from); }), "batch: 3 rays, 1 hits to start from");
 }
 
-TEST(Cast, TakesEmptyBatches) {
+TEST(Cast, AcceptsEmptyBatches) {
   const Terrain terrain = roof();
   cast(terrain, std::span<const Ray>(), std::span<Hit>());
   occluded(terrain, std::span<const Ray>(), std::span<std::uint8_t>());

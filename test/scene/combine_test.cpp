@@ -46,7 +46,7 @@ TEST(Combine, SharesFields) {
   EXPECT_EQ(scene.fields()[1], terrain.scene().fields()[0]);
 }
 
-TEST(Combine, PlacesScenesOfScenes) {
+TEST(Combine, PlacesNestedScenes) {
   const Scene pair = combine({{ball()}, {ball(), {.origin = {10, 0, 0}}, 7}});
   const Scene scene = combine({{pair, {.scale = 2, .origin = {0, 100, 0}}}, {pair, {.origin = {0, -100, 0}}, 3}});
   ASSERT_EQ(scene.objects().size(), 4u);
@@ -58,9 +58,9 @@ TEST(Combine, PlacesScenesOfScenes) {
   EXPECT_EQ(cast(scene, down(10, -100)).object, 3u);
 }
 
-TEST(Combine, OfNothingMissesEveryRay) { EXPECT_FALSE(cast(combine({}), down(0, 0))); }
+TEST(Combine, EmptySceneMissesEveryRay) { EXPECT_FALSE(cast(combine({}), down(0, 0))); }
 
-TEST(Combine, RefusesBadPlacements) {
+TEST(Combine, RejectsBadPlacements) {
   EXPECT_EQ(refusal([] {
               combine({{plain(0)}, {ball(), {.scale = 0}}});
             }),

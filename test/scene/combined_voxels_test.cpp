@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Unions, intersections and differences of placed voxels, against a look at every voxel.
+// Unions, intersections and differences of placed voxels, against every single voxel.
 #include "scarp/scene/combined_voxels.h"
 
 #include <gtest/gtest.h>
@@ -41,14 +41,14 @@ PlacedVoxels one(VoxelGrid grid, const glm::dmat3& world_from_grid, const dvec3&
   return {{model}, {{0, world_from_grid, origin}}, {}};
 }
 
-// A cube of so many voxels a side.
+// A cube of this many voxels a side.
 PlacedVoxels cube(int side, const glm::dmat3& world_from_grid = glm::dmat3(1.0), const dvec3& origin = dvec3(0.0)) {
   VoxelGrid grid(ivec3(side), 8);
   grid.fill(grid.box(), 1);
   return one(std::move(grid), world_from_grid, origin, {{}, {200, 100, 50}});
 }
 
-// The colour at a point; nothing where it is empty.
+// The colour at a point; nullopt if it is empty.
 std::optional<VoxelColour> colour_at(const PlacedVoxels& voxels, const dvec3& point) {
   for (const VoxelPlace& place : voxels.places) {
     const VoxelModel& model = *voxels.models[place.model];
@@ -59,8 +59,8 @@ std::optional<VoxelColour> colour_at(const PlacedVoxels& voxels, const dvec3& po
   return {};
 }
 
-// Two models with two places of one of them each, at random on one lattice, which is turned, scaled and moved.
-TEST(CombinedVoxels, AgreeWithEveryVoxel) {
+// Two objects, each with two random placements of a model on one lattice, which is rotated, scaled and moved.
+TEST(CombinedVoxels, MatchPerVoxelCombination) {
   std::mt19937 random(7);
   const auto rotations = lattice_rotations();
   const glm::dmat3 lattice = 0.5 * turned(30);
@@ -104,7 +104,7 @@ TEST(CombinedVoxels, AgreeWithEveryVoxel) {
   }
 }
 
-TEST(CombinedVoxels, NothingLeftHasNoPlaces) {
+TEST(CombinedVoxels, EmptyResultsHaveNoPlaces) {
   const std::vector<PlacedVoxels> same{cube(3), cube(3)}, apart{cube(3), cube(3, glm::dmat3(1.0), {9, 0, 0})};
   EXPECT_TRUE(combined_voxels(VoxelCombination::subtract, same).places.empty());
   EXPECT_TRUE(combined_voxels(VoxelCombination::intersect, apart).places.empty());
@@ -112,7 +112,7 @@ TEST(CombinedVoxels, NothingLeftHasNoPlaces) {
   EXPECT_TRUE(scene_voxels(combined_voxels(VoxelCombination::subtract, same))->box()->empty());
 }
 
-TEST(CombinedVoxels, NeedOneLattice) {
+TEST(CombinedVoxels, RequireACommonLattice) {
   const auto message = [](const PlacedVoxels& other) {
     return refusal([&] { combined_voxels(VoxelCombination::unite, std::vector<PlacedVoxels>{cube(2), other}); });
   };

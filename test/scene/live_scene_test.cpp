@@ -86,7 +86,7 @@ void expect_same_answers(const Scene& scene, const Scene& fresh, const std::vect
   }
 }
 
-// What is not asked by rays.
+// Queries other than rays.
 void expect_same_facts(const Scene& scene, const Scene& fresh) {
   ASSERT_EQ(scene.box().low, fresh.box().low);
   ASSERT_EQ(scene.box().high, fresh.box().high);
@@ -99,7 +99,7 @@ void expect_same_facts(const Scene& scene, const Scene& fresh) {
   ASSERT_EQ(scene.height(3, 3), fresh.height(3, 3));
 }
 
-// A new scene of the objects that are left, and their numbers.
+// A new scene of the remaining objects, and their numbers.
 Scene without_removed(const Scene& scene, std::vector<std::uint32_t>& numbers) {
   std::vector<SceneObject> objects;
   for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
@@ -110,7 +110,7 @@ Scene without_removed(const Scene& scene, std::vector<std::uint32_t>& numbers) {
   return Scene(scene.fields(), std::move(objects));
 }
 
-TEST(LiveScene, AnswersAsANewSceneAfterAnyEdits) {
+TEST(LiveScene, MatchesANewSceneAfterEdits) {
   constexpr double kWorld = 40;
   for (unsigned seed = 1; seed <= 3; ++seed) {
     Random random(seed);
@@ -203,7 +203,7 @@ void expect_good_tree(LiveScene& live, Random& random, double side) {
   EXPECT_LE(boxes, fresh_boxes + fresh_boxes / 10 + 10);
 }
 
-TEST(LiveScene, KeepsItsHierarchyGood) {
+TEST(LiveScene, KeepsItsHierarchyEfficient) {
   Random random(5);
   const SceneFieldPtr small = ball(0.4);
   constexpr int kBalls = 1000;
@@ -215,12 +215,12 @@ TEST(LiveScene, KeepsItsHierarchyGood) {
     });
   }
   expect_good_tree(live, random, 9);
-  // To other places, far from their neighbours, a few at a time.
+  // To other positions, far from their neighbours, a few at a time.
   for (std::uint32_t i = 0; i < kBalls; ++i) {
     live.edit([&](auto& editor) { editor.move(i * 7 % kBalls, {.origin = random.inside(20)}); });
     if (i % 250 == 100) expect_good_tree(live, random, 20);
   }
-  // All to one place, one far away and back, and in a row of a million metres.
+  // All to one position, one far away and back, and in a row of a million metres.
   live.edit([&](auto& editor) {
     for (std::uint32_t i = 0; i < kBalls; ++i) editor.move(i, {.origin = {1, 2, 3}});
   });
@@ -245,7 +245,7 @@ TEST(LiveScene, KeepsItsHierarchyGood) {
   EXPECT_TRUE(cast(live.read().scene(), {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}));
 }
 
-TEST(LiveScene, KeepsTheNumbersOfObjects) {
+TEST(LiveScene, KeepsObjectNumbers) {
   LiveScene live(combine({{ball(1)}, {ball(1), {.origin = {10, 0, 0}}}, {ball(1), {.origin = {20, 0, 0}}}}));
   const auto object_at = [&](double x) {
     const auto reading = live.read();
@@ -262,11 +262,11 @@ TEST(LiveScene, KeepsTheNumbersOfObjects) {
   EXPECT_EQ(added, 1u);
   EXPECT_EQ(object_at(30), 1);
   EXPECT_EQ(live.read().scene().objects()[1].material, 5u);
-  // The place of the removed field serves the new one.
+  // The slot of the removed field is reused by the new one.
   EXPECT_EQ(live.read().scene().fields().size(), 4u);
 }
 
-TEST(LiveScene, HasNothingWhereObjectsWereRemoved) {
+TEST(LiveScene, MissesRemovedObjects) {
   LiveScene live{Scene(ball(1))};
   const Ray ray{.origin = {0, 0, 9}, .direction = {0, 0, -1}};
   const Hit before = cast(live.read().scene(), ray);
@@ -281,7 +281,7 @@ TEST(LiveScene, HasNothingWhereObjectsWereRemoved) {
   EXPECT_FALSE(reading.scene().within({0, 0, 0}));
 }
 
-TEST(LiveScene, NamesEditsOutsideOfItsOwn) {
+TEST(LiveScene, ReportsEditsThatBypassIt) {
   Random random(1);
   Terrain terrain = ground(9, random);
   LiveScene live{terrain.scene()};
@@ -294,7 +294,7 @@ TEST(LiveScene, NamesEditsOutsideOfItsOwn) {
   EXPECT_TRUE(cast(Scene(live.read().scene()), ray));
 }
 
-TEST(LiveScene, RefusesBadEditsAndKeepsTheOthers) {
+TEST(LiveScene, RejectsBadEditsAndKeepsTheOthers) {
   LiveScene live{Scene(ball(1))};
   const auto refused = [&](const std::function<void(LiveScene::Editor&)>& change) {
     return refusal([&] { live.edit(change); });

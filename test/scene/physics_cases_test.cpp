@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the tests of the physics engine Jolt ask of its HeightFieldShape: planes, a plane near 0, random ground with
-// holes, ground of holes alone, edits of parts, materials. Rays through every node and every cell's middle must find
-// the surface where there is ground, and nothing where there is none.
+// Cases from the tests of the physics engine Jolt for its HeightFieldShape: planes, a plane near 0, random ground with
+// holes, ground consisting of holes only, edits of parts, materials. Rays through every node and the centre of every
+// cell must find the surface where there is ground, and nothing elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
     return samples;
   }
 
-  // All queries at one place.
+  // All queries at one position.
   void check_place(const Terrain& terrain, const Scene& judge, double x, double y) {
     const auto height = terrain.height(x, y);
     const Ray down{{x, y, 1000}, {0, 0, -1}}, up{{x, y, -1000}, {0, 0, 1}};
@@ -45,7 +45,7 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
     ASSERT_EQ(judge.closest_hit(slanted).status == HitStatus::hit, occluded(terrain, slanted));
     if (!height) return;
     ASSERT_NEAR(1000 - hit.t, *height, 1e-9);
-    // It can be stood on: a ball that falls touches no lower than its radius above the place.
+    // It supports objects: a falling ball touches no lower than its radius above the position.
     const auto contact = scene.query({}).sweep({{x, y, 100}, {x, y, 100}, 0.25}, {0, 0, -200});
     ASSERT_TRUE(contact);
     ASSERT_GE(100 - 200 * contact->t, *height + 0.25 - 1e-5);
@@ -67,9 +67,9 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
   std::mt19937_64 engine_{4};
 };
 
-TEST_P(HeightFieldShape, IsAPlane) { check(Terrain::own(std::vector<float>(32 * 32, 7), 32, 32, settings(0.1))); }
+TEST_P(HeightFieldShape, MatchesAPlane) { check(Terrain::own(std::vector<float>(32 * 32, 7), 32, 32, settings(0.1))); }
 
-TEST_P(HeightFieldShape, IsAPlaneNearZero) {
+TEST_P(HeightFieldShape, MatchesAPlaneNearZero) {
   HeightFieldSettings near_zero = settings(2);
   near_zero.offset = 0;
   std::vector<float> samples;
@@ -77,18 +77,18 @@ TEST_P(HeightFieldShape, IsAPlaneNearZero) {
   check(Terrain::own(std::move(samples), 32, 32, near_zero));
 }
 
-TEST_P(HeightFieldShape, IsRandomGroundWithHoles) {
+TEST_P(HeightFieldShape, MatchesRandomGroundWithHoles) {
   for (const int side : {2, 5, 16, 33}) check(Terrain::own(random_heights(side, 0.1), side, side, settings(0.75)));
 }
 
-TEST_P(HeightFieldShape, IsOneHole) {
+TEST_P(HeightFieldShape, MatchesASingleHole) {
   const Terrain terrain = Terrain::own(std::vector<float>(16 * 16, kHole), 16, 16, settings(1));
   check(terrain);
   EXPECT_FALSE(terrain.scene().query({}).closest_point({0, 0, 0}));
   EXPECT_FALSE(terrain.scene().query({}).overlaps({{8, 8, 0}, {100, 100, 100}}));
 }
 
-TEST_P(HeightFieldShape, ChangesInParts) {
+TEST_P(HeightFieldShape, MatchesAfterPartialEdits) {
   constexpr int kSide = 33;
   std::vector<float> samples = random_heights(kSide, 0.1);
   Terrain terrain = Terrain::own(samples, kSide, kSide, settings(0.5));
@@ -104,7 +104,7 @@ TEST_P(HeightFieldShape, ChangesInParts) {
     }
   }
   check(terrain);
-  // The same as built anew.
+  // The same as after a rebuild.
   const Terrain anew = Terrain::own(std::move(samples), kSide, kSide, settings(0.5));
   for (int i = 0; i < 1000; ++i) {
     const Ray ray{{random(0, 16), random(0, 16), 12}, {random(-1, 1), random(-1, 1), -0.5}};

@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-TEST(PlacedVoxels, HaveOctantsWhileTheyAreSmall) {
+TEST(PlacedVoxels, UseOctantsForSmallModels) {
   const auto usual = [](const std::vector<ivec3>& sizes) { return file_voxel_march({}, sizes).name; };
   EXPECT_EQ(usual({}), "voxel-octants");
   EXPECT_EQ(usual({{128, 128, 64}}), "voxel-octants");
@@ -25,7 +25,7 @@ TEST(PlacedVoxels, HaveOctantsWhileTheyAreSmall) {
   EXPECT_NE(test::refusal([&] { VoxelModel(grid, find_voxel_march("voxel-octants")); }), "");
 }
 
-TEST(PlacedVoxels, HaveTheMarchThatIsNamed) {
+TEST(PlacedVoxels, UseTheNamedMarch) {
   const std::vector<ivec3> sizes{{8, 8, 8}};
   EXPECT_EQ(file_voxel_march("voxel-cubes", sizes).name, "voxel-cubes");
   EXPECT_NE(test::refusal([&] { file_voxel_march("voxel-balls", sizes); }), "");

@@ -18,12 +18,12 @@ Ray ray_of(dvec3 origin, dvec3 direction) {
   return ray;
 }
 
-// 4 x 3 nodes, 10 m apart: x 0..30, y 0..20, all at 5 m but for a south-east corner at 9 m.
+// 4 x 3 nodes, 10 m apart: x 0..30, y 0..20, all at 5 m except for a south-east corner at 9 m.
 HeightField block() {
   return HeightField::own<float>({5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 9}, 4, 3, {.cell_x = 10, .cell_y = 10});
 }
 
-TEST(Plinth, ItsWallsStandAtTheBorder) {
+TEST(Plinth, WallsStandAtTheBorder) {
   const Plinth plinth(block(), 0);
   const struct {
     dvec3 origin, direction;
@@ -41,7 +41,7 @@ TEST(Plinth, ItsWallsStandAtTheBorder) {
   }
 }
 
-TEST(Plinth, TheyReachFromTheBaseToTheSurface) {
+TEST(Plinth, WallsReachFromBaseToSurface) {
   const Plinth plinth(block(), 1);
   const auto meets = [&](double x, double z) { return plinth.intersect(ray_of({x, -1, z}, {0, 1, 0})).has_value(); };
   EXPECT_TRUE(meets(5, 1.001));
@@ -58,7 +58,7 @@ TEST(Plinth, EveryWallFollowsItsOwnEdge) {
   const Plinth plinth(HeightField::own<float>({10, 20, 30, 40}, 2, 2), 0);
   const struct {
     dvec3 origin, direction;
-    double edge;  // height of the wall where the ray arrives, a quarter of the way along it
+    double edge;  // height of the wall where the ray hits, a quarter of the way along it
   } cases[] = {{{0.25, -1, 0}, {0, 1, 0}, 32.5},
                {{0.25, 2, 0}, {0, -1, 0}, 12.5},
                {{-1, 0.25, 0}, {1, 0, 0}, 25},
@@ -79,7 +79,7 @@ TEST(Plinth, HeightsAreExaggeratedMetres) {
   EXPECT_FALSE(plinth.intersect(ray_of({0.5, -1, 149}, {0, 1, 0})));
 }
 
-TEST(Plinth, RaysFromAboveOrInsideMeetNoWall) {
+TEST(Plinth, RaysFromAboveOrInsideHitNoWall) {
   const Plinth plinth(block(), 0);
   EXPECT_FALSE(plinth.intersect(ray_of({12, 7, 50}, {0.1, 0.1, -1})));
   EXPECT_FALSE(plinth.intersect(ray_of({12, 7, 2}, {1, 0.2, 0})));
@@ -101,20 +101,20 @@ TEST(Plinth, HolesHaveWallsToo) {
   ASSERT_TRUE(west);
   EXPECT_DOUBLE_EQ(west->t, 1.5);
   EXPECT_EQ(west->face, VoxelFace::high_x);
-  // Steeply: through the hole and out of the bottom.
+  // Steeply: through the hole and out through the bottom.
   EXPECT_FALSE(plinth.intersect(ray_of({3, 1.3, 6}, {0.1, 0, -2})));
-  // A ray through the surface has met that and not the hole's wall behind.
+  // A ray through the surface has hit the surface and not the hole's wall behind it.
   EXPECT_FALSE(plinth.intersect(ray_of({0.2, 1.3, 5.5}, {1, 0, -1})));
 }
 
-TEST(Plinth, RaysFromTheRockMeetNoWalls) {
-  // A valley of 1 m between plateaus of 5 m: 9 x 2 nodes, of which that of column 4 has no number, so x 3..5 is a hole.
+TEST(Plinth, RaysFromSolidGroundHitNoWall) {
+  // A valley of 1 m between plateaus of 5 m: 9 x 2 nodes, of which that of column 4 is nodata, so x 3..5 is a hole.
   std::vector<float> samples;
   for (int row = 0; row < 2; ++row) {
     for (int col = 0; col < 9; ++col) samples.push_back(col == 4 ? kNaN : col < 2 ? 5 : col < 6 ? 1 : 5);
   }
   const Plinth plinth(HeightField::own(samples, 9, 2), 0);
-  // Out of the slope between columns 1 and 2 in the cell that it begins in, over the hole, into the block behind.
+  // Out of the slope between columns 1 and 2 in its first cell, over the hole, into the block behind.
   EXPECT_FALSE(plinth.intersect(ray_of({1.5, 0.3, 2.9}, {1, 0, -0.7})));
   EXPECT_TRUE(plinth.intersect(ray_of({1.5, 0.3, 3.1}, {1, 0, -0.7})));
   // Up through the base: in the rock, or in the shaft of the hole.
@@ -122,7 +122,7 @@ TEST(Plinth, RaysFromTheRockMeetNoWalls) {
   EXPECT_TRUE(plinth.intersect(ray_of({3.2, 0.3, -0.1}, {1, 0, 0.2})));
 }
 
-TEST(Plinth, ItsBaseLiesBelowTheField) {
+TEST(Plinth, BaseLiesBelowTheField) {
   EXPECT_LT(plinth_base(block()), 5);
   const HeightField flat = HeightField::own<float>({5, 5, 5, 5}, 2, 2);
   EXPECT_LT(plinth_base(flat), 5);

@@ -59,7 +59,7 @@ Scene ground() {
                   {scene_shape(DistanceField(make_shape(shape::Sphere{4}))), {.origin = {20, 20, 12}}}});
 }
 
-TEST(RayArrays, HaveTheAnswersOfSingleRays) {
+TEST(RayArrays, MatchSingleRays) {
   const Rays rays(100'000);
   const Scene scene = ground();
   const std::size_t count = rays.same.size();
@@ -88,7 +88,7 @@ TEST(RayArrays, HaveTheAnswersOfSingleRays) {
   EXPECT_GT(hits, 30'000);
 }
 
-TEST(RayArrays, RefuseSpansThatDoNotFit) {
+TEST(RayArrays, RejectSpansOfWrongSize) {
   const Rays rays(100);
   const Scene scene = ground();
   std::vector<float> t(100), few(99);
@@ -128,7 +128,7 @@ class Pool final : public Executor {
   std::atomic<int> runs{0};
 };
 
-TEST(Executor, BatchesHaveTheSameAnswersOnTheCallersThreads) {
+TEST(Executor, BatchesMatchOnCallerThreads) {
   const Rays rays(20'000);
   for (const Scene& scene : {ground(), Scene(Terrain(hills(65, 65, Surface::triangles)))}) {
     std::vector<Hit> expected(rays.same.size()), hits(rays.same.size());
@@ -148,7 +148,7 @@ TEST(Executor, BatchesHaveTheSameAnswersOnTheCallersThreads) {
   }
 }
 
-TEST(HeightsAt, AreThoseOfSinglePoints) {
+TEST(HeightsAt, MatchSinglePoints) {
   Random random(7);
   const HeightField plain = hills(65, 65, Surface::bilinear);
   std::vector<float> samples(65 * 65);

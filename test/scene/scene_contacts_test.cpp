@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Contacts of scenes with many objects: bit for bit those of each object alone, after any edits, and found without
-// asking most objects.
+// querying most objects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +60,7 @@ SceneFieldPtr crowd(Random& random) {
   return scene_voxels(std::move(voxels));
 }
 
-// What contacts and closest points are asked of.
+// Arguments of queries for contacts and closest points.
 struct Asked {
   Capsule capsule;
   dvec3 motion;
@@ -76,7 +76,7 @@ Asked somewhere(Random& random, double side) {
           random.below(2) ? random.in(0, 3) : std::numeric_limits<double>::infinity()};
 }
 
-// Every object that the mask selects, asked alone.
+// Every object that the mask selects, queried alone.
 template <class Answer, class Ask, class Key>
 std::optional<std::pair<Answer, std::uint32_t>> first_of(const Scene& scene, std::uint32_t mask, const Ask& ask,
                                                          const Key& key) {
@@ -169,7 +169,7 @@ std::vector<SceneFieldPtr> all_kinds(Random& random) {
           scene_plinth(bilinear)};
 }
 
-TEST(SceneContacts, AreThoseOfEachObjectAlone) {
+TEST(SceneContacts, MatchPerObjectContacts) {
   Found count;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Random random(seed);
@@ -191,14 +191,14 @@ TEST(SceneContacts, AreThoseOfEachObjectAlone) {
       if (HasFatalFailure()) return;
     }
   }
-  // The rest of the questions have no answer, which tests less.
+  // The other queries have no answer, which tests less.
   EXPECT_GT(count.touched, cases(2000, 100, 20));
   EXPECT_GT(count.met, cases(1000, 50, 10));
   EXPECT_GT(count.close, cases(2000, 100, 20));
 }
 
-// Upright in whole metres and in pairs, asked in halves of metres: many points of an object are equally close.
-TEST(SceneContacts, AreThoseOfEachObjectAloneOnALattice) {
+// Upright, at whole metres and in pairs, queried at half metres: many points of an object are equally close.
+TEST(SceneContacts, MatchPerObjectContactsOnALattice) {
   Random random(9);
   const auto whole = [&](int side) { return dvec3(random.below(side), random.below(side), random.below(side)); };
   Found count;
@@ -224,7 +224,7 @@ TEST(SceneContacts, AreThoseOfEachObjectAloneOnALattice) {
   EXPECT_GT(count.touched, cases(2000, 100, 20));
 }
 
-TEST(SceneContacts, AreThoseOfEachObjectAloneAfterEdits) {
+TEST(SceneContacts, MatchPerObjectContactsAfterEdits) {
   Random random(7);
   constexpr double kSide = 15;
   std::vector<float> samples(25, 1.0f);
@@ -272,7 +272,7 @@ TEST(SceneContacts, AreThoseOfEachObjectAloneAfterEdits) {
   EXPECT_GT(count.met, cases(100, 10, 1));
 }
 
-TEST(SceneContacts, OfPlacedVoxelsAreThoseOfEachPlaceAlone) {
+TEST(SceneContacts, MatchPerPlaceContactsOfVoxels) {
   Random random(8);
   PlacedVoxels voxels{.models = {model(random), model(random)}};
   for (std::uint32_t i = 0; i < 100; ++i) {
@@ -315,7 +315,7 @@ TEST(SceneContacts, OfPlacedVoxelsAreThoseOfEachPlaceAlone) {
   EXPECT_GT(touched, 50);
 }
 
-// A unit cube at the origin that counts what it is asked.
+// A unit cube at the origin that counts its queries.
 class CountedCube final : public SceneField {
  public:
   std::string_view kind() const override { return "cube"; }
@@ -347,7 +347,7 @@ class CountedCube final : public SceneField {
   mutable int asked = 0;
 };
 
-TEST(SceneContacts, AskFewObjects) {
+TEST(SceneContacts, TestFewObjects) {
   const auto cube = std::make_shared<CountedCube>();
   std::vector<SceneObject> objects;
   for (int i = 0; i < 8000; ++i) objects.push_back({0, 0, {.origin = 3.0 * dvec3(i % 20, i / 20 % 20, i / 400)}});
@@ -366,7 +366,7 @@ TEST(SceneContacts, AskFewObjects) {
   EXPECT_LE(cube->asked, 10);
 }
 
-TEST(SceneContacts, AreRefusedByTheMaskNotByThePlace) {
+TEST(SceneContacts, RejectUnsupportedObjectsByMask) {
   const Scene scene =
       combine({{scene_heights(HeightField::own(std::vector<float>(4, 1), 2, 2))},
                {scene_shape(DistanceField(make_shape(shape::Sphere{1}))), {.origin = {1e6, 0, 0}}, {}, 2}});

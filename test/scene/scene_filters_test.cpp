@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Filters over functions and shapes: behind a rejected hit the ray goes on, and meets every surface that it enters from
-// outside, in closed forms.
+// Filters over functions and shapes: behind a rejected hit the ray continues, and hits every surface that it enters
+// from outside; compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// What a filter that rejects everything is asked; hits that the tolerance does not tell apart are one.
+// Calls of a filter that rejects everything; hits within the tolerance count as one.
 std::vector<double> all_hits(const Scene& scene, const Ray& ray, HitStatus& last) {
   std::vector<double> hits;
   const SceneQuery query = scene.query({.accept = [&](const Ray&, const Hit& hit) {
@@ -47,7 +47,7 @@ void expect_hits(const Scene& scene, const Ray& ray, const std::vector<double>& 
   ASSERT_EQ(hits.size(), expected.size());
   for (std::size_t i = 0; i < hits.size(); ++i) ASSERT_NEAR(hits[i], expected[i], kTolerance * (1 + expected[i]));
   ASSERT_EQ(last, HitStatus::miss);
-  // The first hit that counts is one of these.
+  // The first accepted hit is one of these.
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const auto from = [&](const Ray&, const Hit& hit) { return hit.t > hits[i] - kTolerance; };
     const Hit hit = scene.query({.accept = from}).closest_hit(ray);
@@ -57,7 +57,7 @@ void expect_hits(const Scene& scene, const Ray& ray, const std::vector<double>& 
   }
 }
 
-TEST(Filters, MeetEveryHillOfAFunction) {
+TEST(Filters, SeeEveryHillOfAFunction) {
   constexpr int kSamples = 4000;
   const HeightFunction waves(
       make_function(Sines{{{.amplitude = 3, .wavelength = 31}, {.amplitude = 1, .wavelength = 7.3, .towards = 1.1}}}));
@@ -67,7 +67,7 @@ TEST(Filters, MeetEveryHillOfAFunction) {
   for (int i = cases(2000, 300, 50); i > 0; --i) {
     Ray ray{.origin = {random.in(-50, 50), random.in(-50, 50), random.in(-3, 6)}, .t_max = 1};
     ray.direction = {random.in(-150, 150), random.in(-150, 150), random.in(-4, 4)};
-    // Where it crosses the ground, by samples a few centimetres apart; rays that nearly touch it are left out.
+    // Where it crosses the ground, by samples a few centimetres apart; rays that nearly touch it are skipped.
     std::vector<double> falls;
     const auto clearance = [&](double t) { return ray.at(t).z - waves.value(ray.at(t).x, ray.at(t).y); };
     double before = clearance(0), least = std::abs(before);
@@ -90,7 +90,7 @@ TEST(Filters, MeetEveryHillOfAFunction) {
     ++rays;
     most = std::max(most, static_cast<int>(falls.size()));
     expect_hits(scene, ray, falls);
-    // Of directions of any length.
+    // For directions of any length.
     if (rays % 10 == 0 && !falls.empty()) {
       Ray shorter = ray;
       shorter.direction *= 0x1p-600, shorter.t_max *= 0x1p600;
@@ -104,7 +104,7 @@ TEST(Filters, MeetEveryHillOfAFunction) {
   EXPECT_GE(most, 4);
 }
 
-TEST(Filters, MeetEveryBallFromOutside) {
+TEST(Filters, SeeEveryBallFromOutside) {
   Random random(2);
   int rays = 0, most = 0;
   for (int round = cases(2000, 300, 50); round > 0; --round) {
@@ -118,7 +118,7 @@ TEST(Filters, MeetEveryBallFromOutside) {
     for (int i = 0; i < 5; ++i) {
       Ray ray{.origin = random.inside(3) + dvec3(0, 0, 15), .t_max = 3};
       ray.direction = random.inside(2) - ray.origin;
-      // Where it is in a ball; rays that nearly graze one, or leave one where they enter another, are left out.
+      // Where it is in a ball; rays that nearly graze one, or leave one where they enter another, are skipped.
       std::vector<std::pair<double, double>> in;
       bool clear = true;
       const double square = dot(ray.direction, ray.direction);
@@ -148,14 +148,14 @@ TEST(Filters, MeetEveryBallFromOutside) {
   EXPECT_GE(most, 4);
 }
 
-TEST(Filters, PassSeamsOfSolidsAndGrazes) {
+TEST(Filters, PassSeamsAndGrazes) {
   const Shape left = make_shape(shape::Moved{make_shape(shape::Box{{1, 1, 1}}), {-1, 0, 0}}),
               right = make_shape(shape::Moved{make_shape(shape::Box{{1, 1, 1}}), {1, 0, 0}}),
               far = make_shape(shape::Moved{make_shape(shape::Sphere{1}), {6, 0, 0}});
   const Scene scene(scene_shape(DistanceField(make_shape(shape::Union{{left, right, far}}))));
   expect_hits(scene, {.origin = {-5, 0.2, 0.3}, .direction = {1, 0, 0}, .t_max = 20},
               {3, 11 - std::sqrt(1 - 0.04 - 0.09)});
-  // Along a face, and past a ball: whatever touches, the ray ends in nothing else.
+  // Along a face, and past a ball: apart from touches, the ray ends in nothing else.
   for (const dvec3& from : {dvec3(-5, 0, 1), dvec3(-5, 1, 0), dvec3(-5, 1, 1)}) {
     HitStatus last;
     all_hits(scene, {.origin = from, .direction = {1, 0, 0}, .t_max = 20}, last);
@@ -164,7 +164,7 @@ TEST(Filters, PassSeamsOfSolidsAndGrazes) {
 }
 
 // Starts in the solid and on it.
-TEST(Filters, KnowWhereARayStarts) {
+TEST(Filters, RespectTheStartOfTheRay) {
   const Scene scene(scene_shape(DistanceField(make_shape(shape::Sphere{1}))));
   const SceneQuery none = scene.query({.accept = [](const Ray&, const Hit&) { return false; }});
   EXPECT_EQ(none.closest_hit({{0, 0, 0}, {0, 0, -1}}).status, HitStatus::below);
@@ -183,7 +183,7 @@ TEST(Filters, KnowWhereARayStarts) {
             HitStatus::hit);
 }
 
-TEST(Filters, AreForMarchesThatGoOn) {
+TEST(Filters, RequireMarchesThatContinue) {
   const Scene naive(scene_function(HeightFunction(make_function(Plane{})), find_function_march("naive")));
   const Ray down{{0, 0, 3}, {0, 0, -1}};
   EXPECT_TRUE(naive.query({.accept = [](const Ray&, const Hit&) { return true; }}).closest_hit(down));

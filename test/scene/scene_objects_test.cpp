@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes of many fields: the nearest hit against each object asked alone, batches against single rays, starts on
+// Scenes of many fields: the nearest hit against each object queried alone, batches against single rays, starts on
 // surfaces, placements.
 #include "scarp/scene/scene.h"
 
@@ -61,7 +61,7 @@ SceneFieldPtr voxel_block() {
 
 SceneFieldPtr ball(double radius) { return scene_shape(DistanceField(make_shape(shape::Sphere{radius}))); }
 
-// Some of each kind, turned, scaled and moved at random into a cube of 100 m.
+// Some of each kind, randomly rotated, scaled and moved into a cube of 100 m.
 Scene crowd(unsigned seed) {
   Random random(seed);
   std::vector<SceneFieldPtr> fields{
@@ -96,10 +96,11 @@ std::vector<Ray> rays_through(unsigned seed, int count) {
   return rays;
 }
 
-// What sphere-trace and lipschitz-local may stop early by, per unit of distance: their tolerance; each of two answers.
+// Distance by which sphere-trace and lipschitz-local may stop early, per unit of distance: their tolerance, for each of
+// two answers.
 constexpr double kTolerance = 2e-6;
 
-// A back end that asks the fields' own marches, ray by ray.
+// A back end that calls the fields' own marches, ray by ray.
 class Themselves final : public SceneBackEnd {
  public:
   explicit Themselves(std::vector<SceneFieldPtr> fields) : fields_(std::move(fields)) {}
@@ -121,7 +122,7 @@ class Themselves final : public SceneBackEnd {
   std::vector<SceneFieldPtr> fields_;
 };
 
-TEST(SceneOfManyFields, MayBeAnsweredFieldByField) {
+TEST(SceneOfManyFields, CanBeAnsweredFieldByField) {
   const Scene scene = crowd(5);
   const Scene elsewhere = scene.answered_by(std::make_shared<Themselves>(scene.fields()));
   EXPECT_TRUE(elsewhere.on_device());
@@ -157,7 +158,7 @@ TEST(SceneOfManyFields, MayBeAnsweredFieldByField) {
   EXPECT_EQ(elsewhere.closest_hit(onwards[0], from[0]).t, scene.closest_hit(onwards[0], from[0]).t);
 }
 
-TEST(SceneOfManyFields, TellsTheNearestOfAllObjects) {
+TEST(SceneOfManyFields, FindsTheNearestObject) {
   const Scene scene = crowd(5);
   int hits = 0;
   for (const Ray& ray : rays_through(6, 3000)) {
@@ -185,7 +186,7 @@ TEST(SceneOfManyFields, TellsTheNearestOfAllObjects) {
   EXPECT_GT(hits, 1000);
 }
 
-// Several objects that are asked by the hundred, turned and over one another, beside a few in the tree.
+// Several objects that get hundreds of rays each, rotated and above each other, plus a few in the tree.
 Scene layers() {
   return Scene({hills(65, 9, 3), hills(33, 20, 4), ball(8),
                 scene_function(HeightFunction(make_function(Sines{{{.amplitude = 6, .wavelength = 40}}})))},
@@ -195,7 +196,7 @@ Scene layers() {
                 {3, 3, {turned({1, 0, 0}, -0.3), 1.0, {0, 0, 5}}}});
 }
 
-TEST(SceneOfManyFields, BatchesAndOcclusionAgreeWithSingleRays) {
+TEST(SceneOfManyFields, BatchesAndOcclusionMatchSingleRays) {
   for (const unsigned seed : {7u, 8u}) {
     const Scene scene = seed == 7 ? crowd(seed) : layers();
     const std::vector<Ray> rays = rays_through(seed, 2000);
@@ -217,7 +218,7 @@ TEST(SceneOfManyFields, BatchesAndOcclusionAgreeWithSingleRays) {
   }
 }
 
-// Convex things, tilted: nothing of them is over the tangent plane of a point on them.
+// Tilted convex objects: no part is above the tangent plane of a point on them.
 TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
   VoxelGrid cube(ivec3(1), 8);
   cube.edit(cube.box(), [](const ivec3&, const VoxelGrid::Voxel&) { return VoxelGrid::Voxel(1); });
@@ -253,11 +254,11 @@ TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
     }
   }
   EXPECT_GT(tried, 1000);
-  // Without the start, rounding blocks many: the test can fail.
+  // Without the start, rounding blocks many of them: the test is able to fail.
   EXPECT_GT(blocked_when_free, 100);
 }
 
-TEST(SceneOfManyFields, PlacesAndScalesWithoutTouchingT) {
+TEST(SceneOfManyFields, PlacementsPreserveT) {
   // A ball of 2 m, 3 m when scaled, 10 m ahead of a ray that counts in steps of 2 m.
   const Scene scene({ball(2)}, {{0, 42, {turned({1, 2, 3}, 1), 1.5, {10, 0, 0}}}});
   Ray ray;
@@ -290,7 +291,7 @@ TEST(SceneOfManyFields, FindsOneOfThousands) {
   }
 }
 
-TEST(SceneOfManyFields, RefusesWhatCannotStand) {
+TEST(SceneOfManyFields, RejectsInvalidPlacements) {
   const auto refused = [](const Placement& placement, std::uint32_t field) {
     try {
       Scene({ball(1)}, {{field, 0, placement}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes of one field at the origin: they take the rays that the field takes, and answer as its own batch does, to the
-// bit. Heights above ground in scenes of more.
+// Scenes of one field at the origin: they accept the same rays as the field, and return the answers of its own batches,
+// to the bit. Heights above ground in scenes of more.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kSide = 40;
 
-// Waves with a hole or without, a sheet or solid, with or without an end.
+// Waves with or without a hole, a sheet or solid, wrapped or not.
 HeightField waves(const HeightFieldSettings& settings = {}, bool hole = true) {
   std::vector<float> samples;
   for (int row = 0; row < kSide; ++row) {
@@ -43,7 +43,7 @@ std::vector<Ray> rays_at_random(unsigned seed, std::size_t count, double t_max) 
   return rays;
 }
 
-// What a march takes without a scene.
+// Rays that a march accepts without a scene.
 struct Alone {
   Alone(const HeightField& of, const HeightMarchEntry& by) : field(of), march(by) {
     if (by.needs_pyramid) pyramid.emplace(of);
@@ -59,7 +59,7 @@ struct Alone {
 
 class SceneOfOne : public testing::TestWithParam<HeightFieldSettings> {};
 
-TEST_P(SceneOfOne, AnswersAsTheBatchOfItsField) {
+TEST_P(SceneOfOne, MatchesItsFieldsBatch) {
   // Few enough for the exhaustive march, enough for several pieces on several threads.
   constexpr std::size_t kRays = 1200;
   const std::vector<Ray> rays = rays_at_random(7, kRays, GetParam().wrap == Wrap::none ? INFINITY : 100);
@@ -99,7 +99,7 @@ TEST_P(SceneOfOne, AnswersAsTheBatchOfItsField) {
       from.push_back(hits[i]);
     }
     ASSERT_GT(onwards.size(), kRays / 10) << march.name << ": the rays ask too little";
-    // From the surface: by the ray's own start, and by the hit that it begins on.
+    // From the surface: by the ray's own start, and by the hit on which it starts.
     std::vector<Ray> started = onwards;
     std::vector<const Hit*> begin;
     for (std::size_t i = 0; i < onwards.size(); ++i) {
@@ -132,8 +132,8 @@ INSTANTIATE_TEST_SUITE_P(Fields, SceneOfOne,
                          testing::Values(HeightFieldSettings{}, HeightFieldSettings{.solid = true},
                                          HeightFieldSettings{.wrap = Wrap::periodic}));
 
-TEST(SceneOfOneField, AnswersAsItDoesBesideNothing) {
-  // An empty field beside it takes the other way through the scene.
+TEST(SceneOfOneField, MatchesItselfBesideAnEmptyField) {
+  // An empty field besides it leads to the other code path of the scene.
   const SceneFieldPtr field = scene_heights(waves());
   const Scene one(field),
       two({field, scene_heights(HeightField::own(std::vector<float>(1), 1, 1))}, {SceneObject{0}, SceneObject{1}});
@@ -146,7 +146,7 @@ TEST(SceneOfOneField, AnswersAsItDoesBesideNothing) {
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(of_one[i], of_two[i]) << i;
 }
 
-TEST(SceneOfOneField, StatisticsAreThoseOfTheMarch) {
+TEST(SceneOfOneField, ReportsStatisticsOfTheMarch) {
   const Scene scene(scene_heights(waves()));
   Ray down;
   down.origin = {10.3, 10.6, 50};
@@ -157,7 +157,7 @@ TEST(SceneOfOneField, StatisticsAreThoseOfTheMarch) {
   EXPECT_GE(stats.steps, stats.cell_tests);
 }
 
-TEST(SceneOfOneField, RefusesWhatItCannotAnswer) {
+TEST(SceneOfOneField, RejectsUnsupportedQueries) {
   MarchSettings settings;
   settings.naive.min_step = 0;
   EXPECT_THROW(scene_heights(waves(), find_height_march("naive"), settings), Error);
@@ -173,7 +173,7 @@ TEST(SceneOfOneField, RefusesWhatItCannotAnswer) {
   EXPECT_THROW(for_device.closest_hit(rays[0]), Error);
 }
 
-TEST(SceneOfOneField, RaysFromOutsideAreValidated) {
+TEST(SceneOfOneField, ValidatesCallerRays) {
   const auto refused = [](const Scene& scene, const Ray& ray) { return test::refusal([&] { validate(ray, scene); }); };
   const Scene scene(scene_heights(waves())), endless(scene_heights(waves({.wrap = Wrap::periodic})));
   Ray ray;
@@ -191,8 +191,8 @@ TEST(SceneOfOneField, RaysFromOutsideAreValidated) {
   EXPECT_NE(refused(scene, ray).find("direction is zero"), std::string::npos);
 }
 
-// Flat ground 3 m high, in several places; tilted ground does not count.
-TEST(SceneOfMoreFields, KnowTheHighestGround) {
+// Flat ground 3 m high, at several positions; tilted ground does not count.
+TEST(SceneOfMoreFields, ReportTheHighestGround) {
   const SceneFieldPtr flat = scene_heights(HeightField::own(std::vector<float>(25, 3.0f), 5, 5));
   glm::dmat3 quarter(0.0), tilt(1.0);
   quarter[0][1] = 1, quarter[1][0] = -1, quarter[2][2] = 1;

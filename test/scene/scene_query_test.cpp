@@ -53,7 +53,7 @@ class TowerOnGround : public testing::Test {
   const Ray down_{{8.5, 8.5, 10}, {0, 0, -1}};
 };
 
-TEST_F(TowerOnGround, IsSeenByItsMaskAlone) {
+TEST_F(TowerOnGround, IsVisibleOnlyThroughItsMask) {
   EXPECT_EQ(scene_.closest_hit(down_).t, 6);
   EXPECT_EQ(scene_.query({}).closest_hit(down_).t, 6);
   EXPECT_EQ(scene_.query({.mask = kGround}).closest_hit(down_).t, 10);
@@ -64,7 +64,7 @@ TEST_F(TowerOnGround, IsSeenByItsMaskAlone) {
   EXPECT_TRUE(scene_.query({.mask = kGround}).occluded(beside));
 }
 
-TEST_F(TowerOnGround, AnswersBatchesAsSingleRays) {
+TEST_F(TowerOnGround, BatchesMatchSingleRays) {
   std::vector<Ray> rays;
   for (int i = 0; i < 3000; ++i)
     rays.push_back({{i % 55 * 0.3, i / 55 * 0.3, 9}, {0.01 * (i % 7), -0.02 * (i % 5), -1.0 + i % 3}});
@@ -84,7 +84,7 @@ TEST_F(TowerOnGround, AnswersBatchesAsSingleRays) {
   }
 }
 
-TEST_F(TowerOnGround, LetsRaysThroughVoxelsThatDoNotCount) {
+TEST_F(TowerOnGround, PassesVoxelsRejectedByTheFilter) {
   const auto layer = [](int lowest) {
     return [lowest](const Ray&, const Hit& hit) { return hit.object == 0 || hit.voxel.z < lowest; };
   };
@@ -98,7 +98,7 @@ TEST_F(TowerOnGround, LetsRaysThroughVoxelsThatDoNotCount) {
   }
 }
 
-TEST_F(TowerOnGround, LetsRaysThroughRoundedVoxelsThatDoNotCount) {
+TEST_F(TowerOnGround, PassesRoundedVoxelsRejectedByTheFilter) {
   for (const bool each : {false, true}) {
     const Scene rounded(scene_voxels({.models = {cube()}, .places = {{}}, .rounding = {.radius = 0.25, .each = each}}));
     const auto low = [](const Ray&, const Hit& hit) { return hit.voxel.z < 2; };
@@ -108,8 +108,8 @@ TEST_F(TowerOnGround, LetsRaysThroughRoundedVoxelsThatDoNotCount) {
   }
 }
 
-// The way through the voxels is the same whatever counts: what is rejected is empty.
-TEST_F(TowerOnGround, PassesRejectedVoxelsAsIfTheyWereEmpty) {
+// The path through the voxels does not depend on the filter: rejected voxels count as empty.
+TEST_F(TowerOnGround, TreatsRejectedVoxelsAsEmpty) {
   const auto counts = [](const ivec3& v) { return (v.x * 5 + v.y * 3 + v.z * 7) % 4 == 0; };
   const Scene expected(scene_voxels({.models = {model("voxel-planes", counts)}, .places = {{}}}));
   const Scene all = tower();
@@ -130,7 +130,7 @@ TEST_F(TowerOnGround, PassesRejectedVoxelsAsIfTheyWereEmpty) {
   EXPECT_GT(hits, 5000);
 }
 
-TEST_F(TowerOnGround, IsHitFromBelowByTheGroundOnly) {
+TEST_F(TowerOnGround, OnlyTheGroundIsHitFromBelow) {
   const Ray up{{1.5, 1.5, -5}, {0, 0, 1}};
   EXPECT_FALSE(scene_.closest_hit(up));
   for (const Sides sides : {Sides::below, Sides::both}) {
@@ -146,7 +146,7 @@ TEST_F(TowerOnGround, IsHitFromBelowByTheGroundOnly) {
   EXPECT_EQ(judge.query({.sides = Sides::both}).closest_hit(up).t, 5);
 }
 
-TEST_F(TowerOnGround, RefusesRulesThatSelectNothing) {
+TEST_F(TowerOnGround, RejectsRulesThatSelectNothing) {
   EXPECT_EQ(refusal([&] { scene_.query({.mask = 12}); }),
             "scene: mask 0xc is that of no object (together they have 0x3)");
   EXPECT_NE(refusal([&] { scene_.query({.mask = 0}); }), "");
@@ -158,7 +158,7 @@ TEST_F(TowerOnGround, RefusesRulesThatSelectNothing) {
   EXPECT_EQ(refusal([&] { nothing.query({.mask = 1}); }), "");
 }
 
-TEST(SceneRules, AreForMarchesThatCanFollowThem) {
+TEST(SceneRules, RequireMarchesThatSupportThem) {
   const Scene naive(scene_heights(flat(4, 0), find_height_march("naive")));
   const Ray down{{2, 2, 1}, {0, 0, -1}};
   EXPECT_EQ(refusal([&] { naive.query({.sides = Sides::both}).closest_hit(down); }),
@@ -166,7 +166,7 @@ TEST(SceneRules, AreForMarchesThatCanFollowThem) {
   EXPECT_TRUE(naive.query({.mask = 1}).closest_hit(down));
 }
 
-TEST(SceneRules, HaveTheirWayAcrossTiles) {
+TEST(SceneRules, ApplyAcrossTiles) {
   TiledTerrain terrain({.cols = 2, .rows = 1, .cell_cols = 8, .cell_rows = 8});
   terrain.edit([](TiledTerrain::Editor& editor) {
     editor.put({0, 0}, flat(8, 0), std::make_shared<const std::vector<std::uint8_t>>(64, std::uint8_t{7}));
@@ -198,7 +198,7 @@ TEST(SceneRules, HaveTheirWayAcrossTiles) {
             "heights: 63 materials for 8 x 8 cells (one for each cell)");
 }
 
-TEST(CellMaterials, AreThoseOfHitsAndStayThroughEdits) {
+TEST(CellMaterials, BelongToHitsAndSurviveEdits) {
   Terrain terrain(flat(4, 0));
   std::vector<std::uint8_t> materials(16);
   for (std::size_t i = 0; i < materials.size(); ++i) materials[i] = static_cast<std::uint8_t>(200 + i);
@@ -216,7 +216,7 @@ TEST(CellMaterials, AreThoseOfHitsAndStayThroughEdits) {
   const float high = 2;
   terrain.set_samples({1, 1, 1, 1}, &high);
   EXPECT_EQ(material(terrain, 3, 2), 211u);
-  // A filter by material: a pond that rays pass.
+  // A filter by material: a pond that rays pass through.
   const Scene& scene = terrain.scene();
   const SceneQuery dry =
       scene.query({.accept = [&](const Ray& ray, const Hit& hit) { return scene.material(ray, hit) != 211; }});
@@ -226,7 +226,7 @@ TEST(CellMaterials, AreThoseOfHitsAndStayThroughEdits) {
   EXPECT_EQ(material(terrain, 3, 2), 0u);
 }
 
-TEST(CellMaterials, StayInALiveScene) {
+TEST(CellMaterials, PersistInALiveScene) {
   HeightField field = flat(4, 0);
   const auto seven = std::make_shared<const std::vector<std::uint8_t>>(16, std::uint8_t{7});
   LiveScene live{Scene(scene_heights(field, MaxPyramid(field), seven))};
@@ -247,7 +247,7 @@ TEST(CellMaterials, StayInALiveScene) {
   EXPECT_NE(refusal([&] { reading.scene().query({.mask = 1}); }), "");
 }
 
-TEST_F(TowerOnGround, IsTouchedBySweeps) {
+TEST_F(TowerOnGround, IsFoundBySweeps) {
   const SceneQuery all = scene_.query({});
   const Capsule ball{{8, 8, 10}, {8, 8, 10}, 0.5};
   const auto on_tower = all.sweep(ball, {0, 0, -10});
@@ -263,7 +263,7 @@ TEST_F(TowerOnGround, IsTouchedBySweeps) {
   EXPECT_FALSE(all.sweep(ball, {0, 0, -5}));
 }
 
-TEST_F(TowerOnGround, IsMetByBoxesAndClosestPoints) {
+TEST_F(TowerOnGround, IsFoundByBoxesAndClosestPoints) {
   const SceneQuery all = scene_.query({});
   EXPECT_TRUE(all.overlaps({{8, 8, 4.5}, {1, 1, 1}}));
   EXPECT_FALSE(all.overlaps({{8, 8, 6}, {1, 1, 1}}));
@@ -279,7 +279,7 @@ TEST_F(TowerOnGround, IsMetByBoxesAndClosestPoints) {
   EXPECT_EQ(all.closest_point({8.3, 8.4, 2})->distance, 0);
 }
 
-// Contacts do not depend on where the whole scene stands.
+// Contacts do not depend on the position of the whole scene.
 TEST(Contacts, MoveWithTheScene) {
   const HeightField hills =
       HeightField::own(std::vector<float>{0, 1, 0, 2, 3, 1, 0, 0, 1}, 3, 3, {.surface = Surface::triangles});
@@ -306,7 +306,7 @@ TEST(Contacts, MoveWithTheScene) {
   EXPECT_GT(contacts, 300);
 }
 
-TEST(Contacts, AreThoseOfOneFieldOnTiles) {
+TEST(Contacts, OnTilesMatchOneField) {
   TiledTerrain terrain(
       {.cols = 3, .rows = 2, .cell_cols = 4, .cell_rows = 4, .ground = {.surface = Surface::triangles}});
   const auto height = [](int col, int row) { return static_cast<float>((col * 7 + row * 5) % 4); };
@@ -336,7 +336,7 @@ TEST(Contacts, AreThoseOfOneFieldOnTiles) {
   }
 }
 
-TEST(Contacts, AreRefusedWhereTheyAreNotKnown) {
+TEST(Contacts, AreRejectedForUnsupportedFields) {
   const Scene mixed = combine(
       {{Terrain(flat(4, 0))}, {Scene(scene_shape(DistanceField(make_shape(shape::Sphere{.radius = 9})))), {}, {}, 2}});
   const Capsule ball{{2, 2, 2}, {2, 2, 2}, 1};

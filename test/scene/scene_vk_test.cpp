@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes of many fields on a Vulkan device: what the CPU tells of rays a little higher and lower, the device tells of
-// those between.
+// Scenes of many fields on a Vulkan device: the device's answers are between those of the CPU for slightly higher and
+// lower rays.
 #include "scarp/scene/scene_vk.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ Scene terrain_and_hills() {
   return Scene(std::move(fields), {{0, 0, {tilt, 3, {-40, -40, 30}}}, {1, 1, {}}, {2, 2, {tilt, 1, {60, 50, 30}}}});
 }
 
-TEST_F(ScenesOnDevice, TellTheNearestHit) {
+TEST_F(ScenesOnDevice, FindTheNearestHit) {
   // Over these fields single precision is right to some millimetres: 4 times 2^-17 of twice 20 m, and 32 units of 200 m
   // in height and way for the height field; 4 times 48 of 100 m for the ring (doc/dev/numerics.md).
   constexpr double kDelta = 0.01;
@@ -93,7 +93,7 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
   EXPECT_GT(met[0], 100u);
   EXPECT_GT(met[1], 500u);
   EXPECT_GT(met[2], 20u);
-  // To the sun, from the surface: the function's shadow has another octave less, and begins on its own surface.
+  // To the sun, from the surface: the function's shadow has one octave less, and starts on its own surface.
   std::vector<std::uint8_t> shaded(suns.size()), on_cpu(suns.size());
   on_device.occluded(suns, shaded, from);
   cpu.occluded(suns, on_cpu, from);
@@ -103,7 +103,7 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
   EXPECT_GT(dark, 10u);
 }
 
-TEST_F(ScenesOnDevice, RefuseWhatDoesNotRunThere) {
+TEST_F(ScenesOnDevice, RejectUnsupportedFields) {
   const auto model = std::make_shared<const VoxelModel>(VoxelGrid(ivec3(2), 8), find_voxel_march("voxel-bricks"));
   const Scene scene(scene_voxels({{model}, {VoxelPlace{}}, {.radius = 0.2}}));
   try {
@@ -118,7 +118,7 @@ TEST_F(ScenesOnDevice, RefuseWhatDoesNotRunThere) {
 }
 
 // Rounded voxels between a ball and a floor that the device answers.
-TEST_F(ScenesOnDevice, TheCpuAnswersOtherFields) {
+TEST_F(ScenesOnDevice, UseTheCpuForOtherFields) {
   VoxelGrid grid(ivec3(4), 8);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     return (v.x + v.y + v.z) % 2 == 0 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();

@@ -41,7 +41,7 @@ std::shared_ptr<const VoxelModel> noise_model(int size, double share, const std:
   return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
 }
 
-// Objects of many marches or one, turned, mirrored, overlapping, some of them twice in the same place.
+// Objects of many marches or one, rotated, mirrored, overlapping, some of them twice at the same position.
 PlacedVoxels crowd_of(CrowdRandom& random, int count, const std::string& march) {
   const auto of = [&](const char* own) { return march.empty() ? own : march; };
   PlacedVoxels placed;
@@ -123,7 +123,7 @@ class SceneVoxelsOnDevice : public OnDevice {
   void expect_same(const Scene& cpu, const Scene& there, std::span<const Ray> rays, std::span<const Hit* const> from) {
     std::vector<Hit> expected(rays.size()), hits(rays.size());
     std::vector<std::uint8_t> dark(rays.size()), blocked(rays.size());
-    // One by one, because batches have their own tests.
+    // One by one; batches have their own tests.
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit* begin = from.empty() ? nullptr : from[i];
       const SceneField& field = *cpu.fields()[0];
@@ -142,13 +142,13 @@ class SceneVoxelsOnDevice : public OnDevice {
   }
 };
 
-TEST_F(SceneVoxelsOnDevice, AreThoseOfTheCpu) {
+TEST_F(SceneVoxelsOnDevice, MatchTheCpu) {
   for (const int count : {1, 7, 300}) expect_same(Scene(scene_voxels(crowd_of(random, count, ""))));
   expect_same(Scene(scene_voxels(crowd_of(random, 40, "voxel-octants"))));
 }
 
-// Turned and mirrored objects that touch, as one field and as a field each.
-TEST_F(SceneVoxelsOnDevice, AgreeWithOneGridWhereObjectsMeet) {
+// Rotated and mirrored objects that touch, as one field and as separate fields.
+TEST_F(SceneVoxelsOnDevice, MatchOneGridWhereObjectsMeet) {
   constexpr std::array<const char*, 5> kMarches = {"voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants",
                                                    "voxel-bricks"};
   const int scenes = cases(400, 40, 10);
@@ -180,11 +180,11 @@ TEST_F(SceneVoxelsOnDevice, AgreeWithOneGridWhereObjectsMeet) {
   EXPECT_GT(hits, scenes * 200);
 }
 
-TEST_F(SceneVoxelsOnDevice, SmoothNormalsMoveShadowRays) {
+TEST_F(SceneVoxelsOnDevice, SmoothNormalsOffsetShadowRays) {
   expect_same(Scene(scene_voxels(crowd_of(random, 40, "voxel-octants"), {.normals = VoxelNormals::smooth})));
 }
 
-TEST_F(SceneVoxelsOnDevice, EmptyOnesAreMissed) {
+TEST_F(SceneVoxelsOnDevice, EmptyModelsAreMissed) {
   const auto nothing = std::make_shared<const VoxelModel>(VoxelGrid(ivec3(3)), find_voxel_march("voxel-bricks"));
   for (const PlacedVoxels& placed : {PlacedVoxels{}, PlacedVoxels{.models = {nothing}, .places = {VoxelPlace{}}}}) {
     const Scene there = scene_on(device(), Scene(scene_voxels(placed)));
@@ -198,7 +198,7 @@ TEST_F(SceneVoxelsOnDevice, EmptyOnesAreMissed) {
   }
 }
 
-TEST_F(SceneVoxelsOnDevice, RefuseGridsThatAreTooLarge) {
+TEST_F(SceneVoxelsOnDevice, RejectOversizedGrids) {
   VoxelGrid grid({16384, 16384, 1028}, 1);
   grid.set({0, 0, 0}, 1);
   const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
@@ -212,7 +212,7 @@ TEST_F(SceneVoxelsOnDevice, RefuseGridsThatAreTooLarge) {
   }
 }
 
-TEST_F(SceneVoxelsOnDevice, RefuseTheExhaustiveMarch) {
+TEST_F(SceneVoxelsOnDevice, RejectTheExhaustiveMarch) {
   try {
     scene_on(device(), Scene(scene_voxels(crowd_of(random, 3, "voxel-exhaustive"))));
     FAIL();

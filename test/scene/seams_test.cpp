@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Height fields that meet in a scene leave no gap, whatever their cells and wherever they are.
+// Height fields that meet in a scene leave no gap, for any cell size and position.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Seams, LetNoRayThrough) {
+TEST(Seams, PassNoRay) {
   constexpr int kSide = 65, kRays = 40'000;
   const std::vector<float> flat(kSide * kSide, 0.0f);
   for (const auto& [cell, corner] : {std::pair(1.0, 0.0), {0.3, 0.0}, {0.1, 123456.7}, {1.0 / 3, -7e5}}) {
@@ -32,7 +32,7 @@ TEST(Seams, LetNoRayThrough) {
     int lost = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) lost += !hits[i] || !blocked[i];
     EXPECT_EQ(lost, 0) << "cell " << cell << " at " << corner;
-    // Straight down, beside the seam and on it.
+    // Straight down, next to the seam and on it.
     for (const double x : {std::nextafter(corner + width, -1e9), corner + width, std::nextafter(corner + width, 1e9)})
       EXPECT_TRUE(cast(scene, Ray{{x, corner + 0.5 * width, 9}})) << x;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Directions near the ends of doubles: t is finite or the ray misses, in every kind of field, single and in batches.
+// Directions near the limits of doubles: t is finite or the ray misses, in every kind of field, single and in batches.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fields edited under a scene: the scene throws instead of answering for the field as it was.
+// Fields edited under a scene: the scene throws instead of returning answers for the former field.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -24,14 +24,14 @@ void raise_hill(Terrain& terrain) {
   terrain.set_samples({7, 7, 3, 3}, hill.data());
 }
 
-// Enough grounds that some of them are found by the hierarchy alone.
+// Enough fields that some of them are found only by the hierarchy.
 std::vector<ScenePart> with_grounds_around(const Scene& part) {
   std::vector<ScenePart> parts{{part}};
   for (int i = 1; i < 6; ++i) parts.push_back({flat(), {.scale = 2, .origin = {100.0 * i, 0, 0}}});
   return parts;
 }
 
-TEST(StaleScene, IsNamedWhenSamplesWereEdited) {
+TEST(StaleScene, IsReportedAfterSampleEdits) {
   Terrain terrain = flat();
   const Scene scene = combine(with_grounds_around(terrain));
   EXPECT_FALSE(cast(scene, kOverHill));
@@ -52,7 +52,7 @@ TEST(StaleScene, IsNamedWhenSamplesWereEdited) {
   EXPECT_TRUE(cast(combine(with_grounds_around(terrain)), kOverHill));
 }
 
-TEST(StaleScene, IsNamedWhenVoxelsWereEdited) {
+TEST(StaleScene, IsReportedAfterVoxelEdits) {
   VoxelGrid grid({32, 32, 32});
   grid.fill({{0, 0, 0}, {32, 32, 2}}, 1);
   Voxels voxels(std::move(grid));
@@ -68,7 +68,7 @@ TEST(StaleScene, IsNamedWhenVoxelsWereEdited) {
   EXPECT_TRUE(cast(combine({{voxels}}), ray));
 }
 
-TEST(StaleScene, IsNamedWhenItsPyramidIsOld) {
+TEST(StaleScene, IsReportedWhenItsPyramidIsOld) {
   HeightField field = HeightField::own(std::vector<float>(kSide * kSide, 1.0f), kSide, kSide);
   const SceneFieldPtr heights = scene_heights(field);
   const Scene scene(heights);
@@ -80,7 +80,7 @@ TEST(StaleScene, IsNamedWhenItsPyramidIsOld) {
   EXPECT_TRUE(cast(Scene(scene_heights(field)), kOverHill));
 }
 
-TEST(StaleScene, IsNamedWhenItsPlinthIsOld) {
+TEST(StaleScene, IsReportedWhenItsPlinthIsOld) {
   Terrain terrain = flat();
   const Scene scene = with_plinth(terrain);
   raise_hill(terrain);
@@ -88,7 +88,7 @@ TEST(StaleScene, IsNamedWhenItsPlinthIsOld) {
   EXPECT_NE(refusal([&] { Scene{scene.fields()[1]}; }).find("(plinth)"), std::string::npos);
 }
 
-TEST(StaleScene, IsNamedWhenItsMemoryWasFreed) {
+TEST(StaleScene, IsReportedWhenItsMemoryWasFreed) {
   auto samples = std::make_shared<std::vector<float>>(kSide * kSide, 1.0f);
   const Terrain terrain = Terrain::view(samples->data(), kSide, kSide, {}, 0, samples);
   const Scene scene = combine(with_grounds_around(terrain));
@@ -101,7 +101,7 @@ TEST(StaleScene, IsNamedWhenItsMemoryWasFreed) {
   EXPECT_EQ(refusal([&] { occluded(terrain, down); }), message);
 }
 
-TEST(StaleScene, IsNotWhatOtherFieldsAreEditedBeside) {
+TEST(StaleScene, IsNotCausedByEditsOfOtherFields) {
   Terrain terrain = flat(), other = flat();
   const Scene scene = combine(with_grounds_around(terrain));
   raise_hill(other);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nearly vertical rays where fields meet: tiles, combined fields, turned and earth-centred placements.
+// Nearly vertical rays where fields meet: tiles, combined fields, rotated and earth-centred placements.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,8 @@ namespace {
 
 constexpr int kTileCells = 16, kAcross = 8;
 const double kCosineOf90 = std::cos(std::numbers::pi / 2);
-// Of a hit on level ground: 16 roundings (numerics.md, "Rounding error of a clearance") of heights of up to 1,000 m.
+// Error of a hit on level ground: 16 roundings (numerics.md, "Rounding error of a clearance") of heights of up to 1,000
+// m.
 constexpr double kOff = 16 * 0x1p-53 * 1000;
 
 TerrainTiles flat_tiles(double cell, int cols, int rows, int cells) {
@@ -46,14 +47,14 @@ void expect_ground(const Scene& scene, const Ray& ray, double t) {
   EXPECT_TRUE(occluded(scene, shorter));
 }
 
-TEST(SteepSeams, OfTilesAreHitByNearlyVerticalRays) {
+TEST(SteepSeams, BetweenTilesAreHitByNearlyVerticalRays) {
   const TerrainTiles tiles = flat_tiles(30.7, kAcross, 1, kTileCells);
   const Ray ray{{3438.4, 100, 1000}, {-6.12e-17, 0, -1}};
   expect_ground(tiles, ray, 1000);
   EXPECT_NEAR(cast(tiles, ray).height, 0, kOff);
 }
 
-TEST(SteepSeams, OfTilesOfAnySizeAreHit) {
+TEST(SteepSeams, BetweenTilesOfAnySizeAreHit) {
   Random random(11);
   for (int i = 1; i <= 400; ++i) {
     const double cell = i / (i % 2 == 0 ? 10.0 : 100.0);
@@ -87,7 +88,7 @@ Scene pair_of(double cell, int cells, const Placement& outer) {
   return combine({{tile, placed(outer, {})}, {tile, placed(outer, {.origin = {width, 0, 0}})}});
 }
 
-TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
+TEST(SteepSeams, BetweenCombinedFieldsAreHitUnderAnyPlacement) {
   Random random(12);
   const auto turned = [](double degrees, dvec3 axis) {
     return glm::dmat3(glm::rotate(glm::dmat4(1), degrees * std::numbers::pi / 180, axis));
@@ -105,11 +106,11 @@ TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
       const int cells = 24;
       const Scene scene = pair_of(cell, cells, outer);
       const double width = cells * cell;
-      // Where the seam of a scene puts two fields apart, and 16 roundings of world coordinates below 2^23 m.
+      // The gap between two fields at the seam of a scene, and 16 roundings of world coordinates below 2^23 m.
       const double off = 0x1p-26 * cell + 16 * 0x1p-53 * 0x1p23;
       std::vector<Ray> rays;
       for (int i = 0; i < 400; ++i) {
-        // On the seam, or beside it by the rounding of world coordinates.
+        // On the seam, or off it by the rounding of world coordinates.
         const double beside = i % 3 == 0 ? 0 : uniform(random, -1e-9, 1e-9) * cell;
         const dvec3 aim(width + beside, uniform(random, 0.1, 0.9) * width, 0);
         const double lean = i % 2 == 0 ? 0 : std::ldexp(uniform(random, -1, 1), -whole(random, 30, 200));
@@ -129,7 +130,7 @@ TEST(SteepSeams, OfCombinedFieldsAreHitWhereverTheyArePlaced) {
   }
 }
 
-TEST(SteepSeams, QueriesEndWhateverTheirNumbers) {
+TEST(SteepSeams, QueriesTerminateForAnyNumbers) {
   const TerrainTiles tiles = flat_tiles(1, 4, 4, kTileCells);
   const Terrain flat(HeightField::own(std::vector<float>(81), 9, 9));
   constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
@@ -169,7 +170,7 @@ TEST(SteepSeams, QueriesEndWhateverTheirNumbers) {
   }
 }
 
-TEST(SteepSeams, LongDirectionsNeverAnswerWithNan) {
+TEST(SteepSeams, LongDirectionsNeverReturnNan) {
   const std::vector<float> samples(17 * 17);
   Random random(14);
   for (const double cell : {0.1, 1.0, 30.7}) {
@@ -190,7 +191,7 @@ TEST(SteepSeams, LongDirectionsNeverAnswerWithNan) {
   }
 }
 
-TEST(SteepSeams, ClosestPointsOfNoPointAreRefused) {
+TEST(SteepSeams, ClosestPointRejectsNonFinitePoints) {
   const Terrain terrain = Terrain::own(std::vector<float>(9), 3, 3);
   const Scene scene = terrain;
   const SceneQuery query = scene.query({});
@@ -200,7 +201,7 @@ TEST(SteepSeams, ClosestPointsOfNoPointAreRefused) {
   EXPECT_NE(refusal([&] { query.closest_point({0, 0, 0}, nan); }), "");
 }
 
-// A query refers to its scene: none of a temporary one.
+// A query refers to its scene, so the scene must not be a temporary.
 template <class S>
 concept HasQuery = requires(S&& scene) {
   std::forward<S>(scene).query(SceneRules{});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain of scarp.h: the same answers as its field and pyramid give, edits, and what it refuses.
+// Terrain of scarp.h: the same answers as its field and pyramid, edits, and errors.
 #include "scarp/scene/terrain.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(Terrain, ReadsCallerOwnedMemoryWithoutCopyingIt) {
   EXPECT_FALSE(terrain.height(11, 5));
 }
 
-TEST(Terrain, TakesRowsWithAStrideInEitherDirection) {
+TEST(Terrain, AcceptsStridesInEitherDirection) {
   // 3 x 2 samples in rows of 5.
   const std::vector<std::int16_t> samples{1, 2, 3, 99, 99, 4, 5, 6, 99, 99};
   const Terrain from_north = Terrain::view(samples.data(), 3, 2, {}, 5);
@@ -52,7 +52,7 @@ TEST(Terrain, TakesRowsWithAStrideInEitherDirection) {
   EXPECT_EQ(from_south.height(2, 1), 6);
 }
 
-TEST(Terrain, AnswersAsItsFieldAndPyramidDo) {
+TEST(Terrain, MatchesItsFieldAndPyramid) {
   const Terrain terrain = Terrain::own(waves(), kSide, kSide);
   std::vector<Ray> rays;
   for (int i = 0; i < 5000; ++i)
@@ -72,7 +72,7 @@ TEST(Terrain, IsASceneOfOneField) {
   EXPECT_EQ(scene.marches(), "max-mip");
 }
 
-TEST(Terrain, EqualsAFreshOneAfterEdits) {
+TEST(Terrain, MatchesAFreshTerrainAfterEdits) {
   std::vector<float> samples = waves();
   Terrain terrain = Terrain::own(samples, kSide, kSide);
   const Terrain copy = terrain;
@@ -90,7 +90,7 @@ TEST(Terrain, EqualsAFreshOneAfterEdits) {
   EXPECT_EQ(copy.scene().box().high.z, 80);
 }
 
-TEST(Terrain, EditsWithAStride) {
+TEST(Terrain, AcceptsEditsWithAStride) {
   Terrain terrain = Terrain::own(std::vector<std::int16_t>(9, 0), 3, 3);
   const std::vector<std::int16_t> samples{1, 2, 7, 3, 4, 7};
   terrain.set_samples({1, 1, 2, 2}, samples.data(), 3);
@@ -110,7 +110,7 @@ TEST(Terrain, WithoutCellsMissesEveryRay) {
   EXPECT_EQ(hits[99].status, HitStatus::miss);
 }
 
-TEST(Terrain, TakesNanForHoles) {
+TEST(Terrain, TreatsNanAsHoles) {
   std::vector<float> samples(16, 1.0f);
   samples[5] = NAN;
   const Terrain terrain = Terrain::view(samples.data(), 4, 4);
@@ -118,7 +118,7 @@ TEST(Terrain, TakesNanForHoles) {
   EXPECT_TRUE(cast(terrain, down(2.5, 0.5)));
 }
 
-TEST(Terrain, RefusesBadMemory) {
+TEST(Terrain, RejectsBadMemory) {
   const std::vector<float> samples(12, 0.0f);
   const float* none = nullptr;
   EXPECT_EQ(refusal([&] { Terrain::view(none, 3, 4); }), "height field: the pointer to the samples is null");
@@ -133,7 +133,7 @@ TEST(Terrain, RefusesBadMemory) {
   EXPECT_NE(refusal([&] { Terrain::view(&infinite, 1, 1); }), "");
 }
 
-TEST(Terrain, RefusesBadEditsAndChangesNothing) {
+TEST(Terrain, RejectsBadEditsWithoutChanges) {
   Terrain owned = Terrain::own(std::vector<float>(9, 1.0f), 3, 3);
   const std::vector<float> samples(9, 5.0f);
   const std::vector<std::int16_t> others(9, 5);

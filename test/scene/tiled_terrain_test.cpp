@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tiles that answer as one field: against one large field, over seams of levels, while tiles come and go; and what is
-// refused. Run under the thread sanitizer, too.
+// Tiles that act as one field: against one large field, over seams of levels, while tiles are loaded and unloaded; and
+// errors. Run under the thread sanitizer, too.
 #include "scarp/scene/tiled_terrain.h"
 
 #include <gtest/gtest.h>
@@ -68,11 +68,11 @@ Ray ray_through(Random& random, const dvec3& box, const std::vector<float>& all,
   return ray;
 }
 
-// Distance in metres that is far more than rounding and seams, and far less than a cell.
+// A distance in metres far larger than rounding and seams, and far smaller than a cell.
 constexpr double kFar = 0x1p-20;
 
-// Whether rays beside this one, on all sides, have the same answer: then no engine may have another. Others touch the
-// ground, or a rim, within rounding.
+// Whether neighbouring rays on all sides have the same answer: then every engine must have it. Others touch the ground,
+// or a rim, within rounding.
 bool is_certain(const HeightField& field, const Ray& ray, const Hit& answer) {
   for (const dvec3 shift :
        {dvec3(1, 0, 0), dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, -1, 0), dvec3(0, 0, 1), dvec3(0, 0, -1)}) {
@@ -85,7 +85,7 @@ bool is_certain(const HeightField& field, const Ray& ray, const Hit& answer) {
   return true;
 }
 
-TEST(TiledTerrain, AnswersAsOneField) {
+TEST(TiledTerrain, MatchesOneField) {
   int hits = 0;
   for (int round = 0; round < 12; ++round) {
     Random random(static_cast<unsigned>(round));
@@ -175,7 +175,7 @@ TEST(TiledTerrain, LosesNoRayAtSeamsOfLevels) {
 }
 
 // Rays that start on the ground at a seam start on all tiles there.
-TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheTileBeside) {
+TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheNeighbour) {
   const HeightFieldSettings settings{.cell_x = 0.3, .cell_y = 0.3};
   const std::vector<float> all(kSide * kSide, 5);
   TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
@@ -200,7 +200,7 @@ TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheTileBeside) {
   }
 }
 
-TEST(TiledTerrain, NormalsForShadingAreThoseOfOneField) {
+TEST(TiledTerrain, ShadingNormalsMatchOneField) {
   Random random(9);
   const HeightFieldSettings settings{.cell_x = 0.5, .cell_y = 0.25};
   const std::vector<float> all = samples(random, 0);
@@ -222,7 +222,7 @@ TEST(TiledTerrain, NormalsForShadingAreThoseOfOneField) {
   }
 }
 
-TEST(TiledTerrain, TilesComeAndGoDuringQueries) {
+TEST(TiledTerrain, TilesCanChangeDuringQueries) {
   const HeightFieldSettings settings{};
   constexpr int kSteps = 40;
   TiledTerrain terrain({kTiles, 1, kCells, kCells, settings});
@@ -265,7 +265,7 @@ TEST(TiledTerrain, TilesComeAndGoDuringQueries) {
   EXPECT_GT(asked, 0);
 }
 
-TEST(TiledTerrain, KeepsTheMemoryOfViews) {
+TEST(TiledTerrain, KeepsMemoryOfViewsAlive) {
   auto owner = std::make_shared<std::vector<float>>((kCells + 1) * (kCells + 1), 3.0f);
   TiledTerrain terrain({1, 1, kCells, kCells, {}});
   terrain.edit([&](auto& editor) {
@@ -283,7 +283,7 @@ TEST(TiledTerrain, KeepsTheMemoryOfViews) {
   EXPECT_TRUE(memory.expired());
 }
 
-TEST(TiledTerrain, RefusesTilesThatDoNotFitAndChangesNothing) {
+TEST(TiledTerrain, RejectsMismatchedTilesWithoutChanges) {
   Random random(1);
   const HeightFieldSettings settings{.cell_x = 2, .cell_y = 2};
   std::vector<float> all = samples(random, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of voxels on a Vulkan device, drawn as boxes and asked by compute: both are the CPU's, bit for bit, wherever
-// the eye is, also where two objects are at the same depth.
+// Pictures of voxels on a Vulkan device, drawn as boxes and traced by compute: both are the CPU's, bit for bit, for any
+// eye, also where two objects are at the same depth.
 #include "scarp/scene/voxel_camera_vk.h"
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ VoxelPicture along(const dvec3& eye, const dvec3& forward, double pixel) {
   picture.right = picture.down = dvec3(0.0);
   return picture;
 }
-// Up to `beside` pixels beside the middles.
+// Up to `beside` pixels off the centres.
 std::vector<Ray> rays_of(const VoxelPicture& picture, double beside = 0) {
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> off(-beside, beside);
@@ -70,7 +70,7 @@ std::shared_ptr<const VoxelModel> model_of(const ivec3& size, double share, std:
   return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
 }
 
-// Cubes that touch, as the post has them, about the origin.
+// Touching cubes, as in the post, about the origin.
 Scene touching(std::string_view march, double share = 0.1) {
   PlacedVoxels placed;
   placed.models = {model_of(ivec3(8), share, march)};
@@ -81,7 +81,7 @@ Scene touching(std::string_view march, double share = 0.1) {
   }
   return Scene(scene_voxels(std::move(placed)));
 }
-// Turned, of several marches, overlapping; some twice in the same place.
+// Rotated, of several marches, overlapping; some twice at the same position.
 Scene crowd() {
   PlacedVoxels placed;
   placed.models = {model_of({9, 7, 8}, 0.2, "voxel-bricks"), model_of(ivec3(5), 0.5, "voxel-cubes"),
@@ -158,7 +158,7 @@ class VoxelCameraOnDevice : public OnDevice {
   }
 };
 
-TEST_F(VoxelCameraOnDevice, SeesTouchingCubesAsTheCpuDoes) {
+TEST_F(VoxelCameraOnDevice, DrawsTouchingCubesAsTheCpu) {
   for (const VoxelMarchEntry& march : voxel_marches()) {
     if (!march.gpu) continue;
     const Scene scene = touching(march.name);
@@ -171,30 +171,30 @@ TEST_F(VoxelCameraOnDevice, SeesTouchingCubesAsTheCpuDoes) {
   }
 }
 
-TEST_F(VoxelCameraOnDevice, SeesACrowdAsTheCpuDoes) {
+TEST_F(VoxelCameraOnDevice, DrawsACrowdAsTheCpu) {
   const Scene scene = crowd();
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same_from_everywhere(scene, camera, "crowd");
 }
 
-TEST_F(VoxelCameraOnDevice, SeesTheSameInWords) {
+TEST_F(VoxelCameraOnDevice, DrawsTheSameFromWords) {
   const Scene scene = touching("voxel-octants");
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192, .words = true});
   expect_same(scene, camera, looking({5.1, -4.3, 6.7}, {-5, 4, -6}), "words");
 }
 
-// Rays of a filter are beside the middles of pixels; directions may be longer than those of the form.
-TEST_F(VoxelCameraOnDevice, TakesRaysBesideTheMiddles) {
+// Rays of a filter are off the centres of pixels; directions may be longer than those of the camera's form.
+TEST_F(VoxelCameraOnDevice, AcceptsRaysOffThePixelCentres) {
   const Scene scene = touching("voxel-bricks", 0.01);
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same(scene, camera, looking({5.1, -4.3, 6.7}, {-5, 4, -6}, 0.005), "beside", 0.5);
-  // Objects of a pixel or two, whose silhouettes are all that there is.
+  // Objects of a pixel or two, which consist only of silhouettes.
   expect_same(scene, camera, looking({51, -43, 67}, {-5, 4, -6}, 0.02), "far away", 0.5);
 }
 
-// Objects in one place are at one depth: the first counts. And where depths differ by less than a float holds, the
-// nearer one does, whichever is drawn first.
-TEST_F(VoxelCameraOnDevice, TellsObjectsAtOneDepthApart) {
+// Objects at one position have the same depth: the first counts. If depths differ by less than float precision, the
+// nearer one counts, in any drawing order.
+TEST_F(VoxelCameraOnDevice, ResolvesObjectsAtEqualDepth) {
   PlacedVoxels placed;
   placed.models = {model_of(ivec3(4), 1, "voxel-bricks")};
   for (int i = 0; i < 8; ++i) {
@@ -205,16 +205,15 @@ TEST_F(VoxelCameraOnDevice, TellsObjectsAtOneDepthApart) {
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same(scene, camera, looking({0.1, 0.2, 6}, {0, 0, -1}), "at one depth");
   EXPECT_GT(camera.tied(), 100U);
-  // Far apart, nothing is asked again.
+  // Far apart, no ray is traced again.
   const Scene alone = touching("voxel-bricks", 1);
   VoxelCamera other(device(), alone, {.rays_at_once = 8192});
   expect_same(alone, other, looking({0.3, 0.7, 6}, {0.02, 0.01, -1}, 0.002), "one face");
   EXPECT_LT(other.tied(), 100U);
 }
 
-// A batch of the camera's rays in any order, with others among them, is answered as the CPU does; those of the camera
-// by drawing.
-TEST_F(VoxelCameraOnDevice, FindsTheRaysOfACameraInBatches) {
+// A batch of the camera's rays in any order, mixed with others, has the CPU's answers; those of the camera by drawing.
+TEST_F(VoxelCameraOnDevice, FindsCameraRaysInBatches) {
   const Scene scene = crowd();
   const auto sight = std::make_shared<VoxelSight>(VoxelSight{VoxelDrawing::proxies});
   const Scene there = scene_on(device(), scene, sight);
@@ -255,7 +254,7 @@ TEST_F(VoxelCameraOnDevice, FindsTheRaysOfACameraInBatches) {
   EXPECT_EQ(sight->drawn, 0U);
 }
 
-TEST_F(VoxelCameraOnDevice, RefusesWhatItCannotDraw) {
+TEST_F(VoxelCameraOnDevice, RejectsUnsupportedScenes) {
   const Scene scene = touching("voxel-planes");
   VoxelCamera camera(device(), scene, {.rays_at_once = 1024});
   VoxelPicture flat = looking({0, 0, 9}, {0, 0, -1});
@@ -268,7 +267,7 @@ TEST_F(VoxelCameraOnDevice, RefusesWhatItCannotDraw) {
             std::string::npos);
 }
 
-TEST(VoxelDepth, FallsWithTheDistance) {
+TEST(VoxelDepth, DecreasesWithDistance) {
   using glsl::scarp_depth_bits;
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> exponent(-70, 70), step(-60, -1);

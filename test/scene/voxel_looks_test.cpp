@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What becomes of voxels beside being hit: normals, corners, coarser ones, and scenes made voxels.
+// Voxels apart from their hits: normals, corners, coarser models, and voxelised scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace scarp {
 namespace {
 
-// Of normals: sums of some two hundred terms, each rounded to 2^-53 of itself, a hundredfold.
+// Rounding of normals: sums of some two hundred terms, each rounded to 2^-53 of itself, a hundredfold.
 constexpr double kRounding = 2e4 * 0x1p-53;
 
 template <class Solid>
@@ -35,7 +35,7 @@ std::shared_ptr<const VoxelModel> model_of(VoxelGrid grid) {
 }
 
 // Symmetry gives the answer: planes along the axes, and a staircase that all orders of the axes leave as it is.
-TEST(SmoothNormal, IsThatOfPlanes) {
+TEST(SmoothNormal, MatchesPlanes) {
   const VoxelGrid level = grid_where(ivec3(16), [](const ivec3& v) { return v.z < 8; });
   EXPECT_LT(length(smooth_normal(level, {8.5, 8.5, 8}, 2.5) - dvec3(0, 0, 1)), kRounding);
   const VoxelGrid stairs = grid_where(ivec3(16), [](const ivec3& v) { return v.x + v.y + v.z < 24; });
@@ -43,9 +43,9 @@ TEST(SmoothNormal, IsThatOfPlanes) {
   EXPECT_EQ(smooth_normal(level, {8, 8, 14}, 3), dvec3(0.0));
 }
 
-// In the middle of a row of voxels that touch at edges as much is on both sides: the face's own normal, and no jump on
-// the way there.
-TEST(SmoothNormal, IsThatOfTheFaceWhereThereIsNone) {
+// In the middle of a row of voxels that touch at edges both sides are equal: the normal is the face's own, without a
+// jump on the way there.
+TEST(SmoothNormal, FallsBackToTheFaceNormal) {
   const VoxelGrid row = grid_where(ivec3(16), [](const ivec3& v) { return v.x == v.z; });
   const dvec3 face(0, 0, 1);
   EXPECT_LT(length(smooth_normal(row, {8, 8.5, 8}, 3, face) - face), kRounding);
@@ -56,7 +56,7 @@ TEST(SmoothNormal, IsThatOfTheFaceWhereThereIsNone) {
   }
 }
 
-TEST(SmoothNormal, TurnsWithTheGrid) {
+TEST(SmoothNormal, RotatesWithTheGrid) {
   const VoxelGrid grid =
       grid_where({9, 10, 11}, [](const ivec3& v) { return (v.x * v.x + 3 * v.y + v.z * v.y) % 5 < 2; });
   const dvec3 middle = 0.5 * dvec3(grid.size()), point(3.2, 5.1, 6.4);
@@ -91,14 +91,14 @@ std::int64_t solid_after(const VoxelGrid& grid, int level) {
   return coarse_voxels(model_of(grid), level)->grid().solid_count();
 }
 
-TEST(CoarseVoxels, CoverWhatTheyCovered) {
+TEST(CoarseVoxels, PreserveCoverage) {
   for (int axis = 0; axis < 3; ++axis) {
     const int other = (axis + 1) % 3;
     // A wall of a single voxel stays closed.
     const VoxelGrid wall = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21; });
     EXPECT_EQ(solid_after(wall, 1), 32 * 32);
     EXPECT_EQ(solid_after(wall, 3), 8 * 8);
-    // A thread has half the width of what is left of it: of 32 blocks each second.
+    // Every second of a thread's 32 blocks remains.
     const VoxelGrid thread = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21 && v[other] == 33; });
     EXPECT_EQ(solid_after(thread, 1), 16);
   }
@@ -110,21 +110,21 @@ TEST(CoarseVoxels, CoverWhatTheyCovered) {
   EXPECT_NEAR(static_cast<double>(solid_after(dust, 1)), 1024, 5 * std::sqrt(4096 * 0.25 * 0.75));
 }
 
-// What is hidden does not colour what is seen; means are those of light.
-TEST(CoarseVoxels, HaveTheMeanColourOfWhatIsSeen) {
+// Hidden voxels do not affect the colour of visible ones; means are in linear light.
+TEST(CoarseVoxels, HaveTheMeanColourOfVisibleVoxels) {
   VoxelGrid grid(ivec3(4), 24);
   grid.fill(grid.box(), 0xffffff);
   grid.fill({{0, 0, 0}, {4, 4, 1}}, 0x000000);
   grid.fill({{1, 1, 1}, {3, 3, 3}}, 0x0000ff);  // buried
   const auto coarse = coarse_voxels(model_of(grid), 1);
-  // Of a block's 8 voxels 7 are seen: 4 of them black, 3 white at the bottom; all 7 white at the top.
+  // 7 of a block's 8 voxels are visible: 4 of them black, 3 white at the bottom; all 7 white at the top.
   EXPECT_EQ(coarse->colour(coarse->grid().entry({0, 0, 1})), (VoxelColour{255, 255, 255}));
   // 3/7 of white light: 255 * (1.055 * (3/7)^(1/2.4) - 0.055).
   const auto grey = static_cast<std::uint8_t>(std::lround(255 * (1.055 * std::pow(3.0 / 7, 1 / 2.4) - 0.055)));
   EXPECT_EQ(coarse->colour(coarse->grid().entry({0, 0, 0})), (VoxelColour{grey, grey, grey}));
 }
 
-TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
+TEST(CoarseVoxels, AreUsedWherePixelsAreLarger) {
   const VoxelGrid wall = grid_where(ivec3(64), [](const ivec3& v) { return v.z == 0; });
   const SceneFieldPtr field = scene_voxels({{model_of(wall)}, {VoxelPlace{}}});
   const Scene scene({field}, {SceneObject{0, 0, {glm::dmat3(1.0), 0.5, {0, 0, 0}}}, SceneObject{0, 0, {}}});
@@ -139,7 +139,7 @@ TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
 }
 
 // Stairs that the sun shines along, a little above their slope: flat ones shade themselves, smooth ones do not.
-TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
+TEST(SmoothVoxels, AreNotShadowedByTheirOwnSteps) {
   const VoxelGrid stairs = grid_where(ivec3(64, 16, 40), [](const ivec3& v) { return 2 * v.z < v.x; });
   const PlacedVoxels voxels{{model_of(stairs)}, {VoxelPlace{0, glm::dmat3(0.5), {10, 0, 0}}}};
   const auto blocked = [&](VoxelNormals normals, int towards) {
@@ -160,13 +160,13 @@ TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
   };
   EXPECT_GT(blocked(VoxelNormals::flat, 1), 30);
   EXPECT_EQ(blocked(VoxelNormals::smooth, 1), 0);
-  // Into the stairs it stays dark.
+  // Inside the stairs it stays dark.
   EXPECT_EQ(blocked(VoxelNormals::smooth, -1), 100);
 }
 
-// Symmetry gives the answers: a voxel that stands out of a slope which rises along x, seen from up the slope, and a
-// sheet before a thick wall, seen from between them.
-TEST(SmoothVoxels, LightFacesThatLookTheOtherWay) {
+// Symmetry gives the answers: a voxel that protrudes from a slope rising along x, seen from up the slope, and a sheet
+// in front of a thick wall, seen from between them.
+TEST(SmoothVoxels, LightFacesOfOppositeOrientation) {
   const auto seen = [](const VoxelGrid& grid, const dvec3& from, const dvec3& direction) {
     const SceneFieldPtr field = scene_voxels({{model_of(grid)}, {VoxelPlace{}}}, {.normals = VoxelNormals::smooth});
     Ray ray;
@@ -185,7 +185,7 @@ TEST(SmoothVoxels, LightFacesThatLookTheOtherWay) {
   EXPECT_LT(length(sheet.shading_normal - dvec3(1, 0, 0)), kRounding);
 }
 
-TEST(SmoothVoxels, AreOfTheModelThatWasHit) {
+TEST(SmoothVoxels, UseTheModelThatWasHit) {
   const auto slab = model_of(grid_where(ivec3(8), [](const ivec3& v) { return v.z < 1; }));
   const auto stairs = model_of(grid_where(ivec3(16), [](const ivec3& v) { return v.x + v.y + v.z < 24; }));
   const VoxelShading shading{.normals = VoxelNormals::smooth, .corner_ao = true};
@@ -210,7 +210,7 @@ SceneFieldPtr ball(double radius) {
   return scene_shape(DistanceField(std::move(shape)));
 }
 
-TEST(Voxelised, AsksTheMiddlesOfVoxels) {
+TEST(Voxelised, SamplesVoxelCentres) {
   const Scene scene({ball(3)}, {SceneObject{0, 0, {glm::dmat3(1.0), 2, {1, -20, 3.3}}}});
   const VoxelLattice lattice = lattice_around(scene, 0.5);
   // (-5, -26, -2.7) to (7, -14, 9.3); the box of the shape may be larger by rounding, and so by a voxel.
@@ -240,7 +240,7 @@ TEST(Voxelised, GroundIsSolidBelow) {
   });
 }
 
-TEST(Voxelised, RefusesWhatCannotBe) {
+TEST(Voxelised, RejectsInvalidLattices) {
   const Scene scene({ball(3)}, {SceneObject{}});
   EXPECT_THROW(lattice_around(scene, 0), Error);
   EXPECT_THROW(lattice_around(scene, 0.001), Error);
@@ -281,7 +281,7 @@ std::int64_t solid_of(std::uint8_t alpha) {
   return placed_voxels_from(file).models.at(0)->grid().solid_count();
 }
 
-TEST(FromVox, AlphaIsTheShareOfSolidVoxels) {
+TEST(FromVox, AlphaIsTheFractionOfSolidVoxels) {
   constexpr std::int64_t kAll = 12 * 12 * 12;
   EXPECT_EQ(solid_of(255), kAll);
   EXPECT_EQ(solid_of(0), kAll);  // left out
@@ -304,7 +304,7 @@ TEST(FromVox, ReadsMaterials) {
   EXPECT_EQ(model.material(300).emission, 0);
 }
 
-TEST(ToVox, TakesTheNearestOfFewerColours) {
+TEST(ToVox, MapsToTheNearestPaletteColour) {
   VoxelGrid grid(ivec3(16), 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     return VoxelGrid::Voxel(static_cast<std::uint32_t>(17 * v.x | 17 * v.y << 8 | 17 * v.z << 16));
@@ -321,7 +321,7 @@ TEST(ToVox, TakesTheNearestOfFewerColours) {
   });
 }
 
-TEST(FromVolume, StandsUp) {
+TEST(FromVolume, RotatesTheUpAxis) {
   Binvox binvox;
   binvox.size = {2, 3, 4};
   binvox.clear();
@@ -336,7 +336,7 @@ TEST(FromVolume, StandsUp) {
   EXPECT_EQ(up.models()[0]->grid().solid_count(), 1);
 }
 
-TEST(FromVolume, ColoursByNumber) {
+TEST(FromVolume, ColoursByIndex) {
   const DenseVolume volume(parse_volume_format("5x1x1:u8"), std::string("\0\12\24\36\31", 5));
   const std::vector<VoxelColour> colours{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   FromVolumeOptions options;

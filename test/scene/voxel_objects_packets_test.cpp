@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays at voxel objects against the same rays one by one, to the bit.
+// Batches of rays at voxel objects equal the same rays one by one, to the bit.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -30,7 +30,7 @@ std::shared_ptr<const VoxelModel> model(int size, double share, std::string_view
   return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
 }
 
-// Objects of all marches, turned, overlapping, some of them twice in the same place.
+// Objects of all marches, rotated, overlapping, some of them twice at the same position.
 VoxelObjects crowd(Random& random, int count) {
   const std::vector models = {model(8, 0.2, "voxel-bricks", random),  model(5, 0.5, "voxel-cubes", random),
                               model(9, 0.1, "voxel-octants", random), model(6, 0.3, "voxel-spheres", random),
@@ -45,7 +45,7 @@ VoxelObjects crowd(Random& random, int count) {
   return VoxelObjects({models, places});
 }
 
-// A camera's rays, 8 x 8 pixels after 8 x 8 pixels; with spread 1 they go anywhere.
+// A camera's rays, 8 x 8 pixels after 8 x 8 pixels; with spread 1 they go in any direction.
 std::vector<Ray> rays_from(const dvec3& eye, const dvec3& towards, double spread, std::size_t count, Random& random) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < count; ++i) {
@@ -63,7 +63,7 @@ bool same(const Hit& a, const Hit& b) {
   return a == b && std::bit_cast<std::uint64_t>(a.t) == std::bit_cast<std::uint64_t>(b.t);
 }
 
-TEST(VoxelObjectsPackets, AnswerAsSingleRaysDo) {
+TEST(VoxelObjectsPackets, MatchSingleRays) {
   Random random(1);
   int hits = 0, again = 0;
   for (int round = 0; round < 60; ++round) {
@@ -91,7 +91,7 @@ TEST(VoxelObjectsPackets, AnswerAsSingleRaysDo) {
       onwards[i] = {rays[i].at(expected ? expected.t : 0), dvec3(1, 2, 3) + point(random, 0.2)};
       if (expected) from[i] = &answers[i];
     }
-    // From the faces that were hit, to a light.
+    // From the hit faces to a light.
     std::vector<Hit> second(rays.size());
     scene.closest_hits(onwards, second, from);
     scene.occluded(onwards, blocked, from);
@@ -106,7 +106,7 @@ TEST(VoxelObjectsPackets, AnswerAsSingleRaysDo) {
   EXPECT_GT(again, 300);
 }
 
-TEST(VoxelObjectsPackets, RefuseSpansThatDiffer) {
+TEST(VoxelObjectsPackets, RejectSpansOfDifferentLengths) {
   Random random(2);
   const VoxelObjects scene = crowd(random, 3);
   const std::vector<Ray> rays(5);

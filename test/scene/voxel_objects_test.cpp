@@ -42,7 +42,7 @@ glm::dmat3 turned(Random& random, double scale) {
   return glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), direction(random))) * scale;
 }
 
-// Each object on its own, by the march that looks at every voxel on the way.
+// Each object separately, by the march that tests every voxel on the way.
 Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std::vector<VoxelPlace>& places,
                const Ray& ray) {
   for (auto& model : models)
@@ -56,10 +56,10 @@ Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std:
   return best;
 }
 
-// A hundred thousand objects of a thousand grids, turned and scaled: those near each ray are asked one by one.
+// A hundred thousand objects of a thousand grids, rotated and scaled: those near each ray are tested one by one.
 TEST(VoxelObjects, FindsTheNearestOfAHundredThousand) {
   constexpr int kModels = 1000, kObjects = 100'000, kRays = 100;
-  constexpr double kSide = 300;              // of the cube that they stand in
+  constexpr double kSide = 300;              // of the cube that contains them
   constexpr double kRounding = 1 + 0x1p-30;  // of a distance, generously
   Random random(4);
   std::vector<std::shared_ptr<const VoxelModel>> models;
@@ -107,8 +107,8 @@ TEST(VoxelObjects, FindsTheNearestOfAHundredThousand) {
   EXPECT_GT(hits, kRays / 2);
 }
 
-// Lengths are powers of two and components eighths of them, so that nothing is rounded however short the direction is.
-TEST(VoxelObjects, TakesDirectionsOfAnyLength) {
+// Lengths are powers of two and components eighths of them, so that nothing is rounded for any length of the direction.
+TEST(VoxelObjects, AcceptsDirectionsOfAnyLength) {
   Random random(3);
   const auto models = std::vector{model(8, 0.2, "voxel-bricks", random), model(5, 0.5, "voxel-cubes", random)};
   const VoxelObjects scene({models, {VoxelPlace{0, turned(random, 0.5), {2, 1, 0}}, VoxelPlace{1}}});
@@ -147,7 +147,7 @@ TEST(VoxelObjects, TakesDirectionsOfAnyLength) {
   EXPECT_FALSE(scene.occluded(none));
 }
 
-TEST(VoxelObjects, FindsTheNearestOfTurnedAndOverlappingObjects) {
+TEST(VoxelObjects, FindsTheNearestOfRotatedOverlappingObjects) {
   Random random(1);
   int hits = 0;
   for (int round = 0; round < 20; ++round) {
@@ -169,7 +169,7 @@ TEST(VoxelObjects, FindsTheNearestOfTurnedAndOverlappingObjects) {
       ASSERT_EQ(scene.occluded(ray), static_cast<bool>(expected));
       if (!hit) continue;
       ++hits;
-      // The object is the same; t up to that of a ray quantised where it comes in, whatever else is in the scene.
+      // The object is the same; t up to that of a ray quantised at its entry, regardless of the rest of the scene.
       ASSERT_EQ(hit, expected);
       EXPECT_NEAR(length(scene.normal(ray, hit)), hit.face == VoxelFace::inside ? 0 : 1, 1e-12);
       EXPECT_LE(dot(scene.normal(ray, hit), ray.direction), hit.face == VoxelFace::inside ? 0.0 : 1e-12);
@@ -178,7 +178,7 @@ TEST(VoxelObjects, FindsTheNearestOfTurnedAndOverlappingObjects) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(VoxelObjects, HitsWhatStandsAMillionMetresAway) {
+TEST(VoxelObjects, HitsObjectsAMillionMetresAway) {
   Random random(2);
   VoxelPlace place{0, turned(random, 0.25), dvec3(1e6, -2e6, 3e6)};
   VoxelGrid grid(ivec3(9), 1);
@@ -191,8 +191,9 @@ TEST(VoxelObjects, HitsWhatStandsAMillionMetresAway) {
   EXPECT_NEAR(hit.t, 1, 1e-5);
 }
 
-// A shadow ray starts in the empty voxel before the face, by number, and is not stopped by the voxel that it leaves.
-TEST(VoxelObjects, ShadowRaysDoNotHitWhatTheyLeave) {
+// A shadow ray starts in the empty voxel in front of the face, given by index, and is not blocked by the voxel that it
+// leaves.
+TEST(VoxelObjects, ShadowRaysDoNotHitTheirStart) {
   Random random(3);
   VoxelGrid grid(ivec3(40), 1);
   grid.fill_sphere(dvec3(20), 19.5, 1);
@@ -215,10 +216,10 @@ TEST(VoxelObjects, ShadowRaysDoNotHitWhatTheyLeave) {
   EXPECT_EQ(free, 2000);
 }
 
-// Cubes and rounded ones alike: into the solid is a hit at once, and any-hit says so, too; one by one and in batches.
-TEST(VoxelObjects, RaysFromASurfaceIntoItHitItAtOnce) {
-  // Rays that go in less steeply may leave a cube's face by an edge, as quantised; those that do not come to its plane
-  // within what that moves them by, 2^-17 voxel (voxel_ray.h).
+// Cubes and rounded ones alike: a ray into the solid hits at once, also by any-hit; one by one and in batches.
+TEST(VoxelObjects, RaysIntoTheirSurfaceHitAtOnce) {
+  // Shallower rays, as quantised, may leave a cube's face across an edge: those that do not reach its plane within the
+  // displacement of 2^-17 voxel (voxel_ray.h).
   constexpr double kSteep = 0.01, kOffRay = 0x1p-17 / kSteep;
   Random random(5);
   VoxelGrid grid(ivec3(12), 4);
@@ -265,7 +266,7 @@ TEST(VoxelObjects, RaysFromASurfaceIntoItHitItAtOnce) {
       EXPECT_EQ(hit.voxel, first[i].voxel);
     }
     EXPECT_GT(into, 500);
-    // A ray that ends before it begins meets nothing.
+    // A ray that ends before its start hits nothing.
     Ray none = rays[0];
     none.direction = -normals[0];
     none.t_max = -1;
@@ -274,7 +275,7 @@ TEST(VoxelObjects, RaysFromASurfaceIntoItHitItAtOnce) {
   }
 }
 
-TEST(VoxelObjects, RefusesWhatIsNoPlace) {
+TEST(VoxelObjects, RejectsInvalidPlaces) {
   Random random(4);
   const std::vector models = {model(3, 0.5, "voxel-planes", random)};
   const auto refused = [&](const VoxelPlace& place) { EXPECT_THROW(VoxelObjects({models, {place}}), Error); };
@@ -305,7 +306,7 @@ TEST(VoxelModel, FollowsEdits) {
   }
 }
 
-TEST(VoxelModel, IsTrueToItsGridAfterAnEditThatThrows) {
+TEST(VoxelModel, MatchesItsGridAfterAThrowingEdit) {
   for (const VoxelMarchEntry& march : voxel_marches()) {
     VoxelModel model(VoxelGrid(ivec3(20), 8), march);
     EXPECT_THROW(model.edit([](VoxelGrid& grid) {
@@ -364,7 +365,7 @@ TEST(FromVox, HitsHaveTheirPaletteEntry) {
   EXPECT_EQ(palette_entry(plain, plain.closest_hit(down)), std::nullopt);
 }
 
-// From version 200 on the first of two is seen where they overlap, before the last.
+// From version 200 on, the first of two overlapping ones is visible; before, the last.
 TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
   for (const int version : {150, 200}) {
     const VoxelObjects scene(placed_voxels_from(two_cubes(version)));
@@ -384,7 +385,7 @@ TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
 }
 
 // All turns of an odd and an even side: a model stays within half a voxel of its pivot, voxel by voxel.
-TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
+TEST(FromVox, PlacesRotatedVoxels) {
   for (int bits = 0; bits < 128; ++bits) {
     VoxFile file;
     file.version = 200;
@@ -404,12 +405,12 @@ TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
     const Hit hit = scene.closest_hit(ray);
     ASSERT_TRUE(hit) << bits;
     EXPECT_EQ(hit.t, 4.5);
-    EXPECT_EQ(hit.voxel, ivec3(0));  // of the one voxel that there is
+    EXPECT_EQ(hit.voxel, ivec3(0));  // of the only voxel
     EXPECT_EQ(scene.normal(ray, hit), dvec3(0, 0, 1));
   }
 }
 
-// As many models of the largest canvas as shall be, each with the voxels, in a row.
+// The given number of models of the largest canvas in a row, each with the voxels.
 VoxFile canvases(int models, const std::vector<VoxVoxel>& voxels) {
   VoxFile file;
   file.version = 200;
@@ -424,8 +425,8 @@ VoxFile canvases(int models, const std::vector<VoxVoxel>& voxels) {
   return file;
 }
 
-// 256^3 voxels take 2 MiB of masks alone: all of them less than one would as a canvas.
-TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
+// 256^3 voxels take 2 MiB of masks alone: all of them together take less than one full canvas.
+TEST(FromVox, MemoryDependsOnVoxelsNotOnModelSize) {
   const VoxelObjects scene(placed_voxels_from(canvases(500, {{200, 100, 255, 7}})));
   EXPECT_EQ(scene.objects(), 500u);
   EXPECT_LT(scene.bytes(), std::size_t{1} << 21);
@@ -437,15 +438,15 @@ TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
   EXPECT_EQ(down.at(hit.t).z, 128);
 }
 
-// Small files that ask for much are refused before it is spent.
-TEST(FromVox, RefusesWhatWouldTakeForEver) {
+// Small files that need much memory are rejected before it is allocated.
+TEST(FromVox, RejectsExcessiveFilesEarly) {
   const VoxFile wide = canvases(1025, {{0, 0, 0, 1}, {255, 255, 255, 1}});
   std::size_t bytes = 0;
   for (const auto& model : placed_voxels_from(wide).models) bytes += model->bytes();
   EXPECT_LT(bytes, wide.models.size() * 60'000);
   const std::string refusal = test::refusal([&] { placed_voxels_from(wide, {.voxels = {.march = "voxel-octants"}}); });
   EXPECT_NE(refusal.find("more than 1.1 GB of memory (choose --march voxel-bricks)"), std::string::npos) << refusal;
-  // 46^3 instances, none of them more than a fifth of its side from another: the pairs of them are too many.
+  // 46^3 instances, each within a fifth of its side from another: too many pairs.
   constexpr int kAlong = 46;
   VoxFile pile = canvases(1, {{0, 0, 0, 1}, {255, 255, 255, 1}});
   VoxGroup all;
@@ -456,7 +457,7 @@ TEST(FromVox, RefusesWhatWouldTakeForEver) {
   }
   pile.nodes.front().content = all;
   EXPECT_NE(test::refusal([&] { placed_voxels_from(pile); }).find("models overlap too much"), std::string::npos);
-  // 2^18 instances of a voxel in one place, each group twice the next one: one of them remains.
+  // 2^18 instances of a voxel at one position, each group twice the next one: one of them remains.
   constexpr int kGroups = 18;
   VoxFile heap = canvases(1, {{0, 0, 0, 1}});
   heap.nodes.clear();
@@ -465,9 +466,9 @@ TEST(FromVox, RefusesWhatWouldTakeForEver) {
   EXPECT_EQ(placed_voxels_from(heap).places.size(), 1u);
 }
 
-// Instances of one voxel side by side, in planes across each axis: more pairs than are looked at, but for the other
-// axes. 2^kDoublings are along either axis of a plane. In debug builds they are so few that no axis would be refused:
-// only what placing does to memory is looked at there.
+// Instances of one voxel side by side, in planes across each axis: more pairs than are examined, without the other
+// axes. There are 2^kDoublings along either axis of a plane. In debug builds they are so few that no axis would be
+// rejected: these only check memory accesses.
 #ifdef NDEBUG
 constexpr int kDoublings = 9;
 #else

@@ -41,7 +41,7 @@ std::shared_ptr<const VoxelModel> solid_model(const ivec3& size, std::string_vie
   return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
 }
 
-// A model whose turned grid begins at `low`.
+// A model whose rotated grid starts at `low`.
 VoxelPlace place_at(const dvec3& low, const glm::dmat3& turn, const ivec3& size) {
   const dvec3 far = turn * dvec3(size);
   return {0, turn, low - glm::min(far, dvec3(0.0))};
@@ -51,7 +51,7 @@ VoxelPlace place_at(const dvec3& low, const glm::dmat3& turn, const ivec3& size)
 bool blocks(const VoxelObjects& objects, const Ray& ray) {
   const bool blocked = static_cast<bool>(objects.closest_hit(ray));
   EXPECT_EQ(blocked, objects.occluded(ray));
-  // Batches in turn: vectors take a hundred times as long where sanitizers are.
+  // Batches take turns: vectors are a hundred times slower with sanitizers.
   static int asked = 0;
   if (++asked % test::cases(1, 1, 32) != 0) return blocked;
   const std::vector<Ray> rays(64, ray);
@@ -99,7 +99,7 @@ TEST(VoxelSeams, BlockRaysInTheSharedPlane) {
   }
 }
 
-TEST(VoxelSeams, BlockRaysAlmostInTheSharedPlane) {
+TEST(VoxelSeams, BlockRaysNearlyInTheSharedPlane) {
   const auto cube = solid_model(ivec3(4), "voxel-bricks");
   for (const glm::dmat3& turn : orientations()) {
     const VoxelObjects objects(
@@ -120,7 +120,8 @@ TEST(VoxelSeams, BlockRaysAlmostInTheSharedPlane) {
   }
 }
 
-// Voxels whose sides and places are rounded, on and next to the planes between them: the ground is closed for each ray.
+// Voxels whose sides and positions are rounded, on and next to the planes between them: the ground is closed for each
+// ray.
 TEST(VoxelSeams, HaveNoGapWhereSidesAreRounded) {
   bench::Random random(3, 1);
   const auto cube = solid_model(ivec3(4), "voxel-octants");
@@ -164,7 +165,7 @@ TEST(VoxelSeams, ClosedFloorOfTurnedTilesHasNoGap) {
       places.push_back(place_at({8.0 * x, 8.0 * y, 0}, flat[static_cast<std::size_t>(x * 5 + y * 3) % 16], {8, 8, 2}));
   }
   const VoxelObjects floor({{tile}, places});
-  // The floor's own far sides belong to what is beyond.
+  // The floor's own far sides belong to the space beyond.
   for (int y = 0; y < 128; ++y) {
     for (int x = 0; x < 128; ++x) {
       Ray ray;
@@ -182,7 +183,7 @@ TEST(VoxelSeams, BlockRaysThroughSharedEdges) {
   for (int round = 0; round < test::cases(1000, 1000, 250); ++round) {
     const int across = random.below(3), up = (across + 1 + random.below(2)) % 3, along = 3 - across - up;
     const double side = random.below(2) ? 1 : 0.1;
-    const bool alone = random.below(2) != 0;  // no voxel but those at the edge
+    const bool alone = random.below(2) != 0;  // only the voxels at the edge
     PlacedVoxels placed;
     for (const int which : {0, 1}) {
       const glm::dmat3& turn = all[static_cast<std::size_t>(random.below(48))];
@@ -222,7 +223,7 @@ TEST(VoxelSeams, BlockRaysThroughSharedEdges) {
   }
 }
 
-TEST(VoxelSeams, AgreeWithOneGrid) {
+TEST(VoxelSeams, MatchOneGrid) {
   std::int64_t hits = 0, ties = 0;
   for (std::int64_t s = 0; s < kScenes; ++s) {
     bench::Random random(48, static_cast<std::uint64_t>(s));
@@ -257,8 +258,8 @@ TEST(VoxelSeams, AgreeWithOneGrid) {
   EXPECT_GT(ties, kScenes);
 }
 
-// Fields of a scene, each with a placement.
-TEST(VoxelSeams, PlacedFieldsAgreeWithOneGrid) {
+// Separate fields of a scene, each with a placement.
+TEST(VoxelSeams, PlacedFieldsMatchOneGrid) {
   for (std::int64_t s = 0; s < kScenes / 4; ++s) {
     bench::Random random(49, static_cast<std::uint64_t>(s));
     const bench::VoxelSceneJudge judge(random, {});

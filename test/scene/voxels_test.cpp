@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxels of scarp.h: volumes in memory, sizes, colours, edits, and what they refuse.
+// Voxels of scarp.h: volumes in memory, sizes, colours, edits, and errors.
 #include "scarp/scene/voxels.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Voxels, HaveASideInMetres) {
   EXPECT_EQ(voxels.scene().cell_side(), 0.5);
 }
 
-TEST(Voxels, TakeRgbFromGridsWithoutAPalette) {
+TEST(Voxels, UseRgbOfGridsWithoutAPalette) {
   VoxelGrid grid({2, 2, 2}, 24);
   grid.set({0, 0, 0}, 0x302010);
   const Voxels voxels(std::move(grid));
@@ -60,7 +60,7 @@ TEST(Voxels, TakeRgbFromGridsWithoutAPalette) {
   EXPECT_EQ(voxels.colour(hit), (VoxelColour{0x10, 0x20, 0x30}));
 }
 
-TEST(Voxels, EqualFreshOnesAfterEdits) {
+TEST(Voxels, MatchFreshVoxelsAfterEdits) {
   VoxelGrid grid({32, 32, 32});
   grid.fill_sphere({16, 16, 16}, 6, 1);
   Voxels voxels(grid);
@@ -79,12 +79,12 @@ TEST(Voxels, EqualFreshOnesAfterEdits) {
   EXPECT_EQ(copy.scene().box().low, dvec3(0.0));
 }
 
-TEST(Voxels, WithoutSolidOnesMissEveryRay) {
+TEST(Voxels, EmptyGridMissesEveryRay) {
   const Voxels voxels(VoxelGrid({1, 1, 1}));
   EXPECT_EQ(cast(voxels, {.origin = {0.5, 0.5, 10}}).status, HitStatus::miss);
 }
 
-TEST(Voxels, RefuseBadInput) {
+TEST(Voxels, RejectBadInput) {
   const std::vector<std::uint8_t> indices(8, 7);
   EXPECT_EQ(refusal([] { Voxels::copy(nullptr, {2, 2, 2}); }), "voxels: the pointer to the indices is null");
   EXPECT_EQ(refusal([&] {

@@ -14,8 +14,8 @@ using test::refusal;
 
 std::string header(const std::string& dim) { return "#binvox 1\ndim " + dim + "\ntranslate 1 2 3\nscale 4\ndata\n"; }
 
-// By hand, after the format's description: y runs fastest, then z, then x.
-TEST(Binvox, ReadsTheOrderOfTheFormat) {
+// By hand, from the format's description: y runs fastest, then z, then x.
+TEST(Binvox, ReadsVoxelsInFileOrder) {
   // dim is x, z, y: 2 x 3 x 4 in x, y, z.
   const Binvox binvox = parse_binvox(header("2 4 3") + std::string("\0\5\1\1\0\12\1\1\0\7", 10));
   EXPECT_EQ(binvox.size, ivec3(2, 3, 4));
@@ -33,7 +33,7 @@ TEST(Binvox, ReadsTheOrderOfTheFormat) {
   EXPECT_EQ(parse_binvox(binvox_bytes(binvox)), binvox);
 }
 
-TEST(Binvox, SaysWhatIsWrong) {
+TEST(Binvox, ReportsErrors) {
   const auto refused = [](const std::string& bytes, std::string_view fragment) {
     const std::string message = refusal([&] { parse_binvox(bytes); });
     EXPECT_NE(message.find(fragment), std::string::npos) << message;
@@ -54,7 +54,7 @@ TEST(Binvox, SaysWhatIsWrong) {
   refused(header("2 2 2") + "\7\10", "expected 1 to 255 of 0 or 1");
 }
 
-TEST(DenseVolume, ReadsNumbersOfAllOrders) {
+TEST(DenseVolume, ReadsAllTypesAndByteOrders) {
   const std::string bytes("ab\0\1\0\2\377\376\0\4", 10);
   const DenseVolume volume(parse_volume_format("2x1x2:i16be+2"), bytes);
   EXPECT_EQ(volume[ivec3(0, 0, 0)], 1);
@@ -69,7 +69,7 @@ TEST(DenseVolume, ReadsNumbersOfAllOrders) {
   EXPECT_EQ(DenseVolume(z_fastest, "abcdef")[ivec3(0, 0, 2)], 'c');
 }
 
-TEST(DenseVolume, SaysWhatIsWrong) {
+TEST(DenseVolume, ReportsErrors) {
   for (const char* text : {"", "2x2:u8", "0x2x2:u8", "2x2x2", "2x2x2:u16", "4096x2x2:u8", "2x4096x2:u8", "2x2x4096:u8"})
     EXPECT_NE(refusal([&] { parse_volume_format(text); }).find("expected npy, or NXxNYxNZ:TYPE"), std::string::npos)
         << text;

@@ -48,7 +48,7 @@ TEST(ColourReliefFile, ReadsAllSeparatorsNamesAndOrders) {
   EXPECT_EQ(stops.slices[2].srgb_high, vec3(1.0f));
 }
 
-TEST(ColourReliefFile, PercentIsStretchedAndEqualValuesAreSteps) {
+TEST(ColourReliefFile, StretchesPercentagesAndKeepsSteps) {
   const RampStops percent = read("0% black\n25% 255 0 0\n100% white\n");
   EXPECT_TRUE(percent.stretched);
   EXPECT_EQ(percent.slices.at(0).high, 0.25);
@@ -59,7 +59,7 @@ TEST(ColourReliefFile, PercentIsStretchedAndEqualValuesAreSteps) {
   EXPECT_EQ(read("5 red\n").slices.at(0).srgb_high, vec3(1, 0, 0)) << "one colour everywhere";
 }
 
-TEST(ColourReliefFile, WhatIsWrongIsSaidWithItsLine) {
+TEST(ColourReliefFile, ErrorNamesTheLine) {
   for (const auto& [text, says] : {std::pair{"\n# nothing\n", ": no line 'value R G B'"},
                                    {"0 1 2\n", "line 1: too short"},
                                    {"0 0 0 0\nx 1 2 3\n", "line 2: 'x' is not a number"},

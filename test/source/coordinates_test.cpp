@@ -15,7 +15,7 @@ using test::expect_says;
 
 constexpr int kCols = 301, kRows = 201;
 
-// Places of rasters: outer edges and CRS.
+// Georeferences of rasters: outer edges and CRS.
 struct Place {
   const char* crs;
   double west, south, cell_x, cell_y;
@@ -33,7 +33,7 @@ const Place kPlaces[] = {
 
 class CoordinatesOfFiles : public test::Files {
  protected:
-  // A file at the place, read as any other.
+  // A file with this georeference, read like any other.
   Georeference at(const Place& place) {
     const std::string file = write_tiff(
         "place.tif", GDT_Int16, kCols, kRows, std::vector<double>(static_cast<std::size_t>(kCols * kRows), 7),
@@ -60,7 +60,7 @@ class CoordinatesOfFiles : public test::Files {
   }
 };
 
-TEST_F(CoordinatesOfFiles, ThereAndBack) {
+TEST_F(CoordinatesOfFiles, RoundTrip) {
   for (const Place& place : kPlaces) {
     const Georeference geo = at(place);
     for (const Coordinates coordinates : {Coordinates::local, Coordinates::map, Coordinates::lonlat}) {
@@ -69,7 +69,7 @@ TEST_F(CoordinatesOfFiles, ThereAndBack) {
       std::vector<dvec3> points = local;
       ASSERT_FALSE(frame.from_local(points)) << place.crs;
       ASSERT_FALSE(frame.to_local(points)) << place.crs;
-      // PROJ promises inverses to some 1e-10 of a radian only where it iterates: 1e-6 of a cell of 30 m and more.
+      // PROJ guarantees inverses to some 1e-10 of a radian only where it iterates: 1e-6 of a cell of 30 m and more.
       const double bound = coordinates == Coordinates::lonlat ? 1e-6 : 1e-9;
       for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_NEAR(points[i].x / geo.cell_x_m, local[i].x / geo.cell_x_m, bound) << place.crs << " " << i;
@@ -80,7 +80,7 @@ TEST_F(CoordinatesOfFiles, ThereAndBack) {
   }
 }
 
-TEST_F(CoordinatesOfFiles, NodesOfTheMapAreNodesOfTheField) {
+TEST_F(CoordinatesOfFiles, MapNodesAreFieldNodes) {
   for (const Place& place : kPlaces) {
     const Georeference geo = at(place);
     std::vector<dvec3> nodes;
@@ -97,8 +97,8 @@ TEST_F(CoordinatesOfFiles, NodesOfTheMapAreNodesOfTheField) {
   }
 }
 
-TEST_F(CoordinatesOfFiles, LonlatIsWhatProjSaysOfTheMap) {
-  // By Krueger's series to the fourth order of n (1912), which is good to some micrometres, for UTM zone 16N.
+TEST_F(CoordinatesOfFiles, LonlatMatchesProj) {
+  // By Krueger's series to the fourth order of n (1912), accurate to some micrometres, for UTM zone 16N.
   const Georeference geo = at(kPlaces[1]);
   const CoordinateFrame map(geo, kCols, kRows, Coordinates::map), lonlat(geo, kCols, kRows, Coordinates::lonlat);
   std::vector<dvec3> point = {{725000, 4033000, 12}};
@@ -108,7 +108,7 @@ TEST_F(CoordinatesOfFiles, LonlatIsWhatProjSaysOfTheMap) {
   EXPECT_NEAR(point[0].y, 36.4158495853, 1e-9);
 }
 
-TEST_F(CoordinatesOfFiles, LongitudesAreThoseNextToTheRaster) {
+TEST_F(CoordinatesOfFiles, LongitudesWrapToTheRaster) {
   for (const Place& place : {kPlaces[5], kPlaces[6]}) {
     const Georeference geo = at(place);
     const CoordinateFrame frame(geo, kCols, kRows, Coordinates::lonlat);
@@ -118,7 +118,7 @@ TEST_F(CoordinatesOfFiles, LongitudesAreThoseNextToTheRaster) {
     for (const dvec3& p : points) EXPECT_NEAR(p.x / geo.cell_x_m, 150, 1e-8) << place.west;
     ASSERT_FALSE(frame.from_local(points));
     EXPECT_LE(std::abs(points[0].x), 180);
-    // The map's own longitudes are as good.
+    // The map's own longitudes are as accurate.
     const CoordinateFrame map(geo, kCols, kRows, Coordinates::map);
     points = {{lon - 360, lat, 0}, {lon, lat, 0}};
     ASSERT_FALSE(map.to_local(points));
@@ -126,7 +126,7 @@ TEST_F(CoordinatesOfFiles, LongitudesAreThoseNextToTheRaster) {
   }
 }
 
-TEST_F(CoordinatesOfFiles, DirectionsOfTheMapAreDifferencesOfItsPoints) {
+TEST_F(CoordinatesOfFiles, MapDirectionsAreDifferencesOfPoints) {
   for (const Place& place : kPlaces) {
     const Georeference geo = at(place);
     const CoordinateFrame frame(geo, kCols, kRows, Coordinates::map);
@@ -140,11 +140,11 @@ TEST_F(CoordinatesOfFiles, DirectionsOfTheMapAreDifferencesOfItsPoints) {
   }
 }
 
-TEST_F(CoordinatesOfFiles, DirectionsOfLonlatAreTrueMetres) {
+TEST_F(CoordinatesOfFiles, LonlatDirectionsAreTrueMetres) {
   for (const Place& place : kPlaces) {
     const Georeference geo = at(place);
     const CoordinateFrame frame(geo, kCols, kRows, Coordinates::lonlat);
-    // A short way north from the centre, in degrees, is that way in metres.
+    // A short step north from the centre, in degrees, has the same length in metres.
     std::vector<dvec3> centre = {{(kCols - 1) / 2.0 * geo.cell_x_m, (kRows - 1) / 2.0 * geo.cell_y_m, 0}};
     const dvec3 begin = centre[0];
     ASSERT_FALSE(frame.from_local(centre));
@@ -159,7 +159,7 @@ TEST_F(CoordinatesOfFiles, DirectionsOfLonlatAreTrueMetres) {
   }
 }
 
-TEST_F(CoordinatesOfFiles, PlacesThatAreNoneAreFound) {
+TEST_F(CoordinatesOfFiles, DetectsInvalidPlaces) {
   const CoordinateFrame frame(at(kPlaces[1]), kCols, kRows, Coordinates::lonlat);
   for (const dvec3 bad : {dvec3(725000, 4033000, 0), dvec3(-84, 91, 0), dvec3(400, 36, 0)}) {
     std::vector<dvec3> points(2000, dvec3(-84, 36.4, 0));
@@ -168,7 +168,7 @@ TEST_F(CoordinatesOfFiles, PlacesThatAreNoneAreFound) {
   }
 }
 
-TEST_F(CoordinatesOfFiles, RaysAreNamedWhenTheirPlaceIsNone) {
+TEST_F(CoordinatesOfFiles, ErrorNamesTheRayWithInvalidCoordinates) {
   const CoordinateFrame frame(at(kPlaces[1]), kCols, kRows, Coordinates::lonlat);
   RayTable table = parse_ray_csv("x,y,z,tx,ty,tz\n-84,36,0,-84.1,36,0\n-84,36,0,36,-840,0\n");
   table.path = "a.csv";
@@ -176,7 +176,7 @@ TEST_F(CoordinatesOfFiles, RaysAreNamedWhenTheirPlaceIsNone) {
   expect_says(text, "a.csv: line 3 (ray 1): (36, -840)");
 }
 
-TEST_F(CoordinatesOfFiles, TargetsAreWhereTIsOne) {
+TEST_F(CoordinatesOfFiles, TargetsAreAtTEqualToOne) {
   const CoordinateFrame frame(at(kPlaces[1]), kCols, kRows, Coordinates::lonlat);
   const RayTable table = parse_ray_csv("x,y,z,tx,ty,tz\n-84.51,36.42,900,-84.5,36.41,700\n");
   const std::vector<Ray> rays = rays_in_local(table, frame);
@@ -190,12 +190,12 @@ TEST_F(CoordinatesOfFiles, TargetsAreWhereTIsOne) {
   EXPECT_EQ(rays[0].t_max, 1);
 }
 
-TEST(CoordinateNames, AreFound) {
+TEST(CoordinateNames, AreRecognised) {
   for (const char* name : {"local", "map", "lonlat"}) EXPECT_EQ(name_of(find_coordinates(name)), name);
   expect_says(error_of([] { find_coordinates("EPSG:4326"); }), "local, map or lonlat");
 }
 
-TEST(CoordinateFrame, WhatTheRasterHasNotIsAskedFor) {
+TEST(CoordinateFrame, ReportsMissingGeoreferenceOrCrs) {
   Georeference geo;
   EXPECT_NO_THROW(CoordinateFrame(geo, 3, 3, Coordinates::local));
   expect_says(error_of([&] { CoordinateFrame(geo, 3, 3, Coordinates::map); }), "no georeference");

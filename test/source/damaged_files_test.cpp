@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files that are no rasters of heights: one line each, and nothing on stderr.
+// Files that are not rasters of heights: one line each, and nothing on stderr.
 #include <cmath>
 
 #include "source/files.h"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-// Fails when anything is printed while a test runs: GDAL and PROJ like to talk.
+// Fails if anything is printed during a test: GDAL and PROJ tend to print.
 class DamagedFiles : public Files {
  protected:
   void SetUp() override { ::testing::internal::CaptureStderr(); }
@@ -20,7 +20,7 @@ class DamagedFiles : public Files {
     options.push_back(nullptr);
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
     if (!driver) return {};
-    std::filesystem::remove(path(name));  // GDAL would look into what it replaces, and talk about it
+    std::filesystem::remove(path(name));  // GDAL would inspect the replaced file, and print messages
     const GDALDatasetUniquePtr source(GDALDataset::Open(tiff.c_str()));
     const GDALDatasetUniquePtr copy(driver->CreateCopy(path(name).c_str(), source.get(), FALSE,
                                                        const_cast<char**>(options.data()), nullptr, nullptr));
@@ -40,36 +40,36 @@ class DamagedFiles : public Files {
   }
 };
 
-TEST_F(DamagedFiles, AMissingFileIsNamed) { expect_says(read_error(path("none.tif")), "does not exist"); }
-TEST_F(DamagedFiles, AnEmptyNameIsRefused) { expect_says(read_error(""), "empty"); }
-TEST_F(DamagedFiles, ADirectoryIsNamed) {
+TEST_F(DamagedFiles, NamesAMissingFile) { expect_says(read_error(path("none.tif")), "does not exist"); }
+TEST_F(DamagedFiles, RejectsAnEmptyName) { expect_says(read_error(""), "empty"); }
+TEST_F(DamagedFiles, NamesADirectory) {
   expect_says(read_error(folder_.string()), "folder without a raster");
   std::filesystem::create_directory(path("d.npy"));
   expect_says(read_error(path("d.npy")), "is a directory");
 }
-TEST_F(DamagedFiles, AnEmptyFileIsNamed) {
+TEST_F(DamagedFiles, NamesAnEmptyFile) {
   for (const char* name : {"e.tif", "e.npy", "e.npz", "N00E010.hgt"})
     expect_says(read_error(write_bytes(name, "")), "0 bytes", fmt::format("{}", name));
 }
-TEST_F(DamagedFiles, AGitLfsPointerIsNamed) {
+TEST_F(DamagedFiles, RecognisesGitLfsPointers) {
   const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
   for (const char* name : {"p.tif", "p.npy", "p.npz"})
     expect_says(read_error(write_bytes(name, pointer)), "git lfs pull", fmt::format("{}", name));
 }
-TEST_F(DamagedFiles, AnythingElseIsNoRaster) {
+TEST_F(DamagedFiles, RejectsOtherFiles) {
   expect_says(read_error(write_bytes("t.tif", "hello")), "not a raster format");
   expect_says(read_error(write_bytes("t.tif", std::string(5000, '\0'))), "not a raster format");
   expect_says(read_error(write_bytes("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
 }
 
-// What would be right, and nothing that only GDAL's developers understand.
+// The advice that is right, and nothing that only GDAL's developers understand.
 void expect_advice(const std::string& text) {
   expect_says(text, "fetch or copy it again");
   for (const char* riddle : {"4294967295", "0x", "No such file", "Success"})
     EXPECT_EQ(std::string::npos, text.find(riddle)) << text;
 }
 
-TEST_F(DamagedFiles, CutOffFilesAreRefusedAtAnyLength) {
+TEST_F(DamagedFiles, RejectsFilesTruncatedAnywhere) {
   for (const double share : {0.1, 0.5, 0.97}) {
     std::string file = slope();
     cut(file, share);
@@ -93,7 +93,7 @@ TEST_F(DamagedFiles, CutOffFilesAreRefusedAtAnyLength) {
   }
 }
 
-TEST_F(DamagedFiles, ANetcdfOfVersion4ThatIsCutOffIsCalledSo) {
+TEST_F(DamagedFiles, ReportsTruncatedNetcdf4) {
   const std::string file = copy_as(slope(), "netCDF", "a.nc", {"FORMAT=NC4"});
   if (file.empty()) GTEST_SKIP() << "this GDAL has no netCDF";
   const auto bytes = std::filesystem::file_size(file);
@@ -106,11 +106,11 @@ TEST_F(DamagedFiles, ANetcdfOfVersion4ThatIsCutOffIsCalledSo) {
   }
 }
 
-TEST_F(DamagedFiles, AnArchiveThatIsCutOffIsCalledSo) {
+TEST_F(DamagedFiles, ReportsTruncatedArchives) {
   const std::string tiff = bytes_of(slope());
   const std::string whole = write_zip("a.zip", {{"dem/slope.tif", tiff}, {"b", "1"}, {"c", "2"}, {"d", "3"}});
   EXPECT_NO_THROW(read_raster("/vsizip/" + whole + "/dem/slope.tif", {}));
-  // Sound, but not named to its end, or wrongly: what is in it is told.
+  // Valid, but the path is incomplete or wrong: the message lists the content.
   expect_says(read_error(whole), "is a .zip archive (name a raster in it: /vsizip/" + whole + "/dem/slope.tif, ");
   expect_says(read_error(whole), "/c or 1 more");
   expect_says(read_error("/vsizip/" + whole + "/slope.tif"), "does not exist in '" + whole + "' (name a raster in it");
@@ -129,7 +129,7 @@ TEST_F(DamagedFiles, AnArchiveThatIsCutOffIsCalledSo) {
   }
 }
 
-TEST_F(DamagedFiles, TheSourceOfAVirtualRasterIsNamed) {
+TEST_F(DamagedFiles, NamesTheSourceOfAVirtualRaster) {
   const auto vrt_of = [&](const std::string& source, int relative) {
     return write_bytes("v.vrt", fmt::format("<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand "
                                             "dataType=\"Int16\" band=\"1\"><SimpleSource><SourceFilename "
@@ -149,7 +149,7 @@ TEST_F(DamagedFiles, TheSourceOfAVirtualRasterIsNamed) {
   }
 }
 
-TEST_F(DamagedFiles, NetcdfOfEveryKindIsReadWhole) {
+TEST_F(DamagedFiles, ReadsEveryKindOfNetcdf) {
   for (const char* format : {"FORMAT=NC", "FORMAT=NC2", "FORMAT=NC4", "FORMAT=NC4C"}) {
     const std::string file = copy_as(slope(), "netCDF", "a.nc", {format});
     if (file.empty()) GTEST_SKIP() << "this GDAL has no netCDF";
@@ -158,7 +158,7 @@ TEST_F(DamagedFiles, NetcdfOfEveryKindIsReadWhole) {
   }
 }
 
-TEST_F(DamagedFiles, ANetcdfOfSeveralVariablesListsThem) {
+TEST_F(DamagedFiles, ListsTheVariablesOfANetcdf) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("netCDF");
   if (!driver) GTEST_SKIP() << "this GDAL has no netCDF";
   {
@@ -173,7 +173,7 @@ TEST_F(DamagedFiles, ANetcdfOfSeveralVariablesListsThem) {
   EXPECT_EQ(4, read_raster("NETCDF:\"" + path("two.nc") + "\":Band2", {}).rows * 2);
 }
 
-TEST_F(DamagedFiles, APhotographIsRefusedWithARemedy) {
+TEST_F(DamagedFiles, RejectsAPhotographWithARemedy) {
   const std::string file = write_tiff("rgb.tif", GDT_Byte, 2, 2, {1, 2, 3, 4}, {}, 3, {"PHOTOMETRIC=RGB"});
   const std::string text = read_error(file);
   expect_says(text, "photograph");
@@ -185,12 +185,12 @@ TEST_F(DamagedFiles, APhotographIsRefusedWithARemedy) {
   expect_says(read_error(file, options), "no band 4: the file has");
 }
 
-TEST_F(DamagedFiles, SeveralBandsNeedAChoice) {
+TEST_F(DamagedFiles, RequiresAChoiceOfBand) {
   expect_says(read_error(write_tiff("two.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, {}, 2)),
               "with 2 bands (choose the band of heights with --band 1..2)");
 }
 
-TEST_F(DamagedFiles, APaletteIsRefused) {
+TEST_F(DamagedFiles, RejectsAPalette) {
   const std::string file = write_tiff("p.tif", GDT_Byte, 2, 2, {1, 2, 3, 4}, [](GDALDataset& d) {
     GDALColorTable colours;
     const GDALColorEntry red{255, 0, 0, 255};
@@ -203,13 +203,13 @@ TEST_F(DamagedFiles, APaletteIsRefused) {
   EXPECT_NO_THROW(read_raster(file, options));
 }
 
-TEST_F(DamagedFiles, AKeyIsForArchivesOnly) {
+TEST_F(DamagedFiles, RejectsAKeyOutsideArchives) {
   RasterOptions options;
   options.key = "height";
   expect_says(read_error(slope(), options), ".npz");
 }
 
-TEST_F(DamagedFiles, MoreSamplesThanMemoryAreRefusedBeforeTheyAreMade) {
+TEST_F(DamagedFiles, RejectsRastersLargerThanMemoryUpFront) {
   // A sparse file: 100 GB would be needed for 200,000 x 130,000 floats, the file has some MB.
   const std::string file = path("huge.vrt");
   write_bytes("huge.vrt",

@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-// Adds everything in pieces of odd sizes, in bands of rows.
+// Adds all samples in pieces of odd sizes, in bands of rows.
 template <class T>
 std::vector<T> decimated(const std::vector<T>& samples, int cols, int rows, int out_cols, int out_rows,
                          std::optional<T> nodata, int piece_cols, int piece_rows, const SampleEnds& known = {}) {
@@ -43,7 +43,7 @@ TEST(Decimate, ChoosesTheSmallestBlockWithinTheLimit) {
 }
 
 // Pieces may end anywhere; blocks that differ by a column or row still cover every sample once.
-TEST(Decimate, AveragesBlocksOfEverySizeHoweverTheyAreRead) {
+TEST(Decimate, AveragesBlocksInAnyReadingOrder) {
   std::mt19937 random(7);
   constexpr int kCols = 1531, kRows = 47, kOutCols = 219, kOutRows = 8;
   std::vector<std::int16_t> samples;
@@ -69,7 +69,7 @@ TEST(Decimate, AveragesBlocksOfEverySizeHoweverTheyAreRead) {
   }
 }
 
-TEST(Decimate, HolesAreBlocksOfWhichLessThanHalfIsValid) {
+TEST(Decimate, MarksBlocksLessThanHalfValidAsHoles) {
   constexpr float kHole = -9999, kNan = std::numeric_limits<float>::quiet_NaN();
   // Blocks of 2 x 2: half valid, a quarter, all, a quarter with the maximum, half with the minimum, none.
   const std::vector<float> samples{1,     3,    kHole, 4,     5, 6, 90,    kHole, -7,    kNan, kHole, kNan,  //
@@ -78,23 +78,23 @@ TEST(Decimate, HolesAreBlocksOfWhichLessThanHalfIsValid) {
   EXPECT_EQ((std::vector<float>{2, kHole, 6.5f, 90, -7, kHole}), out);
 }
 
-TEST(Decimate, AveragesAreNeverTakenForHoles) {
+TEST(Decimate, AveragesNeverEqualNodata) {
   EXPECT_EQ((std::vector<std::int16_t>{1, -5, 5}),
             decimated<std::int16_t>({-1, 1, -5, -5, 5, 5}, 6, 1, 3, 1, std::int16_t{0}, 6, 1));
 }
 
-TEST(Decimate, BothExtremesOfOneBlockAreKept) {
+TEST(Decimate, KeepsBothExtremesOfOneBlock) {
   EXPECT_EQ((std::vector<float>{0, -50, 80}), decimated<float>({0, 0, 1, 3, 80, -50}, 6, 1, 3, 1, {}, 6, 1));
   EXPECT_EQ((std::vector<float>{80}), decimated<float>({80, -50}, 2, 1, 1, 1, {}, 2, 1));
 }
 
-TEST(Decimate, ExtremesKnownElsewhereReplaceThose) {
+TEST(Decimate, KnownExtremesReplaceMeasuredOnes) {
   EXPECT_EQ((std::vector<float>{-10, 3, 6}), decimated<float>({1, 1, 3, 3, 5, 5}, 6, 1, 3, 1, {}, 6, 1, {-10, 6}));
-  // Statistics narrower than the samples are wrong.
+  // Statistics with a narrower range than the samples are wrong.
   EXPECT_EQ((std::vector<float>{1, 3, 5}), decimated<float>({1, 1, 3, 3, 5, 5}, 6, 1, 3, 1, {}, 6, 1, {2, 4}));
 }
 
-TEST(Decimate, RowsThatAreNeverReadAreHoles) {
+TEST(Decimate, UnreadRowsAreHoles) {
   Decimator<std::uint16_t> decimator(4, 4, 2, 2, std::uint16_t{9});
   decimator.close_rows(2);
   const std::uint16_t samples[] = {1, 1, 4, 4, 1, 1, 4, 4};

@@ -14,7 +14,7 @@ class EncodedRaster : public Files {
  protected:
   using Pixel = std::array<std::uint8_t, 4>;
 
-  // A PNG, or a file of another driver's, of the given pixels; without alpha their last byte is left out.
+  // A PNG, or a file of another driver, of the given pixels; without alpha their last byte is omitted.
   std::string write_image(const std::string& name, int cols, int rows, const std::vector<Pixel>& pixels, bool alpha,
                           const char* driver = "PNG") {
     GDALDatasetUniquePtr memory(
@@ -44,7 +44,7 @@ class EncodedRaster : public Files {
   }
 };
 
-TEST_F(EncodedRaster, BothEncodingsAreDecoded) {
+TEST_F(EncodedRaster, DecodesBothEncodings) {
   const std::string file = write_image("a.png", 2, 1, {{1, 134, 160, 0}, {128, 1, 128, 0}}, false);
   const Raster rgb = read_raster(file, as(HeightEncoding::terrain_rgb));
   EXPECT_TRUE(holds<float>(rgb));
@@ -66,7 +66,7 @@ TEST_F(EncodedRaster, TransparentPixelsAreHoles) {
   EXPECT_EQ(592137, n[3]);
 }
 
-TEST_F(EncodedRaster, BlocksAndWindowsKeepTheirPlace) {
+TEST_F(EncodedRaster, BlocksAndWindowsKeepTheirPosition) {
   // Tiles of 16 x 16 over 40 x 35 samples: the last ones are only partly used.
   const int cols = 40, rows = 35;
   std::vector<Pixel> pixels;
@@ -90,7 +90,7 @@ TEST_F(EncodedRaster, BlocksAndWindowsKeepTheirPlace) {
   }
 }
 
-TEST_F(EncodedRaster, ScaleAndNodataOfTheCallerWin) {
+TEST_F(EncodedRaster, CallersScaleAndNodataTakePrecedence) {
   const std::string file = write_image("a.png", 2, 1, {{0, 0, 0, 0}, {0, 0, 200, 0}}, false);
   RasterOptions options = as(HeightEncoding::terrain_rgb);
   options.scale = 0.5;
@@ -101,7 +101,7 @@ TEST_F(EncodedRaster, ScaleAndNodataOfTheCallerWin) {
   EXPECT_EQ(0, raster.nodata);
 }
 
-TEST_F(EncodedRaster, OtherBandsAreRefused) {
+TEST_F(EncodedRaster, RejectsOtherBandLayouts) {
   const RasterOptions options = as(HeightEncoding::terrain_rgb);
   expect_says(read_error(write_tiff("g.tif", GDT_Byte, 2, 1, {1, 2}), options), "it has 1 band");
   expect_says(read_error(write_tiff("w.tif", GDT_UInt16, 2, 1, {1, 2}, {}, 3, {"PHOTOMETRIC=RGB"}), options),
@@ -112,7 +112,7 @@ TEST_F(EncodedRaster, OtherBandsAreRefused) {
   expect_says(read_error(write_image("a.png", 1, 1, {{1, 2, 3, 0}}, false), band), "--band");
 }
 
-TEST_F(EncodedRaster, APaletteIsRefused) {
+TEST_F(EncodedRaster, RejectsAPalette) {
   GDALColorTable colours;
   const GDALColorEntry red{255, 0, 0, 255};
   colours.SetColorEntry(1, &red);
@@ -127,13 +127,13 @@ TEST_F(EncodedRaster, APaletteIsRefused) {
   expect_says(read_error(path("p.png")), "palette");
 }
 
-TEST_F(EncodedRaster, RefusesAPhotographAndNamesTheEncodings) {
+TEST_F(EncodedRaster, RejectsAPhotographAndListsTheEncodings) {
   const std::string text = read_error(write_image("a.png", 1, 1, {{1, 2, 3, 0}}, false));
   expect_says(text, "photograph");
   expect_says(text, "--encoding terrain-rgb or terrarium");
 }
 
-TEST_F(EncodedRaster, ACutOffImageIsRefused) {
+TEST_F(EncodedRaster, RejectsATruncatedImage) {
   std::vector<Pixel> pixels(200 * 200);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const std::size_t noise = i * i * 7919;
@@ -147,8 +147,8 @@ TEST_F(EncodedRaster, ACutOffImageIsRefused) {
   }
 }
 
-// The heights of a real elevation model, encoded by Mapbox's formula, come back to half a step of it.
-TEST_F(EncodedRaster, ARealModelComesBack) {
+// The heights of a real elevation model, encoded by Mapbox's formula, are decoded to within half a step.
+TEST_F(EncodedRaster, RoundTripsARealModel) {
   const std::filesystem::path dem =
       std::filesystem::path(SCARP_SOURCE_DIR) / ".." / "shared" / "data" / "dem" / "rgbify_elev.tif";
   if (!std::filesystem::exists(dem)) GTEST_SKIP() << "no shared data beside the checkout (../shared/data/dem)";
@@ -174,7 +174,7 @@ class HeightRanges : public EncodedRaster {
   }
 };
 
-TEST_F(HeightRanges, TheWholeRangeOfUnsignedSamplesIsMapped) {
+TEST_F(HeightRanges, MapsTheFullUnsignedRange) {
   const std::string tiff = write_tiff("a.tif", GDT_UInt16, 3, 1, {0, 65535, 13107});
   {
     const GDALDatasetUniquePtr source(GDALDataset::Open(tiff.c_str()));
@@ -190,13 +190,13 @@ TEST_F(HeightRanges, TheWholeRangeOfUnsignedSamplesIsMapped) {
   EXPECT_DOUBLE_EQ(150, heights(read_raster(write_tiff("c.tif", GDT_Float32, 2, 1, {0, 0.5}), range(-100, 400)))[1]);
 }
 
-TEST_F(HeightRanges, ItsUnitIsTheVerticalOne) {
+TEST_F(HeightRanges, UsesTheVerticalUnit) {
   RasterOptions options = range(0, 1000);
   options.unit = "ft";
   EXPECT_NEAR(304.8, heights(read_raster(write_tiff("a.tif", GDT_UInt16, 2, 1, {0, 65535}), options))[1], 1e-9);
 }
 
-TEST_F(HeightRanges, WhatHasNoRangeIsRefused) {
+TEST_F(HeightRanges, RejectsUnusableRanges) {
   const std::string file = write_tiff("a.tif", GDT_UInt16, 2, 1, {0, 65535});
   expect_says(read_error(write_tiff("s.tif", GDT_Int16, 2, 1, {1, 2}), range(0, 1)), "signed (Int16)");
   expect_says(read_error(file, range(5, 5)), "LOW < HIGH");

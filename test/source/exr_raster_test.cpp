@@ -25,7 +25,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class ExrRaster : public Files {
  protected:
-  // An EXR whose channels all hold `values`, whose data window begins at (-5, 7).
+  // An EXR whose channels all hold `values`, whose data window starts at (-5, 7).
   std::string write_exr(const std::string& name, const std::vector<std::string>& channels, Imf::PixelType type,
                         int cols, int rows, const std::vector<float>& values,
                         Imf::Compression packing = Imf::ZIP_COMPRESSION) {
@@ -72,7 +72,7 @@ class ExrRaster : public Files {
 const std::vector<float> kValues{0, 1, 2, 3, 4, 1000};
 const std::vector<double> kDoubles(kValues.begin(), kValues.end());
 
-TEST_F(ExrRaster, AllSampleTypesAreRead) {
+TEST_F(ExrRaster, ReadsAllSampleTypes) {
   const struct {
     Imf::PixelType type;
     const char* name;
@@ -88,7 +88,7 @@ TEST_F(ExrRaster, AllSampleTypesAreRead) {
   }
 }
 
-TEST_F(ExrRaster, BlocksOfScanLinesKeepTheirPlace) {
+TEST_F(ExrRaster, ScanLineBlocksKeepTheirPosition) {
   const int cols = 37, rows = 101;
   std::vector<float> values(cols * rows);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
@@ -104,7 +104,7 @@ TEST_F(ExrRaster, BlocksOfScanLinesKeepTheirPlace) {
   }
 }
 
-TEST_F(ExrRaster, TilesAreReadAsScanLinesAre) {
+TEST_F(ExrRaster, TilesMatchScanLines) {
   const int cols = 37, rows = 101;
   std::vector<float> values(cols * rows);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
@@ -120,7 +120,7 @@ TEST_F(ExrRaster, TilesAreReadAsScanLinesAre) {
   EXPECT_EQ(std::vector<double>(values.begin(), values.end()), doubles(read_raster(path("t.exr"), {})));
 }
 
-TEST_F(ExrRaster, TheChannelIsTheOnlyOneElseYElseRElseAsked) {
+TEST_F(ExrRaster, ChoosesTheOnlyChannelThenYThenR) {
   EXPECT_EQ(kDoubles, doubles(read_raster(write_exr("a.exr", {"depth.Z"}, Imf::FLOAT, 3, 2, kValues), {})));
   const Raster rgb = read_raster(write_exr("b.exr", {"R", "G", "B"}, Imf::FLOAT, 3, 2, kValues), {});
   EXPECT_TRUE(has_note(rgb, "channel R of B, G, R"));
@@ -135,7 +135,7 @@ TEST_F(ExrRaster, TheChannelIsTheOnlyOneElseYElseRElseAsked) {
   expect_says(read_error(file, options), "no channel 'Y' (available: a, b)");
 }
 
-TEST_F(ExrRaster, ARangeOfHeightsIsMapped) {
+TEST_F(ExrRaster, MapsAHeightRange) {
   RasterOptions options;
   options.height_range = {-100, 400};
   const Raster floats = read_raster(write_exr("a.exr", {"Y"}, Imf::FLOAT, 2, 1, {0, 0.5}), options);
@@ -145,7 +145,7 @@ TEST_F(ExrRaster, ARangeOfHeightsIsMapped) {
   EXPECT_DOUBLE_EQ(500 / 4294967295.0, uints.scale);
 }
 
-TEST_F(ExrRaster, NanIsAHoleAndInfinityIsRefused) {
+TEST_F(ExrRaster, NanIsAHoleAndInfinityIsRejected) {
   const Raster raster = read_raster(write_exr("a.exr", {"Y"}, Imf::HALF, 2, 1, {kNan, 5}), {});
   EXPECT_TRUE(std::isnan(doubles(raster)[0]));
   EXPECT_EQ(5, doubles(raster)[1]);
@@ -153,7 +153,7 @@ TEST_F(ExrRaster, NanIsAHoleAndInfinityIsRefused) {
   expect_says(read_error(write_exr("c.exr", {"Y"}, Imf::FLOAT, 2, 1, {kNan, kNan})), "nodata");
 }
 
-TEST_F(ExrRaster, TheFirstOfSeveralPartsIsRead) {
+TEST_F(ExrRaster, ReadsTheFirstPart) {
   {
     std::vector<Imf::Header> headers(2, header_of({"Y"}, Imf::FLOAT, 3, 2));
     for (int i = 0; i < 2; ++i) {
@@ -175,7 +175,7 @@ TEST_F(ExrRaster, TheFirstOfSeveralPartsIsRead) {
   EXPECT_TRUE(has_note(raster, "first of 2 parts"));
 }
 
-TEST_F(ExrRaster, ASubsampledChannelIsRefused) {
+TEST_F(ExrRaster, RejectsASubsampledChannel) {
   {
     Imf::Header header = header_of({}, Imf::FLOAT, 4, 4);
     header.dataWindow() = Imath::Box2i({0, 0}, {3, 3});
@@ -190,7 +190,7 @@ TEST_F(ExrRaster, ASubsampledChannelIsRefused) {
   expect_says(read_error(path("s.exr")), "without a sample for every pixel");
 }
 
-TEST_F(ExrRaster, WhatIsNoImageIsRefused) {
+TEST_F(ExrRaster, RejectsOtherFiles) {
   expect_says(read_error(path("none.exr")), "does not exist");
   expect_says(read_error(write_bytes("e.exr", "")), "0 bytes");
   expect_says(read_error(write_bytes("t.exr", "hello, this is text")), "not an EXR image");
@@ -204,7 +204,7 @@ TEST_F(ExrRaster, WhatIsNoImageIsRefused) {
   expect_says(read_error(write_tiff("a.tif", GDT_Int16, 1, 1, {1}), channel), ".exr");
 }
 
-TEST_F(ExrRaster, CutOffAndDamagedImagesAreRefusedOrReadWhole) {
+TEST_F(ExrRaster, DamagedImagesAreRejectedOrReadCompletely) {
   std::vector<float> values(200 * 150);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * 7919 % 1000);
   for (const Imf::Compression packing : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
@@ -213,7 +213,7 @@ TEST_F(ExrRaster, CutOffAndDamagedImagesAreRefusedOrReadWhole) {
       write_bytes("cut.exr", whole.substr(0, 1 + static_cast<std::size_t>(static_cast<double>(whole.size()) * share)));
       read_error(path("cut.exr"));
     }
-    // A byte of the header or of the table behind it changed: an Error or samples, nothing else.
+    // With a changed byte of the header or of the table behind it: an Error or samples, nothing else.
     const std::string small =
         bytes_of(write_exr("b.exr", {"Y"}, Imf::FLOAT, 20, 15, {values.begin(), values.begin() + 300}, packing));
     for (std::size_t at = 4; at < 600; at += 3) {
@@ -227,7 +227,7 @@ TEST_F(ExrRaster, CutOffAndDamagedImagesAreRefusedOrReadWhole) {
   }
 }
 
-TEST_F(ExrRaster, AnArchiveIsLookedInto) {
+TEST_F(ExrRaster, ReadsFromArchives) {
   const std::string bytes = bytes_of(write_exr("a.exr", {"Y"}, Imf::FLOAT, 3, 2, kValues));
   const std::string member = "/vsizip/" + path("a.zip") + "/a.exr";
   VSILFILE* file = VSIFOpenL(member.c_str(), "wb");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small files for the tests of readers, in a folder that goes away with the test.
+// Small files for the tests of readers, in a folder that is removed with the test.
 #pragma once
 
 #include <cpl_vsi.h>
@@ -46,7 +46,7 @@ class Files : public ::testing::Test {
   std::string write_zip(const std::string& name,
                         const std::vector<std::pair<std::string, std::string>>& members) const {
     const std::string archive = "/vsizip/{" + path(name) + "}";
-    // The archive stays open between its members, or only the first one would be in it.
+    // The archive must stay open between its members, otherwise it would contain only the first one.
     VSILFILE* whole = VSIFOpenL(archive.c_str(), "wb");
     for (const auto& [member, bytes] : members) {
       VSILFILE* file = VSIFOpenL((archive + "/" + member).c_str(), "wb");
@@ -58,7 +58,7 @@ class Files : public ::testing::Test {
     return path(name);
   }
 
-  /// A GeoTIFF whose bands all hold `samples`; `edit` sees the dataset before it is closed.
+  /// A GeoTIFF whose bands all hold `samples`; `edit` is called with the dataset before it is closed.
   std::string write_tiff(const std::string& name, GDALDataType type, int cols, int rows, std::vector<double> samples,
                          const std::function<void(GDALDataset&)>& edit = {}, int bands = 1,
                          std::vector<const char*> options = {}) const {
@@ -77,7 +77,7 @@ class Files : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-/// The samples as doubles, whatever their type.
+/// The samples of any type as doubles.
 inline std::vector<double> doubles(const Raster& raster) {
   return std::visit([](const auto& s) { return std::vector<double>(s.begin(), s.end()); }, raster.samples);
 }
@@ -94,7 +94,7 @@ inline bool has_note(const Raster& raster, const std::string& part) {
   return false;
 }
 
-/// The text of the Error that `f` throws: one line that names `path`; fails the test when it throws none.
+/// The text of the Error that `f` throws: one line that names `path`; fails the test if it throws none.
 inline std::string error_of(const std::function<void()>& f) {
   try {
     f();

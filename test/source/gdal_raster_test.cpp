@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Samples, holes, heights: what comes out of sound files.
+// Samples, holes, heights: the content of valid files.
 #include <cmath>
 #include <limits>
 
@@ -33,7 +33,7 @@ TEST_F(GdalRaster, KeepsInt16UInt16AndFloat32) {
   EXPECT_EQ(path("c.tif"), raster.path);
 }
 
-TEST_F(GdalRaster, WidensBytesAndSaysSo) {
+TEST_F(GdalRaster, WidensBytesWithANote) {
   const Raster bytes = read_raster(write_tiff("a.tif", GDT_Byte, 2, 2, {0, 1, 200, 255}), {});
   EXPECT_TRUE(holds<std::uint16_t>(bytes));
   EXPECT_TRUE(has_note(bytes, "kept as uint16"));
@@ -41,7 +41,7 @@ TEST_F(GdalRaster, WidensBytesAndSaysSo) {
 }
 
 TEST_F(GdalRaster, ReadsSignedBytesWithTheirSign) {
-  // -128 and 5 as bytes, with GDAL's remark that they are signed.
+  // -128 and 5 as bytes, with GDAL's metadata that they are signed.
   const std::string file = write_tiff(
       "a.tif", GDT_Byte, 2, 2, {128, 5, 255, 0},
       [](GDALDataset& d) { d.GetRasterBand(1)->SetMetadataItem("PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE"); }, 1,
@@ -51,7 +51,7 @@ TEST_F(GdalRaster, ReadsSignedBytesWithTheirSign) {
   EXPECT_EQ((std::vector<double>{-128, 5, -1, 0}), doubles(raster));
 }
 
-TEST_F(GdalRaster, NarrowsWideTypesAndNamesTheRounding) {
+TEST_F(GdalRaster, NarrowsWideTypesAndReportsTheRounding) {
   const Raster whole = read_raster(write_tiff("a.tif", GDT_Int32, 2, 1, {16777216, -5}), {});
   EXPECT_TRUE(holds<float>(whole));
   EXPECT_TRUE(has_note(whole, "without rounding"));
@@ -61,7 +61,7 @@ TEST_F(GdalRaster, NarrowsWideTypesAndNamesTheRounding) {
                        "Float64 samples converted to float32, rounded by at most 1.49e-09"));
 }
 
-TEST_F(GdalRaster, RefusesComplexSamples) {
+TEST_F(GdalRaster, RejectsComplexSamples) {
   expect_says(read_error(write_tiff("a.tif", GDT_CFloat32, 2, 1, {1, 2})), "complex");
 }
 
@@ -70,7 +70,7 @@ TEST_F(GdalRaster, KeepsTheNodataValue) {
   EXPECT_EQ(-32768, raster.nodata);
 }
 
-TEST_F(GdalRaster, NodataOfTheCallerWins) {
+TEST_F(GdalRaster, CallersNodataTakesPrecedence) {
   RasterOptions options;
   options.nodata = 7;
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {-32768, 7}, nodata(-32768)), options);
@@ -79,13 +79,13 @@ TEST_F(GdalRaster, NodataOfTheCallerWins) {
   EXPECT_FALSE(read_raster(path("a.tif"), options).nodata.has_value());
 }
 
-TEST_F(GdalRaster, NodataThatTheTypeCannotHoldIsNone) {
+TEST_F(GdalRaster, IgnoresNodataOutsideTheType) {
   const Raster raster = read_raster(write_tiff("a.tif", GDT_UInt16, 2, 1, {1, 7}, nodata(-9999)), {});
   EXPECT_FALSE(raster.nodata.has_value());
   EXPECT_TRUE(has_note(raster, "cannot occur"));
 }
 
-TEST_F(GdalRaster, NodataNearTheLargestFloatIsFoundThoughItsTextIsRounded) {
+TEST_F(GdalRaster, MatchesRoundedNodataNearTheLargestFloat) {
   const double exact = -std::numeric_limits<float>::max();
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {exact, 7}, nodata(-3.402823e+38)), {});
   ASSERT_TRUE(raster.nodata.has_value());
@@ -93,7 +93,7 @@ TEST_F(GdalRaster, NodataNearTheLargestFloatIsFoundThoughItsTextIsRounded) {
   EXPECT_EQ(7, doubles(raster)[1]);
 }
 
-TEST_F(GdalRaster, NodataOfSixDigitsIsFoundWhereNoHeightIsNear) {
+TEST_F(GdalRaster, MatchesSixDigitNodataFarFromHeights) {
   const double mark = -std::numeric_limits<float>::max();
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {mark, 7}, nodata(-3.40282e+38)), {});
   ASSERT_TRUE(raster.nodata.has_value());
@@ -102,7 +102,7 @@ TEST_F(GdalRaster, NodataOfSixDigitsIsFoundWhereNoHeightIsNear) {
   EXPECT_NE(static_cast<float>(*heights.nodata), std::get<std::vector<float>>(heights.samples)[0]);
 }
 
-TEST_F(GdalRaster, NodataTooSmallForFloatIsNotZero) {
+TEST_F(GdalRaster, NodataThatUnderflowsFloatIsNotZero) {
   RasterOptions options;
   options.nodata = 1e-50;
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {0, 7}), options);
@@ -123,7 +123,7 @@ TEST_F(GdalRaster, NanIsAHoleWithANote) {
   EXPECT_TRUE(has_note(raster, "1 samples are NaN"));
 }
 
-TEST_F(GdalRaster, InfiniteSamplesAreRefusedWithTheirPlace) {
+TEST_F(GdalRaster, RejectsInfiniteSamplesWithTheirPosition) {
   const std::string text = read_error(write_tiff("a.tif", GDT_Float32, 2, 2, {1, 2, 3, kInf}));
   expect_says(text, "column 1, row 1");
   expect_says(text, "--nodata=inf");
@@ -133,7 +133,7 @@ TEST_F(GdalRaster, InfiniteSamplesAreRefusedWithTheirPlace) {
   expect_says(read_error(write_tiff("c.tif", GDT_Float64, 2, 2, {1, 1e300, 3, 4}), options), "beyond float32");
 }
 
-TEST_F(GdalRaster, InfiniteSamplesAreHolesWhenNodataSaysSo) {
+TEST_F(GdalRaster, InfiniteSamplesAreHolesWhenDeclaredNodata) {
   RasterOptions options;
   options.nodata = kInf;
   const std::string file = write_tiff("a.tif", GDT_Float32, 2, 2, {1, 2, 3, kInf});
@@ -144,12 +144,12 @@ TEST_F(GdalRaster, InfiniteSamplesAreHolesWhenNodataSaysSo) {
   expect_says(error_of([&] { read_raster(file, options); }), "infinite");
 }
 
-TEST_F(GdalRaster, AllNodataIsRefused) {
+TEST_F(GdalRaster, RejectsARasterOfOnlyNodata) {
   expect_says(read_error(write_tiff("a.tif", GDT_Int16, 2, 1, {-1, -1}, nodata(-1))), "all 2 x 1 samples are nodata");
   expect_says(read_error(write_tiff("b.tif", GDT_Float32, 2, 1, {kNan, kNan})), "nodata");
 }
 
-// Heights of 100 to 140 m and `mark`. What the note tells to say is said, and the mark is a hole.
+// Heights of 100 to 140 m and `mark`. With the option that the note recommends, the mark is a hole.
 class SuspectedNodata : public GdalRaster {
  protected:
   std::string marked(GDALDataType type, double mark, double scale = 1) const {
@@ -173,13 +173,13 @@ class SuspectedNodata : public GdalRaster {
   }
 };
 
-TEST_F(SuspectedNodata, OfTwoValuesTheOneFarFromZeroIsNamed) {
+TEST_F(SuspectedNodata, NamesTheValueFarFromZero) {
   const Raster raster = read_raster(write_tiff("a.tif", GDT_UInt16, 2, 1, {100, 65535}), {});
   EXPECT_TRUE(has_note(raster, "--nodata=65535"));
   EXPECT_FALSE(has_note(raster, "--nodata=100 "));
 }
 
-TEST_F(SuspectedNodata, WhatTheNoteTellsToSayMakesHoles) {
+TEST_F(SuspectedNodata, SuggestedOptionMakesHoles) {
   const struct {
     GDALDataType type;
     std::vector<double> marks;
@@ -199,7 +199,7 @@ TEST_F(SuspectedNodata, WhatTheNoteTellsToSayMakesHoles) {
   EXPECT_TRUE(has_note(read_raster(marked(GDT_Float32, 99999), {}), "99999, more than 20 km from all others"));
 }
 
-TEST_F(SuspectedNodata, BeyondAllHeightsIsAHole) {
+TEST_F(SuspectedNodata, ValuesBeyondAllHeightsAreHoles) {
   constexpr double kFloatMax = std::numeric_limits<float>::max();
   for (const GDALDataType type : {GDT_Float32, GDT_Float64}) {
     for (const double mark : {-kFloatMax, kFloatMax, -3.402823e38, 9.969209968386869e36, -1e31}) {
@@ -214,7 +214,7 @@ TEST_F(SuspectedNodata, BeyondAllHeightsIsAHole) {
       EXPECT_EQ(static_cast<float>(mark), doubles(read_raster(file, options))[3]);
     }
   }
-  // Several, though the file declares another one.
+  // Several marks, although the file declares another one.
   const Raster raster =
       read_raster(write_tiff("b.tif", GDT_Float32, 3, 2, {1e38, 1, 2, -1e38, -9999, 3}, nodata(-9999)), {});
   EXPECT_TRUE(has_note(raster, "2 samples from -1e+38 to 1e+38 are taken as holes"))
@@ -225,7 +225,7 @@ TEST_F(SuspectedNodata, BeyondAllHeightsIsAHole) {
 
 class PictureScale : public GdalRaster {
  protected:
-  // A picture of 5 x 3 samples that all but one are 0.
+  // An image of 5 x 3 samples that are 0 except for one.
   std::string picture(const std::string& name, GDALDataType type, double most) const {
     GDALDatasetUniquePtr memory(GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 5, 3, 1, type, nullptr));
     EXPECT_EQ(CE_None,
@@ -236,7 +236,7 @@ class PictureScale : public GdalRaster {
   }
 };
 
-TEST_F(PictureScale, PicturesThatAreTooSteepGetAScale) {
+TEST_F(PictureScale, ScalesPicturesThatAreTooSteep) {
   for (const std::string name : {"a.png", "a.pgm"}) {
     const std::string file = picture(name, GDT_UInt16, 40000);
     const Raster raster = read_raster(file, {});
@@ -248,7 +248,7 @@ TEST_F(PictureScale, PicturesThatAreTooSteepGetAScale) {
     RasterOptions options;
     options.window = {1, 1, 3, 2};
     EXPECT_EQ(raster.scale, read_raster(file, options).scale);
-    // Whoever states heights is not corrected.
+    // Explicitly stated heights are not corrected.
     options = {};
     options.scale = 1;
     EXPECT_EQ(1, read_raster(file, options).scale);
@@ -266,7 +266,7 @@ TEST_F(PictureScale, PicturesThatAreTooSteepGetAScale) {
   EXPECT_FALSE(has_note(low, "height"));
 }
 
-TEST_F(PictureScale, OtherFilesGetANoteAlone) {
+TEST_F(PictureScale, OtherFilesGetOnlyANote) {
   const Raster plain = read_raster(write_tiff("a.tif", GDT_UInt16, 3, 2, {0, 10000, 20000, 30000, 40000, 50000}), {});
   EXPECT_EQ(1, plain.scale);
   EXPECT_TRUE(has_note(plain, "heights span 50000 m over 2 m of ground (if that is too steep, use --height-range"));
@@ -279,12 +279,12 @@ TEST_F(PictureScale, OtherFilesGetANoteAlone) {
   EXPECT_TRUE(has_note(raw, "--height-range LOW,HIGH, --scale"));
 }
 
-TEST_F(SuspectedNodata, WhatHeightsCanBeIsLetBe) {
+TEST_F(SuspectedNodata, PlausibleHeightsGetNoNote) {
   const auto quiet = [](const std::string& file) {
     const Raster raster = read_raster(file, {});
     EXPECT_FALSE(has_note(raster, "often marks holes")) << ::testing::PrintToString(doubles(raster));
   };
-  // Peaks, trenches and towers; the far ends only where the unit makes them far.
+  // Peaks, trenches and towers; the extremes only with a unit that makes them extreme.
   for (const double height : {0.0, -11000.0, 8849.0, 19000.0}) quiet(marked(GDT_Float32, height));
   quiet(marked(GDT_UInt32, 4000000, 0.001));
   expect_advice_that_works(marked(GDT_UInt32, 4000000, 0.01), "decimal centimetres");
@@ -293,9 +293,9 @@ TEST_F(SuspectedNodata, WhatHeightsCanBeIsLetBe) {
   quiet(write_tiff("b.tif", GDT_Byte, 3, 1, {0, 128, 255}));
   quiet(write_tiff("b.tif", GDT_UInt16, 4, 1, {0, 20000, 40000, 65535}));
   quiet(write_tiff("b.tif", GDT_Float64, 3, 1, {0, 4e9, 8e9}));
-  // One value lies apart from nothing.
+  // A single value is not an outlier.
   quiet(write_tiff("b.tif", GDT_UInt16, 2, 1, {65535, 65535}));
-  // What a mask or the file's own nodata value hides is no sample.
+  // Pixels hidden by a mask or the file's own nodata value do not count as samples.
   quiet(write_tiff("b.tif", GDT_Int16, 3, 1, {1, -9999, 2}, nodata(-9999)));
   const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
   quiet(write_tiff("c.tif", GDT_Int16, 3, 1, {1, -9999, 2}, [](GDALDataset& d) {
@@ -306,7 +306,7 @@ TEST_F(SuspectedNodata, WhatHeightsCanBeIsLetBe) {
   }));
 }
 
-TEST_F(GdalRaster, AMaskMakesHolesInFloat32) {
+TEST_F(GdalRaster, MaskMakesHolesInFloat32) {
   const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
   const std::string file = write_tiff("a.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, [](GDALDataset& d) {
     d.CreateMaskBand(GMF_PER_DATASET);
@@ -321,7 +321,7 @@ TEST_F(GdalRaster, AMaskMakesHolesInFloat32) {
   EXPECT_TRUE(has_note(raster, "mask"));
 }
 
-TEST_F(GdalRaster, AnAlphaBandMakesHolesAndIsNoBandOfHeights) {
+TEST_F(GdalRaster, AlphaBandMakesHolesAndIsNotAHeightBand) {
   const std::string file = write_tiff(
       "a.tif", GDT_UInt16, 2, 1, {10, 20},
       [](GDALDataset& d) {
@@ -335,7 +335,7 @@ TEST_F(GdalRaster, AnAlphaBandMakesHolesAndIsNoBandOfHeights) {
   EXPECT_TRUE(std::isnan(doubles(raster)[1]));
 }
 
-TEST_F(GdalRaster, AMaskThatHidesNothingChangesNothing) {
+TEST_F(GdalRaster, FullyValidMaskChangesNothing) {
   const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
   const std::string file = write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}, [](GDALDataset& d) {
     d.CreateMaskBand(GMF_PER_DATASET);
@@ -344,7 +344,7 @@ TEST_F(GdalRaster, AMaskThatHidesNothingChangesNothing) {
   EXPECT_TRUE(holds<std::int16_t>(read_raster(file, {})));
 }
 
-TEST_F(GdalRaster, ScaleAndOffsetAreKept) {
+TEST_F(GdalRaster, KeepsScaleAndOffset) {
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2},
                                                [](GDALDataset& d) {
                                                  d.GetRasterBand(1)->SetScale(0.5);
@@ -358,7 +358,7 @@ TEST_F(GdalRaster, ScaleAndOffsetAreKept) {
   EXPECT_EQ(3, read_raster(path("a.tif"), options).scale);
 }
 
-TEST_F(GdalRaster, ANegativeScaleBecomesHeights) {
+TEST_F(GdalRaster, AppliesANegativeScale) {
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 3, 1, {1, 2, -9},
                                                [](GDALDataset& d) {
                                                  d.GetRasterBand(1)->SetScale(-2);
@@ -373,13 +373,13 @@ TEST_F(GdalRaster, ANegativeScaleBecomesHeights) {
   EXPECT_TRUE(std::isnan(doubles(raster)[2]));
 }
 
-TEST_F(GdalRaster, AScaleOfZeroIsRefused) {
+TEST_F(GdalRaster, RejectsAScaleOfZero) {
   RasterOptions options;
   options.scale = 0;
   expect_says(read_error(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}), options), "--scale");
 }
 
-TEST_F(GdalRaster, FeetBecomeMetres) {
+TEST_F(GdalRaster, ConvertsFeetToMetres) {
   const auto unit = [](const char* name) { return [name](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType(name); }; };
   const Raster feet = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}, unit("ft")), {});
   EXPECT_DOUBLE_EQ(0.3048, feet.scale);
@@ -398,7 +398,7 @@ TEST_F(GdalRaster, FeetBecomeMetres) {
   expect_says(read_error(path("c.tif"), options), "unknown vertical unit 'furlong'");
 }
 
-TEST_F(GdalRaster, AWindowIsAPartOfTheFile) {
+TEST_F(GdalRaster, ReadsAWindowOfTheFile) {
   RasterOptions options;
   options.window = {1, 1, 2, 1};
   const std::string file = write_tiff("a.tif", GDT_Int16, 3, 2, {1, 2, 3, 4, 5, 6});
@@ -412,12 +412,12 @@ TEST_F(GdalRaster, AWindowIsAPartOfTheFile) {
   }
 }
 
-TEST_F(GdalRaster, OneSampleIsARaster) {
+TEST_F(GdalRaster, AcceptsASingleSample) {
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 1, 1, {5}), {});
   EXPECT_EQ((std::vector<double>{5}), doubles(raster));
 }
 
-TEST_F(GdalRaster, PiecesOfAFileWithBlocksOfAnySizeFitTogether) {
+TEST_F(GdalRaster, ReadsBlocksOfAnySize) {
   const int cols = 3000, rows = 1700;
   std::vector<double> values(static_cast<std::size_t>(cols) * rows);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 32749);
@@ -436,7 +436,7 @@ TEST_F(GdalRaster, PiecesOfAFileWithBlocksOfAnySizeFitTogether) {
   }
 }
 
-TEST_F(GdalRaster, ProgressEndsAtOneAndStopsTheReading) {
+TEST_F(GdalRaster, ProgressReachesOneAndCanStopReading) {
   const std::string file = write_tiff("a.tif", GDT_Int16, 3, 2, {1, 2, 3, 4, 5, 6});
   double last = 0;
   read_raster(file, {}, [&](double share) { return last = share, true; });

@@ -57,7 +57,7 @@ void expect_like_geodesics(const char* crs, const char* base, double a, double f
   EXPECT_NEAR(north.azimuth, scale.grid_north_azimuth / kDegree, 1e-3) << crs;
 }
 
-TEST(GroundScale, OfDegreesIsThatOfGeodesics) {
+TEST(GroundScale, DegreesMatchGeodesics) {
   for (const double lat : {0.0, 0.5, 36.65, -45.0, 70.0, 89.0}) {
     const GroundScale scale = ground_scale_at("EPSG:4326", 12, lat);
     const double half = 5e-4;
@@ -71,7 +71,7 @@ TEST(GroundScale, OfDegreesIsThatOfGeodesics) {
   }
 }
 
-TEST(GroundScale, OfDegreesKnowsTheCrsOwnEllipsoid) {
+TEST(GroundScale, DegreesUseTheEllipsoidOfTheCrs) {
   // NAD27: Clarke 1866; and the Moon, a sphere of 1737.4 km.
   EXPECT_NEAR(geodesic(6378206.4, 1 / 294.978698213898, 0, 40, 1e-3, 40).length * 1e3,
               ground_scale_at("EPSG:4267", 0, 40).metres_per_x, 0.1);
@@ -80,13 +80,13 @@ TEST(GroundScale, OfDegreesKnowsTheCrsOwnEllipsoid) {
   EXPECT_NEAR(1737400 * kDegree, moon.metres_per_y, 1e-6);
 }
 
-TEST(GroundScale, OfGradsIsThatOfGrads) {
+TEST(GroundScale, GradsUseTheirUnit) {
   // NTF (Paris): longitudes in grads from Paris, 400 of them around the Earth.
   const double per_degree = ground_scale_at("EPSG:4275", 3, 45).metres_per_x;
   EXPECT_NEAR(per_degree * 0.9, ground_scale_at("EPSG:4807", 3, 50).metres_per_x, 1e-6 * per_degree);
 }
 
-TEST(GroundScale, OfProjectionsIsThatOfGeodesics) {
+TEST(GroundScale, ProjectionsMatchGeodesics) {
   expect_like_geodesics("EPSG:32610", "EPSG:4326", kWgs84A, kWgs84F, 562710, 5114985, 1);
   expect_like_geodesics("EPSG:32733", "EPSG:4326", kWgs84A, kWgs84F, 180000, 6200000, 1);
   expect_like_geodesics("EPSG:3857", "EPSG:4326", kWgs84A, kWgs84F, -13628000, 4551000, 1);
@@ -95,15 +95,15 @@ TEST(GroundScale, OfProjectionsIsThatOfGeodesics) {
   expect_like_geodesics("EPSG:3035", "EPSG:4258", 6378137, 1 / 298.257222101, 3000000, 4000000, 1);
 }
 
-TEST(GroundScale, OfMapsInFeetCountsFeet) {
+TEST(GroundScale, MapsInFeetCountFeet) {
   expect_like_geodesics("EPSG:2225", "EPSG:4269", 6378137, 1 / 298.257222101, 6600000, 1900000, 1200.0 / 3937);
 }
 
-TEST(GroundScale, OfBasesInGradsIsThatOfGeodesics) {
+TEST(GroundScale, BaseCrsInGradsMatchesGeodesics) {
   expect_like_geodesics("EPSG:27572", "EPSG:4807", 6378249.2, 1 - 6356515.0 / 6378249.2, 700000, 2300000, 1, 0.9);
 }
 
-TEST(GroundScale, OfWebMercatorIsTooLongByTheCosine) {
+TEST(GroundScale, WebMercatorIsStretchedByTheCosine) {
   const double x = -122.4 * kDegree * kWgs84A,
                y = std::log(std::tan(std::numbers::pi / 4 + 38 * kDegree / 2)) * kWgs84A;
   const GroundScale scale = ground_scale_at("EPSG:3857", x, y);
@@ -112,7 +112,7 @@ TEST(GroundScale, OfWebMercatorIsTooLongByTheCosine) {
   EXPECT_NEAR(0, scale.grid_north_azimuth, 1e-9);
 }
 
-TEST(GroundScale, AgreesWithPointScalesAndConvergenceOfProj) {
+TEST(GroundScale, MatchesPointScaleAndConvergenceOfProj) {
   const PJ_COORD at = geographic_of("EPSG:32610", "EPSG:4326", 600000, 5114985);
   PJ* crs = proj_create(nullptr, "EPSG:32610");
   const PJ_FACTORS factors = proj_factors(crs, proj_coord(at.xy.x * kDegree, at.xy.y * kDegree, 0, 0));
@@ -123,27 +123,27 @@ TEST(GroundScale, AgreesWithPointScalesAndConvergenceOfProj) {
   EXPECT_NEAR(factors.meridian_convergence, scale.grid_north_azimuth, 1e-6);
 }
 
-TEST(GroundScale, NeedsNoSpecialCaseAtThePoleAndTheAntimeridian) {
+TEST(GroundScale, WorksAtThePoleAndTheAntimeridian) {
   // Polar stereographic with scale 0.994 at the pole itself.
   EXPECT_NEAR(1 / 0.994, ground_scale_at("EPSG:32661", 2000000, 2000000).metres_per_x, 1e-6);
   EXPECT_NEAR(1, ground_scale_at("EPSG:3832", 20037508.342789 - 3339584.7, 0).metres_per_x, 0.01);
 }
 
-TEST(GroundScale, PeelsOffVerticalAndBoundParts) {
+TEST(GroundScale, IgnoresVerticalAndBoundParts) {
   EXPECT_NEAR(ground_scale_at("EPSG:32610", 562710, 5114985).metres_per_x,
               ground_scale_at("EPSG:32610+5773", 562710, 5114985).metres_per_x, 1e-12);
   EXPECT_NEAR(ground_scale_at("EPSG:4326", 0, 40).metres_per_x,
               ground_scale_at("+proj=longlat +ellps=WGS84 +towgs84=1,2,3 +type=crs", 0, 40).metres_per_x, 1e-6);
 }
 
-TEST(GroundScale, OfALocalSystemIsItsUnit) {
+TEST(GroundScale, LocalSystemsUseTheirUnit) {
   const char* feet =
       "ENGCRS[\"site\",EDATUM[\"site\"],CS[Cartesian,2],AXIS[\"x\",east],AXIS[\"y\",north],LENGTHUNIT[\"foot\",0.3048]"
       "]";
   EXPECT_DOUBLE_EQ(0.3048, ground_scale_at(feet, 1, 2).metres_per_x);
 }
 
-TEST(GroundScale, RefusesPlacesThatAreNone) {
+TEST(GroundScale, RejectsInvalidPlaces) {
   EXPECT_THROW(ground_scale_at("EPSG:4326", 0, 90), Error);
   EXPECT_THROW(ground_scale_at("EPSG:4326", 500000, 5100000), Error);
   EXPECT_THROW(ground_scale_at("EPSG:32610", 1e12, 1e12), Error);

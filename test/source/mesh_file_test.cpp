@@ -31,7 +31,7 @@ class MeshFiles : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return (folder_ / name).string();
   }
-  // What is said of it after its name.
+  // The message about it, without its name.
   std::string refusal(const std::string& name, const std::string& bytes) const {
     const std::string path = write(name, bytes);
     try {
@@ -67,7 +67,7 @@ std::string bytes_of(const std::vector<float>& numbers, const std::vector<std::u
 const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 
 // A square with y up in the plane z = 0: cut in two, its normal is that of the plane, and z goes up.
-TEST_F(MeshFiles, ObjPolygonsAreCutAndTurnedUp) {
+TEST_F(MeshFiles, TriangulatesAndRotatesObjPolygons) {
   const std::string path = write("square.obj", "# a wall\nv 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n");
   const TriangleMesh mesh = read_mesh(path);
   ASSERT_EQ(mesh.corners.size(), 6u);
@@ -82,7 +82,7 @@ TEST_F(MeshFiles, ObjPolygonsAreCutAndTurnedUp) {
   EXPECT_EQ(read_mesh(path, MeshUp::z).corners[0].normal, vec3(0, 0, 1));
 }
 
-TEST_F(MeshFiles, ObjHasNormalsMaterialsAndIndicesFromTheEnd) {
+TEST_F(MeshFiles, ReadsObjNormalsMaterialsAndNegativeIndices) {
   write("red.mtl", "newmtl red\nKd 0.5 0.25 0\n");
   const std::string path = write(
       "red.obj", "mtllib red.mtl\nv 0 0 0\nv 1 0 0\nv 0 0 1\nvn 0 2 0\nusemtl red\nf -3//1 -2//1 -1//1\nf 1 1 2\n");
@@ -93,7 +93,7 @@ TEST_F(MeshFiles, ObjHasNormalsMaterialsAndIndicesFromTheEnd) {
   EXPECT_EQ(mesh.corners[0].colour, vec3(0.5, 0.25, 0));
 }
 
-TEST_F(MeshFiles, BadObjIsRefused) {
+TEST_F(MeshFiles, RejectsBadObj) {
   EXPECT_EQ(refusal("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"),
             "line 2: 'v nan 0 0' (expected finite numbers)");
   EXPECT_EQ(refusal("huge.obj", "v 0 0 1e999\n"), "line 1: 'v 0 0 1e999' (expected finite numbers)");
@@ -112,7 +112,7 @@ TEST_F(MeshFiles, BadObjIsRefused) {
   EXPECT_THROW(read_mesh((folder_ / "none.glb").string()), Error);
 }
 
-TEST_F(MeshFiles, GltfNodesMoveTheirMeshes) {
+TEST_F(MeshFiles, AppliesGltfNodeTransforms) {
   json document = triangle_document();
   // Twice as large, a quarter turn about y (x to -z), moved; then by the parent.
   document["nodes"] = json::parse(R"([{"children": [1], "translation": [0, 0, 5]},
@@ -126,7 +126,7 @@ TEST_F(MeshFiles, GltfNodesMoveTheirMeshes) {
   EXPECT_LT(length(mesh.corners[0].normal - vec3(1, 0, 0)), 1e-6f);
 }
 
-TEST_F(MeshFiles, GltfColoursStripsAndFans) {
+TEST_F(MeshFiles, ReadsGltfColoursStripsAndFans) {
   json document = triangle_document();
   document["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 0.25, 1]}}])");
   auto& primitive = document["meshes"][0]["primitives"][0];
@@ -138,16 +138,16 @@ TEST_F(MeshFiles, GltfColoursStripsAndFans) {
     primitive["mode"] = mode;
     write("corners.bin", bytes_of(kTriangle, order));
     const TriangleMesh mesh = read_mesh(write("strip.gltf", document.dump()));
-    // Of the strip 0 1 2, 1 0 2; of the fan 0 1 2 and what has no area.
+    // The strip has 0 1 2 and 1 0 2; the fan has 0 1 2 and a degenerate triangle.
     EXPECT_EQ(mesh.corners.size(), mode == 5 ? 6u : 3u);
     EXPECT_EQ(mesh.corners[0].colour, vec3(0.5, 1, 0.25));
-    // In a strip every second triangle is turned, so that all face one way; this one is folded back.
+    // In a strip every second triangle is flipped, so that all face one way; this one is folded back.
     EXPECT_EQ(mesh.corners[0].normal, vec3(0, -1, 0));
     EXPECT_EQ(mesh.corners.back().normal, vec3(0, mode == 5 ? 1 : -1, 0));
   }
 }
 
-TEST_F(MeshFiles, BadGltfIsRefused) {
+TEST_F(MeshFiles, RejectsBadGltf) {
   write("corners.bin", bytes_of(kTriangle, {0, 1, 2, 0}));
   const auto with = [&](const auto& change) {
     json document = triangle_document();

@@ -8,7 +8,7 @@
 namespace scarp {
 namespace {
 
-TEST(Mirrored, GoesOnWithoutASeam) {
+TEST(Mirrored, RepeatsWithoutASeam) {
   Raster raster;
   raster.cols = 3;
   raster.rows = 2;

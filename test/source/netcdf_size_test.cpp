@@ -15,7 +15,7 @@ std::string word(std::uint32_t value) {
   return bytes;
 }
 
-// Two dimensions, y and x, and one variable of 16-bit samples that begins at byte 1000.
+// Two dimensions, y and x, and one variable of 16-bit samples that starts at byte 1000.
 std::string header(std::uint32_t rows, std::uint32_t cols, std::uint32_t records = 0) {
   return std::string("CDF\1") + word(records) + word(10) + word(2) + word(1) + std::string("y\0\0\0", 4) + word(rows) +
          word(1) + std::string("x\0\0\0", 4) + word(cols) + word(0) + word(0) + word(11) + word(1) + word(1) +
@@ -23,14 +23,14 @@ std::string header(std::uint32_t rows, std::uint32_t cols, std::uint32_t records
          word(1000);
 }
 
-TEST(NetcdfSize, IsTheEndOfTheLastVariable) {
+TEST(NetcdfSize, EqualsTheEndOfTheLastVariable) {
   EXPECT_EQ(1000 + 2 * 30 * 20, netcdf_classic_bytes(header(30, 20)));
-  // Rows as records: the first, and 9 more whose padding is not relied on.
+  // Rows as records: the first, and 9 more; their padding is not assumed.
   EXPECT_EQ(1000 + 40 + 9 * (40 - 3), netcdf_classic_bytes(header(0, 20, 10)));
   EXPECT_EQ(0, netcdf_classic_bytes(header(0, 20, 0xffffffff)));
 }
 
-TEST(NetcdfSize, IsUnknownForOtherFilesAndCutHeaders) {
+TEST(NetcdfSize, IsUnknownForOtherFilesAndTruncatedHeaders) {
   EXPECT_FALSE(netcdf_classic_bytes("").has_value());
   EXPECT_FALSE(netcdf_classic_bytes("\x89HDF\r\n").has_value());
   const std::string whole = header(30, 20);
@@ -38,7 +38,7 @@ TEST(NetcdfSize, IsUnknownForOtherFilesAndCutHeaders) {
     EXPECT_FALSE(netcdf_classic_bytes(std::string_view(whole).substr(0, n)).has_value()) << n;
 }
 
-TEST(Hdf5Size, IsInEverySuperblock) {
+TEST(Hdf5Size, IsReadFromEverySuperblockVersion) {
   const auto header = [](char version, std::size_t address_bytes, std::size_t end) {
     std::string bytes(end + 8, '\0');
     bytes.replace(0, 8, "\x89HDF\r\n\x1a\n");
@@ -59,7 +59,7 @@ TEST(Hdf5Size, IsInEverySuperblock) {
   EXPECT_FALSE(hdf5_bytes(short_addresses));
 }
 
-TEST(NetcdfSize, SurvivesAnyBytes) {
+TEST(NetcdfSize, SurvivesArbitraryBytes) {
   EXPECT_TRUE(rc::check("a damaged header is understood or not", [] {
     std::string bytes = header(30, 20);
     bytes[3] = *rc::gen::element('\1', '\2', '\5');

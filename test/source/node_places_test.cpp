@@ -28,7 +28,7 @@ Georeference utm() {
   return geo;
 }
 
-TEST(NodePlaces, AreThoseOfTheCoordinates) {
+TEST(NodePlaces, MatchTheCoordinates) {
   const NodePlaces places(utm(), 40, 20);
   const CoordinateFrame frame(utm(), 40, 20, Coordinates::lonlat);
   std::vector<dvec3> row(5);
@@ -41,7 +41,7 @@ TEST(NodePlaces, AreThoseOfTheCoordinates) {
   }
 }
 
-TEST(NodePlaces, ServeManyThreads) {
+TEST(NodePlaces, AreThreadSafe) {
   const NodePlaces places(utm(), 200, 64);
   std::vector<dvec3> expected(200);
   places.row(0, 0, expected);
@@ -59,7 +59,7 @@ TEST(NodePlaces, ServeManyThreads) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(NodePlaces, RefuseWhatHasNoPlace) {
+TEST(NodePlaces, RejectRastersWithoutCoordinates) {
   Georeference none = utm();
   none.crs_wkt.clear();
   EXPECT_THROW(NodePlaces(none, 4, 4), Error);

@@ -16,7 +16,7 @@ NpyHeader parse(const std::string& dictionary, int version = 1) {
   return parse_npy_header(npy_bytes(dictionary, "", version));
 }
 
-TEST(NpyHeaderParser, ReadsWhatNumpyWrites) {
+TEST(NpyHeaderParser, ReadsNumpyHeaders) {
   for (const int version : {1, 2, 3}) {
     const NpyHeader h = parse("{'descr': '<i2', 'fortran_order': False, 'shape': (344, 403), }", version);
     EXPECT_EQ('i', h.kind);
@@ -35,7 +35,7 @@ TEST(NpyHeaderParser, ReadsWhatNumpyWrites) {
   EXPECT_EQ('O', parse("{'descr': '|O', 'fortran_order': False, 'shape': (), }").kind);
 }
 
-TEST(NpyHeaderParser, RefusesWhatIsDamaged) {
+TEST(NpyHeaderParser, RejectsDamagedHeaders) {
   for (const char* text : {"", "{", "{}", "{'descr': '<i2', 'fortran_order': False}",
                            "{'descr': '<i2', 'fortran_order': 0, 'shape': (1, 1)}",
                            "{'descr': '<i2', 'fortran_order': False, 'shape': (1, 1)} x",
@@ -54,7 +54,7 @@ TEST(NpyHeaderParser, RefusesWhatIsDamaged) {
   EXPECT_THROW(npy_data_begin(std::string("\x93NUMPY\2\0\xff\xff\xff\xff", 12)), Error);
 }
 
-TEST(NpyHeaderParser, SurvivesAnyBytes) {
+TEST(NpyHeaderParser, SurvivesArbitraryBytes) {
   EXPECT_TRUE(rc::check("a damaged header is parsed or refused", [] {
     std::string bytes = npy_bytes("{'descr': '<i2', 'fortran_order': False, 'shape': (344, 403), }", "");
     const int changes = *rc::gen::inRange(1, 8);

@@ -24,7 +24,7 @@ const std::vector<double> kValues{1, 2, 3, 4, 5, 100};
 // The same as IEEE halves.
 const std::string kHalves = sample_bytes<std::uint16_t>({0x3c00, 0x4000, 0x4200, 0x4400, 0x4500, 0x5640});
 
-TEST_F(Npy, AllTypesAndByteOrdersAreRead) {
+TEST_F(Npy, ReadsAllTypesAndByteOrders) {
   struct Case {
     const char* descr;
     std::string samples;
@@ -56,7 +56,7 @@ TEST_F(Npy, AllTypesAndByteOrdersAreRead) {
   EXPECT_TRUE(holds<float>(read_raster(write_npy("a.npy", ">f4", "(2, 3)", sample_bytes<float>(kValues, true)), {})));
 }
 
-TEST_F(Npy, TypesThatFieldsDoNotHaveBecomeFloat32WithAWord) {
+TEST_F(Npy, ConvertsUnsupportedTypesToFloat32WithANote) {
   const Raster wide =
       read_raster(write_npy("a.npy", "<i8", "(2, 3)", sample_bytes<std::int64_t>({16777217, -2, 3, 4, 5, 6})), {});
   EXPECT_TRUE(holds<float>(wide));
@@ -69,7 +69,7 @@ TEST_F(Npy, TypesThatFieldsDoNotHaveBecomeFloat32WithAWord) {
   EXPECT_TRUE(has_note(half, "Float16 samples converted to float32 without rounding"));
 }
 
-TEST_F(Npy, HalvesOfAllKindsHaveTheirValues) {
+TEST_F(Npy, ReadsEveryKindOfHalfFloat) {
   // -2; the largest one; 1/3, rounded; the least normal one, the greatest and the least below it; NaN.
   const std::vector<double> bits{0xc000, 0x7bff, 0x3555, 0x0400, 0x03ff, 0x0001, 0x7e00, 0x8000};
   const std::vector<double> values{-2, 65504, 1365.0 / 4096, 0x1p-14, 1023 * 0x1p-24, 0x1p-24, 0, 0};
@@ -98,7 +98,7 @@ TEST_F(Npy, SignedBytesKeepTheirSign) {
             doubles(read_raster(write_npy("a.npy", "|i1", "(1, 2)", sample_bytes<std::int8_t>({-1, -128}), true), {})));
 }
 
-TEST_F(Npy, FortranOrderIsTheSameArray) {
+TEST_F(Npy, ReadsFortranOrder) {
   // The array [[1, 2, 3], [4, 5, 100]], column by column.
   const std::vector<double> columns{1, 4, 2, 5, 3, 100};
   EXPECT_EQ(kValues,
@@ -115,7 +115,7 @@ TEST_F(Npy, FortranOrderIsTheSameArray) {
                          write_npy("a.npy", ">i8", "(2, 3)", sample_bytes<std::int64_t>(columns, true), true), {})));
 }
 
-TEST_F(Npy, ExtentsOfOneAreLeftOutOfThree) {
+TEST_F(Npy, DropsExtentsOfOneFromThree) {
   const std::string samples = sample_bytes<std::int16_t>(kValues);
   EXPECT_EQ(kValues, doubles(read_raster(write_npy("a.npy", "<i2", "(1, 2, 3)", samples), {})));
   const Raster raster = read_raster(write_npy("a.npy", "<i2", "(2, 3, 1)", samples), {});
@@ -123,7 +123,7 @@ TEST_F(Npy, ExtentsOfOneAreLeftOutOfThree) {
   EXPECT_TRUE(has_note(raster, "2 x 3 x 1"));
 }
 
-TEST_F(Npy, OtherShapesAreRefused) {
+TEST_F(Npy, RejectsOtherShapes) {
   const std::string samples = sample_bytes<std::int16_t>(kValues);
   for (const char* shape : {"()", "(6,)", "(1, 1, 6, 1)", "(2, 3, 1, 1)"}) {
     expect_says(read_error(write_npy("a.npy", "<i2", shape, samples)), "two dimensions required",
@@ -132,7 +132,7 @@ TEST_F(Npy, OtherShapesAreRefused) {
   expect_says(read_error(write_npy("a.npy", "<i2", "(0, 6)", samples)), "no samples (save");
 }
 
-TEST_F(Npy, OtherTypesAreRefusedByName) {
+TEST_F(Npy, RejectsOtherTypesByName) {
   for (const char* descr : {"|b1", "<c8", "|O", "<f16", "|S5", "<U7", "|V4", "<M8[ns]"}) {
     const std::string text = read_error(write_npy("a.npy", descr, "(2, 3)", std::string(1000, '\0')));
     expect_says(text, descr);
@@ -143,7 +143,7 @@ TEST_F(Npy, OtherTypesAreRefusedByName) {
               "structures");
 }
 
-TEST_F(Npy, ShorterFilesThanTheHeaderSaysAreRefusedBeforeAllocation) {
+TEST_F(Npy, RejectsTruncatedFilesBeforeAllocation) {
   const std::string samples = sample_bytes<std::int16_t>(kValues);
   expect_says(read_error(write_npy("a.npy", "<i2", "(2, 4)", samples)), "truncated");
   expect_says(read_error(write_npy("a.npy", "<i2", "(1000000000, 1000000000)", samples)), "truncated");
@@ -155,7 +155,7 @@ TEST_F(Npy, ShorterFilesThanTheHeaderSaysAreRefusedBeforeAllocation) {
   expect_says(read_error(write_bytes("b.npy", "hello, world, this is text")), "not a .npy");
 }
 
-TEST_F(Npy, TheOnlyRasterOfAnArchiveIsFound) {
+TEST_F(Npy, FindsTheOnlyRasterInAnArchive) {
   const std::string height = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
   const std::string number = npy_bytes(npy_dictionary("<f8", "()"), sample_bytes<double>({30}));
   const std::string file = write_zip("a.npz", {{"height.npy", height}, {"dx.npy", number}});
@@ -171,7 +171,7 @@ TEST_F(Npy, TheOnlyRasterOfAnArchiveIsFound) {
   expect_says(text, "dx (a single number)");
 }
 
-TEST_F(Npy, SeveralRastersOfAnArchiveNeedAKey) {
+TEST_F(Npy, RequiresAKeyForSeveralRasters) {
   const std::string a = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
   const std::string file = write_zip("a.npz", {{"a.npy", a}, {"b.npy", a}});
   const std::string text = read_error(file);
@@ -179,7 +179,7 @@ TEST_F(Npy, SeveralRastersOfAnArchiveNeedAKey) {
   expect_says(text, "a (2 x 3), b (2 x 3)");
 }
 
-TEST_F(Npy, ArraysThatAreNoHeightsDoNotCountInAnArchive) {
+TEST_F(Npy, IgnoresNonHeightArraysInAnArchive) {
   const std::string height = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
   const std::string mask = npy_bytes(npy_dictionary("|b1", "(2, 3)"), std::string(6, '\1'));
   const std::string table =
@@ -196,13 +196,13 @@ TEST_F(Npy, ArraysThatAreNoHeightsDoNotCountInAnArchive) {
   expect_says(error_of([&] { read_raster(path("a.npz"), options); }), "true and false");
 }
 
-TEST_F(Npy, AFortranArrayInAnArchiveIsRead) {
+TEST_F(Npy, ReadsAFortranArrayInAnArchive) {
   const std::string a =
       npy_bytes(npy_dictionary("<i2", "(2, 3)", true), sample_bytes<std::int16_t>({1, 4, 2, 5, 3, 100}));
   EXPECT_EQ(kValues, doubles(read_raster(write_zip("a.npz", {{"a.npy", a}}), {})));
 }
 
-TEST_F(Npy, ADamagedArchiveIsRefused) {
+TEST_F(Npy, RejectsADamagedArchive) {
   expect_says(read_error(write_bytes("a.npz", "hello, world")), "not a .npz");
   std::vector<double> noise(40000);
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<double>(i * i * 7919 % 65521);
@@ -217,7 +217,7 @@ TEST_F(Npy, ADamagedArchiveIsRefused) {
   expect_says(read_error(path("bad.npz")), path("bad.npz") + ": ");
 }
 
-TEST_F(Npy, BoundsAndCrsPlaceIt) {
+TEST_F(Npy, BoundsAndCrsSetTheGeoreference) {
   RasterOptions options;
   options.bounds = {10, 45, 10.3, 45.2};
   options.crs = "EPSG:4326";
@@ -228,7 +228,7 @@ TEST_F(Npy, BoundsAndCrsPlaceIt) {
   EXPECT_NEAR(0.1 * 111320 * 0.7061, raster.georeference.cell_x_m, 20);
 }
 
-TEST_F(Npy, NamesWithBlanksAndAmpersandsWork) {
+TEST_F(Npy, AcceptsSpacesAndAmpersandsInNames) {
   EXPECT_EQ(kValues, doubles(read_raster(
                          write_npy("a & <b> 'c'.NPY", "<i2", "(2, 3)", sample_bytes<std::int16_t>(kValues)), {})));
 }

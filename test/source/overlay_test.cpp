@@ -59,8 +59,8 @@ std::vector<std::uint8_t> pattern(int cols, int rows) {
   return rgba;
 }
 
-// As a map from the first sample to the last has it, whose pixels need not be square.
-TEST_F(OverlayTest, AMapOfTheRasterKeepsItsPixels) {
+// Like a map from the first sample to the last, whose pixels need not be square.
+TEST_F(OverlayTest, MapOfTheRasterKeepsItsPixels) {
   const std::vector<std::uint8_t> rgba = pattern(128, 90);
   const Overlay overlay =
       read_overlay(write_rgba("map.tif", 128, 90, rgba, {500'000, 1000.0 / 128, 0, 5'000'000, 0, -600.0 / 90}),
@@ -74,7 +74,7 @@ TEST_F(OverlayTest, AMapOfTheRasterKeepsItsPixels) {
   EXPECT_NEAR(1, overlay.south, 1e-12);
 }
 
-TEST_F(OverlayTest, HasItsOwnPixelsOnly) {
+TEST_F(OverlayTest, KeepsOnlyItsOwnPixels) {
   // 40 x 30 pixels of 1 m, a thousandth of the raster at their resolution.
   const std::vector<std::uint8_t> rgba = pattern(40, 30);
   const Overlay small = read_overlay(write_rgba("small.tif", 40, 30, rgba, {500'200, 1, 0, 4'999'900, 0, -1}), ground(),
@@ -94,7 +94,7 @@ TEST_F(OverlayTest, HasItsOwnPixelsOnly) {
   EXPECT_NEAR(1.005, large.east, 1e-9);
 }
 
-TEST_F(OverlayTest, IsAveragedToThePixelsThatAreUseful) {
+TEST_F(OverlayTest, IsAveragedToTheUsefulResolution) {
   std::vector<std::uint8_t> rgba;
   for (int i = 0; i < 128 * 90; ++i) rgba.insert(rgba.end(), {static_cast<std::uint8_t>(i % 2 ? 200 : 0), 50, 0, 255});
   const Overlay overlay =
@@ -106,7 +106,7 @@ TEST_F(OverlayTest, IsAveragedToThePixelsThatAreUseful) {
   EXPECT_EQ(50, overlay.image.rgba[1]);
 }
 
-TEST_F(OverlayTest, IsWarpedFromOtherSystems) {
+TEST_F(OverlayTest, IsWarpedFromOtherCrs) {
   const Overlay overlay =
       read_overlay(write_rgba("degrees.tif", 50, 50, pattern(50, 50), {-123.0 + 0.005, 1e-4, 0, 45.15, 0, -1e-4}, 4326),
                    ground(), kWide, kHigh, kAllPixels);
@@ -115,7 +115,7 @@ TEST_F(OverlayTest, IsWarpedFromOtherSystems) {
   EXPECT_LT(overlay.image.width, 80);
 }
 
-TEST_F(OverlayTest, BesideTheRasterIsAnError) {
+TEST_F(OverlayTest, RejectsOverlaysOutsideTheRaster) {
   const std::string file = write_rgba("far.tif", 4, 4, pattern(4, 4), {600'000, 1, 0, 5'000'000, 0, -1});
   expect_says(error_of([&] { read_overlay(file, ground(), kWide, kHigh, kAllPixels); }), "does not overlap the raster");
 }

@@ -26,7 +26,7 @@ ProceduralDem terrain(int cols, int rows) {
   return settings;
 }
 
-TEST_F(ProceduralDemFile, HoldsTheSameBitsAsMemory) {
+TEST_F(ProceduralDemFile, MatchesMemoryBitForBit) {
   const ProceduralDem settings = terrain(700, 530);
   write_procedural_dem(path("a.tif"), settings);
   const Raster raster = read_raster(path("a.tif"), {});
@@ -34,7 +34,7 @@ TEST_F(ProceduralDemFile, HoldsTheSameBitsAsMemory) {
   EXPECT_EQ(1u, files());  // no side files
 }
 
-TEST_F(ProceduralDemFile, HasCellsOfTheChosenLengthAndNorthUp) {
+TEST_F(ProceduralDemFile, HasTheChosenCellSizeAndIsNorthUp) {
   write_procedural_dem(path("a.tif"), terrain(300, 200));
   const Raster raster = read_raster(path("a.tif"), {});
   EXPECT_NEAR(30, raster.georeference.cell_x_m, 1e-6);
@@ -56,14 +56,14 @@ TEST_F(ProceduralDemFile, ReplacesAnOldFileAndReportsProgress) {
   EXPECT_EQ(600, read_raster(path("a.tif"), {}).rows);
 }
 
-TEST_F(ProceduralDemFile, LeavesNothingWhenInterrupted) {
+TEST_F(ProceduralDemFile, LeavesNoFileWhenInterrupted) {
   int calls = 0;
   EXPECT_THROW(write_procedural_dem(path("a.tif"), terrain(300, 2000), [&](double) { return ++calls < 40; }),
                Interrupted);
   EXPECT_EQ(0u, files());
 }
 
-TEST_F(ProceduralDemFile, AFullDiskIsOneErrorAndLeavesNothing) {
+TEST_F(ProceduralDemFile, FullDiskLeavesNoFile) {
   for (const std::uint64_t length : {100, 100000, 500000}) {
     ::testing::internal::CaptureStderr();
     const std::string text = error_of([&] {
@@ -78,7 +78,7 @@ TEST_F(ProceduralDemFile, AFullDiskIsOneErrorAndLeavesNothing) {
   }
 }
 
-TEST_F(ProceduralDemFile, UnwritablePlacesAreRefused) {
+TEST_F(ProceduralDemFile, RejectsUnwritablePaths) {
   expect_says(error_of([&] { write_procedural_dem(path("none/a.tif"), terrain(10, 10)); }), "does not exist");
   expect_says(error_of([&] { write_procedural_dem(folder_.string(), terrain(10, 10)); }), "is a directory");
 }

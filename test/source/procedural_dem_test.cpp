@@ -44,8 +44,8 @@ double mean_slope_deg(const std::vector<float>& h, int side, double cell_m) {
   return sum / (side - 1.0) / (side - 1.0);
 }
 
-// Frozen: a change here changes every published number that names a seed.
-TEST(ProceduralDemHeights, HaveTheSameBitsEverywhere) {
+// Frozen: a change would change every published result that names a seed.
+TEST(ProceduralDemHeights, AreBitIdenticalEverywhere) {
   EXPECT_EQ(13571564658466880114u, hash_of(generate_dem(terrain(333, 257, 1, TerrainKind::fbm))));
   EXPECT_EQ(14448054023744193116u, hash_of(generate_dem(terrain(333, 257, 1, TerrainKind::ridged))));
 }
@@ -70,7 +70,7 @@ TEST(ProceduralDemHeights, DoNotDependOnTilesAndThreads) {
   }
 }
 
-TEST(ProceduralDemHeights, FarFromTheOriginTheyAreAsFine) {
+TEST(ProceduralDemHeights, KeepDetailFarFromTheOrigin) {
   ProceduralDem settings = terrain(65536, 65536, 3, TerrainKind::fbm);
   std::vector<float> corner(64 * 64);
   fill_rectangle(settings, 65536 - 64, 65536 - 64, 64, 64, corner.data(), 64);
@@ -78,7 +78,7 @@ TEST(ProceduralDemHeights, FarFromTheOriginTheyAreAsFine) {
   EXPECT_LT(mean_slope_deg(corner, 64, 30), 45);
 }
 
-TEST(ProceduralDemHeights, LookLikeMountains) {
+TEST(ProceduralDemHeights, ResembleMountains) {
   for (const TerrainKind kind : {TerrainKind::fbm, TerrainKind::ridged}) {
     for (const int side : {257, 1025}) {
       for (const std::uint64_t seed : {1, 2, 3}) {
@@ -91,7 +91,7 @@ TEST(ProceduralDemHeights, LookLikeMountains) {
   }
 }
 
-TEST(ProceduralDemHeights, ChangeWithTheSeedAndInProportionToTheCell) {
+TEST(ProceduralDemHeights, DependOnSeedAndScaleWithTheCell) {
   ProceduralDem settings = terrain(65, 65, 1, TerrainKind::ridged);
   const std::vector<float> first = generate_dem(settings);
   settings.cell_m = 60;
@@ -108,7 +108,7 @@ TEST(ProceduralDemHeights, AreFiniteAtAnySize) {
   }
 }
 
-TEST(ProceduralDemHeights, NeedSettingsInTheirRange) {
+TEST(ProceduralDemHeights, RejectSettingsOutOfRange) {
   const auto broken = [](auto change) {
     ProceduralDem settings;
     change(settings);
@@ -123,11 +123,11 @@ TEST(ProceduralDemHeights, NeedSettingsInTheirRange) {
   broken([](ProceduralDem& s) { s.wavelength = std::nan(""); });
 }
 
-TEST(ProceduralDemHeights, StopWhenAskedTo) {
+TEST(ProceduralDemHeights, StopOnRequest) {
   EXPECT_THROW(generate_dem({}, [](double) { return false; }), Interrupted);
 }
 
-TEST(TerrainKindNames, AreReadBack) {
+TEST(TerrainKindNames, RoundTrip) {
   for (const TerrainKind kind : {TerrainKind::fbm, TerrainKind::ridged}) EXPECT_EQ(kind, terrain_kind(name_of(kind)));
   EXPECT_FALSE(terrain_kind("FBM").has_value());
 }

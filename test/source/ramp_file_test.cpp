@@ -33,7 +33,7 @@ class CptFile {
   std::string path_;
 };
 
-TEST(RampFile, ReadsAllWaysToWriteAColour) {
+TEST(RampFile, ReadsAllColourNotations) {
   const RampStops stops =
       CptFile(
           "# COLOR_MODEL = RGB\n-100 0 0 255\t0 0 0 128\n"
@@ -47,14 +47,14 @@ TEST(RampFile, ReadsAllWaysToWriteAColour) {
   EXPECT_EQ(stops.slices[2].high, 100);
 }
 
-TEST(RampFile, TellsWhatIsStretched) {
+TEST(RampFile, DetectsStretchedRamps) {
   EXPECT_TRUE(CptFile("0 0 0 0 0.5 9 9 9\n0.5 9 9 9 1 255 255 255\n").read().stretched);
   const RampStops hinged = CptFile("# HINGE = 0\n-1 0 0 0 0 9 9 9\n0 9 9 9 1 255 255 255\n").read();
   EXPECT_TRUE(hinged.stretched && hinged.hinged);
   EXPECT_FALSE(CptFile("-1 0 0 0 1 9 9 9\n").read().stretched);
 }
 
-TEST(RampFile, RefusesInOneLine) {
+TEST(RampFile, ReportsErrorsInOneLine) {
   EXPECT_NE(CptFile("").refusal().find("no line"), std::string::npos);
   EXPECT_NE(CptFile("0 0 0 0 1 2 3 999\n").refusal().find("line 1: 999 is not a colour component"), std::string::npos);
   EXPECT_NE(CptFile("0 0 0 0 1\n").refusal().find("line 1"), std::string::npos);
@@ -66,7 +66,7 @@ TEST(RampFile, RefusesInOneLine) {
   EXPECT_NE(CptFile("version https://git-lfs.github.com/spec/v1\n").refusal().find("git lfs pull"), std::string::npos);
 }
 
-TEST(RampFile, ARowIsEvenlySpaced) {
+TEST(RampFile, SpacesARowEvenly) {
   const std::uint8_t three[] = {0, 0, 0, 255, 0, 0, 255, 255, 255}, one[] = {9, 9, 9};
   const RampStops stops = ramp_of_row(three);
   ASSERT_EQ(stops.slices.size(), 2u);

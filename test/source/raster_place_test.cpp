@@ -36,7 +36,7 @@ class RasterPlaceTest : public Files {
   }
 };
 
-TEST_F(RasterPlaceTest, SamplesStandAtTheMiddlesOfPixels) {
+TEST_F(RasterPlaceTest, SamplesStandAtPixelCentres) {
   const Georeference geo = read(placed({500000, 30, 0, 5000000, 0, -20}, "EPSG:32610")).georeference;
   EXPECT_TRUE(geo.present);
   EXPECT_EQ((std::array<double, 6>{500015, 30, 0, 4999990, 0, -20}), geo.map_from_node);
@@ -55,12 +55,12 @@ TEST_F(RasterPlaceTest, PixelIsPointIsNotShiftedTwice) {
   EXPECT_EQ(500015, read(edit).georeference.map_from_node[0]);
 }
 
-TEST_F(RasterPlaceTest, HeightsOnAMapInFeetAreAskedFor) {
+TEST_F(RasterPlaceTest, NotesAssumedHeightUnitsOnMapsInFeet) {
   const auto map = [](const char* crs) { return placed({6000000, 30, 0, 2000000, 0, -30}, crs); };
   const std::string note = "map units are feet, but heights are assumed to be metres (override with --unit ";
   EXPECT_TRUE(has_note(read(map("EPSG:2227")), note + "us-ft"));
   EXPECT_TRUE(has_note(read(placed({700000, 30, 0, 1000000, 0, -30}, "EPSG:2222")), note + "ft"));
-  // Whoever says what heights are is not asked: the caller, the band, the vertical CRS, a map in metres.
+  // No note if the unit of heights is known: from the caller, the band, the vertical CRS, or a map in metres.
   RasterOptions options;
   options.unit = "us-ft";
   const auto in_metres = [&](GDALDataset& d) {
@@ -74,7 +74,7 @@ TEST_F(RasterPlaceTest, HeightsOnAMapInFeetAreAskedFor) {
     EXPECT_FALSE(has_note(raster, "feet")) << raster.georeference.crs_name;
 }
 
-TEST_F(RasterPlaceTest, AWindowMovesThePlace) {
+TEST_F(RasterPlaceTest, WindowMovesTheOrigin) {
   RasterOptions options;
   options.window = {1, 1, 2, 1};
   const Georeference geo = read(placed({500000, 30, 0, 5000000, 0, -20}, "EPSG:32610"), options).georeference;
@@ -88,7 +88,7 @@ TEST_F(RasterPlaceTest, SouthUpIsFlipped) {
   EXPECT_TRUE(has_note(raster, "south to north"));
 }
 
-TEST_F(RasterPlaceTest, AWindowOfASouthUpFileIsThatOfTheFile) {
+TEST_F(RasterPlaceTest, WindowOfASouthUpFileCountsInTheFile) {
   RasterOptions options;
   options.window = {0, 1, 3, 1};
   const Raster raster = read(placed({500000, 30, 0, 4999960, 0, 20}, "EPSG:32610"), options);
@@ -102,31 +102,31 @@ TEST_F(RasterPlaceTest, WestwardColumnsAreFlipped) {
   EXPECT_EQ((std::array<double, 6>{500015, 30, 0, 4999990, 0, -20}), raster.georeference.map_from_node);
 }
 
-TEST_F(RasterPlaceTest, RotatedIsRefusedWithARemedy) {
+TEST_F(RasterPlaceTest, RejectsRotatedRastersWithARemedy) {
   expect_says(error(placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610")), "gdalwarp");
   expect_says(error(placed({500000, 0, 30, 5000000, 30, 0}, "EPSG:32610")), "gdalwarp");
   // A rotation that moves no sample by a thousandth of a cell is noise.
   EXPECT_NO_THROW(read(placed({500000, 30, 1e-9, 5000000, 1e-9, -30}, "EPSG:32610")));
 }
 
-TEST_F(RasterPlaceTest, DegreesLieOnAPlane) {
+TEST_F(RasterPlaceTest, DegreesAreMappedToALocalPlane) {
   const Georeference geo = read(placed({10, 0.001, 0, 45.001, 0, -0.001}, "EPSG:4326")).georeference;
   EXPECT_NEAR(78.847, geo.cell_x_m, 0.001);  // 0.001 degree at 45 N on WGS 84 (tables of the ellipsoid)
   EXPECT_NEAR(111.132, geo.cell_y_m, 0.001);
   EXPECT_EQ("WGS 84 (EPSG:4326)", geo.crs_name);
 }
 
-TEST_F(RasterPlaceTest, LongitudesBeyondTheEarthAreAnotherCrs) {
+TEST_F(RasterPlaceTest, RejectsLongitudesBeyondTheEarth) {
   EXPECT_NO_THROW(read(placed({360, 1, 0, 40, 0, -1}, "EPSG:4326")));
   for (const double west : {500000.0, 541.0, -541.0}) {
     expect_says(error(placed({west, 0.01, 0, 40, 0, -0.01}, "EPSG:4326")), "longitudes span");
   }
 }
 
-TEST_F(RasterPlaceTest, AWholeHemisphereIsNoPlaneAndSaysSo) {
+TEST_F(RasterPlaceTest, NotesThatAHemisphereIsNotPlanar) {
   EXPECT_TRUE(has_note(read(placed({0, 1, 0, 80, 0, -20}, "EPSG:4326")),
                        "true cell widths are 68.4 to 128.6 % of the width at the centre"));
-  // Percentages of nothing say nothing: samples at a pole, and at both.
+  // Percentages of zero are meaningless: samples at a pole, and at both.
   for (const double step : {90.0, 180.0}) {
     const Raster globe = read(placed({-180, 120, 0, 90 + step / 2, 0, -step}, "EPSG:4326"));
     EXPECT_TRUE(has_note(globe, "the latitudes reach a pole"));
@@ -135,13 +135,13 @@ TEST_F(RasterPlaceTest, AWholeHemisphereIsNoPlaneAndSaysSo) {
   }
 }
 
-TEST_F(RasterPlaceTest, MapsInFeetBecomeMetres) {
+TEST_F(RasterPlaceTest, ConvertsMapsInFeetToMetres) {
   const Raster raster = read(placed({6600000, 100, 0, 1900000, 0, -100}, "EPSG:2225"));
   EXPECT_NEAR(30.48, raster.georeference.cell_x_m, 0.01);
   EXPECT_EQ(1, raster.scale);  // horizontal feet say nothing about heights
 }
 
-TEST_F(RasterPlaceTest, AVerticalCrsInFeetCountsForHeights) {
+TEST_F(RasterPlaceTest, VerticalCrsInFeetAppliesToHeights) {
   // NAVD88 height (ftUS) is EPSG:6360.
   const Raster raster = read(placed({500000, 30, 0, 5000000, 0, -30}, "EPSG:26910+6360"));
   EXPECT_DOUBLE_EQ(1200.0 / 3937, raster.scale);
@@ -151,7 +151,7 @@ TEST_F(RasterPlaceTest, AVerticalCrsInFeetCountsForHeights) {
   EXPECT_EQ(1, read_raster(path("a.tif"), options).scale);
 }
 
-TEST_F(RasterPlaceTest, WithoutGeoreferenceCellsAreOneMetre) {
+TEST_F(RasterPlaceTest, CellsAreOneMetreWithoutGeoreference) {
   const Raster raster = read({});
   EXPECT_FALSE(raster.georeference.present);
   EXPECT_EQ(1, raster.georeference.cell_x_m);
@@ -159,18 +159,18 @@ TEST_F(RasterPlaceTest, WithoutGeoreferenceCellsAreOneMetre) {
   EXPECT_TRUE(has_note(raster, "no georeference"));
 }
 
-TEST_F(RasterPlaceTest, WithoutCrsMapUnitsAreMetres) {
+TEST_F(RasterPlaceTest, MapUnitsAreMetresWithoutCrs) {
   const Raster raster = read(placed({1000, 30, 0, 2000, 0, -30}));
   EXPECT_TRUE(raster.georeference.present);
   EXPECT_EQ(30, raster.georeference.cell_x_m);
   EXPECT_TRUE(has_note(raster, "assuming map units of metres"));
-  // Metres from a corner of the site, in cells that elevation models have.
+  // Metres from a corner of the site, with typical cell sizes of elevation models.
   const Raster site = read(placed({0, 0.5, 0, 1, 0, -0.5}));
   EXPECT_EQ(0.5, site.georeference.cell_x_m);
   EXPECT_TRUE(has_note(site, "a corner is at 0,0, but the bounds fit degrees (override with --crs EPSG:4326)"));
 }
 
-TEST_F(RasterPlaceTest, BoundsThatFitDegreesAreDegrees) {
+TEST_F(RasterPlaceTest, AssumesDegreesForPlausibleBounds) {
   const auto tile = placed({10, 0.001, 0, 45.001, 0, -0.001});
   const Raster raster = read(tile);
   EXPECT_NEAR(78.847, raster.georeference.cell_x_m, 0.001);
@@ -192,7 +192,7 @@ TEST_F(RasterPlaceTest, BoundsThatFitDegreesAreDegrees) {
     EXPECT_EQ("", read(placed(map)).georeference.crs_name) << map[0];
 }
 
-TEST_F(RasterPlaceTest, NoCrsOverridesGuessAndFile) {
+TEST_F(RasterPlaceTest, CrsNoneOverridesGuessAndFile) {
   RasterOptions options;
   options.crs = "none";
   for (const char* crs : {static_cast<const char*>(nullptr), "EPSG:4326"}) {
@@ -204,7 +204,7 @@ TEST_F(RasterPlaceTest, NoCrsOverridesGuessAndFile) {
   EXPECT_EQ(1, read({}, options).georeference.cell_x_m);
 }
 
-TEST_F(RasterPlaceTest, ExtentOfSamplesAndOfEdges) {
+TEST_F(RasterPlaceTest, ReportsExtentOfSamplesAndEdges) {
   const auto extent = [&](const Raster& raster) { return map_extent(raster.georeference, raster.cols, raster.rows); };
   const auto numbers = [](const std::optional<MapBounds>& b) {
     return b ? std::vector<double>{b->west, b->south, b->east, b->north} : std::vector<double>{};
@@ -225,7 +225,7 @@ TEST_F(RasterPlaceTest, ExtentOfSamplesAndOfEdges) {
   EXPECT_FALSE(extent(read(placed({1000, 30, 0, 2000, 0, -30}))).edges_lonlat);
 }
 
-TEST_F(RasterPlaceTest, CrsAndBoundsOfTheCallerWin) {
+TEST_F(RasterPlaceTest, CallersCrsAndBoundsTakePrecedence) {
   RasterOptions options;
   options.crs = "EPSG:4326";
   EXPECT_NEAR(78.847, read(placed({10, 0.001, 0, 45.001, 0, -0.001}), options).georeference.cell_x_m, 0.001);
@@ -233,7 +233,7 @@ TEST_F(RasterPlaceTest, CrsAndBoundsOfTheCallerWin) {
   EXPECT_NEAR(78.847, read(placed({1, 2, 0, 3, 0, -4}), options).georeference.cell_x_m, 0.001);
 }
 
-TEST_F(RasterPlaceTest, WrongCrsAndBoundsAreRefused) {
+TEST_F(RasterPlaceTest, RejectsInvalidCrsAndBounds) {
   RasterOptions options;
   options.crs = "EPSG:999999";
   expect_says(error({}, options), "unknown coordinate reference system 'EPSG:999999'");
@@ -249,7 +249,7 @@ TEST_F(RasterPlaceTest, WrongCrsAndBoundsAreRefused) {
   expect_says(error({}, options), "--bounds W,S,E,N");
 }
 
-TEST_F(RasterPlaceTest, ALocalSystemIsTakenAsItIs) {
+TEST_F(RasterPlaceTest, AcceptsLocalSystems) {
   const Raster raster = read(
       placed({0, 10, 0, 0, 0, -10}, "LOCAL_CS[\"site\",UNIT[\"foot\",0.3048],AXIS[\"x\",EAST],AXIS[\"y\",NORTH]]"));
   EXPECT_NEAR(3.048, raster.georeference.cell_x_m, 1e-12);

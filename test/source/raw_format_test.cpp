@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-TEST(RawFormat, EveryTypeInBothByteOrders) {
+TEST(RawFormat, ParsesEveryTypeInBothByteOrders) {
   const struct {
     const char* name;
     char kind;
@@ -31,20 +31,20 @@ TEST(RawFormat, EveryTypeInBothByteOrders) {
   }
 }
 
-TEST(RawFormat, OneByteNeedsNoOrder) { EXPECT_EQ(parse_raw_format("7x5:u8").bytes, 1); }
+TEST(RawFormat, OneByteTypesNeedNoByteOrder) { EXPECT_EQ(parse_raw_format("7x5:u8").bytes, 1); }
 
-TEST(RawFormat, AnOffsetIsTakenAndKeptApartFromNone) {
+TEST(RawFormat, ParsesTheOffset) {
   EXPECT_EQ(parse_raw_format("7x5:f32le+128").offset, 128);
   EXPECT_TRUE(parse_raw_format("7x5:f32le+0").has_offset);
   EXPECT_EQ(parse_raw_format("7x5:u8+4611686018427387904").offset, std::int64_t{1} << 62);
 }
 
-TEST(RawFormat, ItsTextIsReadAsItself) {
+TEST(RawFormat, RoundTrips) {
   for (const char* text : {"4097x4097:u16le", "1x1:i8", "3x2:f64be+12", "3x2:f32le+0"})
     EXPECT_EQ(text_of(parse_raw_format(text)), text);
 }
 
-TEST(RawFormat, AnythingElseIsOneLineWithTheForm) {
+TEST(RawFormat, ErrorShowsTheExpectedForm) {
   for (const std::string text : {"",
                                  "7",
                                  "7x5",

@@ -23,7 +23,7 @@ class RawRaster : public Files {
   }
 };
 
-TEST_F(RawRaster, AllTypesAndByteOrdersAreRead) {
+TEST_F(RawRaster, ReadsAllTypesAndByteOrders) {
   const struct {
     const char* format;
     std::string samples;
@@ -44,14 +44,14 @@ TEST_F(RawRaster, AllTypesAndByteOrdersAreRead) {
   }
 }
 
-TEST_F(RawRaster, SignsAreKept) {
+TEST_F(RawRaster, KeepsSigns) {
   EXPECT_EQ((std::vector<double>{-1, -128}),
             doubles(read_raster(write_bytes("a.r8", sample_bytes<std::int8_t>({-1, -128})), as("2x1:i8"))));
   EXPECT_EQ((std::vector<double>{-1, -32768}),
             doubles(read_raster(write_bytes("a.r16", sample_bytes<std::int16_t>({-1, -32768})), as("2x1:i16le"))));
 }
 
-TEST_F(RawRaster, AHeaderIsSkippedAndWhatFollowsIsSaid) {
+TEST_F(RawRaster, SkipsAHeaderAndReportsTrailingBytes) {
   const std::string samples = sample_bytes<std::int16_t>(kHeights);
   EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.raw", "12345" + samples), as("3x2:i16le+5"))));
   const Raster raster = read_raster(write_bytes("a.raw", "12345" + samples + "678"), as("3x2:i16le+5"));
@@ -59,7 +59,7 @@ TEST_F(RawRaster, AHeaderIsSkippedAndWhatFollowsIsSaid) {
   EXPECT_TRUE(has_note(raster, "ignored 3 bytes after the samples"));
 }
 
-TEST_F(RawRaster, TheLengthMustBeThatOfTheSamples) {
+TEST_F(RawRaster, LengthMustMatchTheSamples) {
   const std::string samples = sample_bytes<std::int16_t>(kHeights);
   const std::string file = write_bytes("a.raw", samples);
   const std::string shorter = read_error(file, as("3x3:i16le"));
@@ -73,18 +73,18 @@ TEST_F(RawRaster, TheLengthMustBeThatOfTheSamples) {
   expect_says(read_error(file, as("3x2:i16le+4611686018427387904")), "truncated");
 }
 
-TEST_F(RawRaster, WhatIsNoFileIsNamed) {
+TEST_F(RawRaster, NamesMissingFiles) {
   expect_says(read_error(path("none.raw"), as("3x2:u8")), "does not exist");
   expect_says(read_error(write_bytes("e.raw", ""), as("3x2:u8")), "0 bytes");
   expect_says(read_error(folder_.string(), as("3x2:u8")), "is a directory");
 }
 
-TEST_F(RawRaster, ItsNameSaysNothing) {
+TEST_F(RawRaster, IgnoresTheExtension) {
   EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.npy", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
   EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.exr", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
 }
 
-TEST_F(RawRaster, OptionsOfOtherFilesAreRefused) {
+TEST_F(RawRaster, RejectsOptionsOfOtherFormats) {
   const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kHeights));
   RasterOptions options = as("3x2:i16le");
   options.encoding = HeightEncoding::terrarium;
@@ -100,7 +100,7 @@ TEST_F(RawRaster, OptionsOfOtherFilesAreRefused) {
   expect_says(read_error(file, options), "no band 2: the file has");
 }
 
-TEST_F(RawRaster, NodataWindowAndBoundsApply) {
+TEST_F(RawRaster, AppliesNodataWindowAndBounds) {
   const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kHeights));
   RasterOptions options = as("3x2:i16le");
   options.nodata = 5;
@@ -113,7 +113,7 @@ TEST_F(RawRaster, NodataWindowAndBoundsApply) {
   EXPECT_EQ(20, raster.georeference.cell_y_m);
 }
 
-TEST_F(RawRaster, NanIsAHoleAndInfinityIsRefused) {
+TEST_F(RawRaster, NanIsAHoleAndInfinityIsRejected) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const Raster raster = read_raster(write_bytes("a.raw", sample_bytes<float>({1, nan})), as("2x1:f32le"));
   EXPECT_TRUE(std::isnan(doubles(raster)[1]));

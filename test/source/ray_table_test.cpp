@@ -44,7 +44,7 @@ void expect_npy_refused(const std::string& bytes, const std::string& fragment) {
 
 const std::string kHeader = "x,y,z,dx,dy,dz\n";
 
-TEST(RayCsv, DirectionsInAnyOrderOfColumns) {
+TEST(RayCsv, AcceptsColumnsInAnyOrder) {
   const RayTable table = parse_ray_csv("dz,x,id,y,t_max,z,dx,dy,t_min\n-1,10,a,20,500,30,0.5,-.25,-2e1\n");
   ASSERT_EQ(table.rows.size(), 1u);
   const RayRow& row = table.rows[0];
@@ -58,7 +58,7 @@ TEST(RayCsv, DirectionsInAnyOrderOfColumns) {
   EXPECT_EQ(table.carried.at(0, 0), "a");
 }
 
-TEST(RayCsv, WhatIsNotGivenHasItsDefault) {
+TEST(RayCsv, AppliesDefaultsToMissingColumns) {
   const RayTable directions = parse_ray_csv("x,y,z,dx,dy,dz,t_min,t_max,start_col,start_row\n1,2,3,0,0,-1,,,,\n");
   EXPECT_EQ(directions.rows.at(0).t_min, 0);
   EXPECT_EQ(directions.rows[0].t_max, kInfinity);
@@ -70,13 +70,13 @@ TEST(RayCsv, WhatIsNotGivenHasItsDefault) {
   EXPECT_EQ(targets.rows.at(1).t_max, kInfinity);
 }
 
-TEST(RayCsv, AStartCellPutsTheRayOnTheSurface) {
+TEST(RayCsv, StartCellPutsTheRayOnTheSurface) {
   const RayTable table = parse_ray_csv("x,y,z,dx,dy,dz,start_col,start_row\n1,2,3,0,0,-1,7,0\n");
   EXPECT_EQ(table.rows.at(0).start, RayStart::on_surface);
   EXPECT_EQ(table.rows[0].start_cell, (Cell{7, 0}));
 }
 
-TEST(RayCsv, SeparatorsLineEndsMarksAndBlankLines) {
+TEST(RayCsv, AcceptsSeparatorsLineEndsMarksAndBlankLines) {
   for (const std::string separator : {",", ";", "\t"}) {
     for (const std::string end : {"\n", "\r\n", "\r"}) {
       std::string bytes = "\xEF\xBB\xBFx,y,z,dx,dy,dz\n\n 1 ,+2,3e0,0,0,-1\n  \n4,5,6,0,0,-1";
@@ -91,7 +91,7 @@ TEST(RayCsv, SeparatorsLineEndsMarksAndBlankLines) {
   }
 }
 
-TEST(RayCsv, QuotesHoldSeparatorsQuotesAndLineEnds) {
+TEST(RayCsv, QuotesMayContainSeparatorsQuotesAndLineEnds) {
   const RayTable table = parse_ray_csv(
       "\"x\",y,z,dx,dy,dz,\"a, b\",c\n\"1\",2,3,0,0,-1,\"say \"\"hi\"\", "
       "you\",\"two\r\nlines\"\n4,5,6,0,0,-1,,plain\n");
@@ -104,7 +104,7 @@ TEST(RayCsv, QuotesHoldSeparatorsQuotesAndLineEnds) {
   EXPECT_EQ(table.rows[1].line, 4) << "the first ray takes two lines";
 }
 
-TEST(RayCsv, HeightsMayBeLeftOut) {
+TEST(RayCsv, HeightsAreOptional) {
   const RayTable targets = parse_ray_csv("x,y,tx,ty\n1,2,3,4\n", RayRows::cameras);
   EXPECT_FALSE(targets.has_z || targets.has_target_z);
   EXPECT_EQ(targets.rows.at(0).origin, dvec3(1, 2, 0));
@@ -119,9 +119,9 @@ TEST(RayCsv, HeightsMayBeLeftOut) {
   EXPECT_NE(refusal("x,tx,ty\n1,3,4\n", RayRows::cameras).find("no column 'y' (required: x,y[,z]"), std::string::npos);
 }
 
-TEST(RayCsv, AHeaderAloneIsATableWithoutRays) { EXPECT_TRUE(parse_ray_csv(kHeader).rows.empty()); }
+TEST(RayCsv, HeaderAloneGivesNoRays) { EXPECT_TRUE(parse_ray_csv(kHeader).rows.empty()); }
 
-TEST(RayCsv, MessagesNameLineAndRay) {
+TEST(RayCsv, ErrorsNameLineAndRay) {
   std::string six_rays = kHeader;
   for (int i = 0; i < 6; ++i) six_rays += "1,2,3,0,0,-1\n";
   expect_csv_refused(six_rays + "1,2,3,0,-1\n", "line 8 (ray 6): 5 fields instead of 6");
@@ -131,7 +131,7 @@ TEST(RayCsv, MessagesNameLineAndRay) {
   EXPECT_EQ(table.where(5), "a.csv: line 7 (ray 5)");
 }
 
-TEST(RayCsv, BadRowsAreRefused) {
+TEST(RayCsv, RejectsBadRows) {
   const auto row = [](const std::string& fields) { return kHeader + fields + "\n"; };
   expect_csv_refused(row("1,2,three,0,0,-1"), "line 2 (ray 0): 'three' in column 'z' is not a number");
   expect_csv_refused(row("1,2,3m,0,0,-1"), "'3m' in column 'z'");
@@ -155,7 +155,7 @@ TEST(RayCsv, BadRowsAreRefused) {
   expect_csv_refused(row("1,2,\"3\n4\",0,0,-1"), "'3?4' in column 'z'");
 }
 
-TEST(RayCsv, BadHeadersAreRefused) {
+TEST(RayCsv, RejectsBadHeaders) {
   expect_csv_refused("", "empty file");
   expect_csv_refused("\xEF\xBB\xBF", "empty file");
   expect_csv_refused("\n \r\n", "empty file");
@@ -170,12 +170,12 @@ TEST(RayCsv, BadHeadersAreRefused) {
   expect_csv_refused(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
 }
 
-TEST(RayCsv, BadQuotesAreRefused) {
+TEST(RayCsv, RejectsBadQuotes) {
   expect_csv_refused(kHeader + "1,2,3,0,0,\"-1\n", "line 2: unclosed quote");
   expect_csv_refused(kHeader + "1,2,3,0,0,\"-1\"0\n", "line 2: text after a closing quote");
 }
 
-TEST(RayNpy, PlainArrays) {
+TEST(RayNpy, ReadsPlainArrays) {
   const std::vector<double> two_rays = {1, 2, 3, 0, 0, -1, 4, 5, 6, 1, 0.5, 0};
   const std::vector<double> by_columns = {1, 4, 2, 5, 3, 6, 0, 1, 0, 0.5, -1, 0};
   const auto expect_both = [](const RayTable& table) {
@@ -193,7 +193,7 @@ TEST(RayNpy, PlainArrays) {
   expect_both(parse_ray_npy(npy_bytes(npy_dictionary("<f8", "(2, 6)", true), sample_bytes<double>(by_columns))));
 }
 
-TEST(RayNpy, EightColumnsHaveTheRange) {
+TEST(RayNpy, EightColumnsIncludeTheRange) {
   const std::string samples = sample_bytes<double>({1, 2, 3, 0, 0, -1, -5, 50});
   const RayTable table = parse_ray_npy(npy_bytes(npy_dictionary("<f8", "(1, 8)"), samples));
   EXPECT_EQ(table.rows.at(0).t_min, -5);
@@ -204,7 +204,7 @@ std::string structures(const std::string& descr, const std::string& bytes) {
   return npy_bytes("{'descr': " + descr + ", 'fortran_order': False, 'shape': (1,), }", bytes);
 }
 
-TEST(RayNpy, StructuresHaveNamedFields) {
+TEST(RayNpy, ReadsStructuredArrays) {
   const std::string descr =
       "[('name', '<U1'), ('tx', '<f8'), ('ty', '>f4'), ('tz', '<f8'), ('x', '<i2'), ('y', '|u1'), ('z', '<f8'), "
       "('start_col', '<i8'), ('start_row', '<i4')]";
@@ -221,7 +221,7 @@ TEST(RayNpy, StructuresHaveNamedFields) {
   EXPECT_EQ(table.rows[0].start_cell, (Cell{3, 2}));
 }
 
-TEST(RayNpy, BadArraysAreRefused) {
+TEST(RayNpy, RejectsBadArrays) {
   const std::string ray = sample_bytes<double>({1, 2, 3, 0, 0, -1});
   const auto plain = [](const std::string& shape, const std::string& bytes, const std::string& descr = "<f8") {
     return npy_bytes(npy_dictionary(descr, shape), bytes);
@@ -248,13 +248,13 @@ TEST(RayNpy, BadArraysAreRefused) {
                      "0.5 in field 'start_row'");
 }
 
-TEST(ReadRays, TheFileIsNamed) {
+TEST(ReadRays, ErrorsNameTheFile) {
   expect_refused([](const std::string& path) { return read_rays(path); }, "/no/such/rays.csv",
                  "/no/such/rays.csv: cannot be opened");
   expect_refused([](const std::string& path) { return read_rays(path); }, "/", "/: is a directory");
 }
 
-TEST(ReadRays, GitLfsPointersAreNamedSo) {
+TEST(ReadRays, RecognisesGitLfsPointers) {
   for (const char* ending : {".csv", ".npy"}) {
     const std::string path = fmt::format("{}scarp-rays-{}{}", testing::TempDir(), ::getpid(), ending);
     std::ofstream(path) << "version https://git-lfs.github.com/spec/v1\n";

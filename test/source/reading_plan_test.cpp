@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Large rasters read with fewer samples, whatever the file.
+// Large rasters read with fewer samples, from any file.
 #include <cmath>
 #include <numeric>
 
@@ -48,7 +48,7 @@ void place(GDALDataset& dataset) {
 
 class ReadingPlan : public Files {};
 
-TEST_F(ReadingPlan, ReducesEverySampleTypeAndPlacesTheResult) {
+TEST_F(ReadingPlan, ReducesAndGeoreferencesEverySampleType) {
   for (const GDALDataType type : {GDT_Byte, GDT_Int16, GDT_UInt16, GDT_Int32, GDT_Float32, GDT_Float64}) {
     const std::string file = write_tiff("a.tif", type, kManyCols, kManyRows, slope(), place);
     const Raster raster = read_raster(file, reduced());
@@ -69,7 +69,7 @@ TEST_F(ReadingPlan, ReadsSmallRastersCompletely) {
   EXPECT_EQ(slope(), doubles(read_raster(write_tiff("a.tif", GDT_Int16, kManyCols, kManyRows, slope()), options)));
 }
 
-TEST_F(ReadingPlan, ReducesOfAWindowOnly) {
+TEST_F(ReadingPlan, ReducesOnlyTheWindow) {
   RasterOptions options = reduced();
   options.window = RasterWindow{4, 2, 14, 8};
   const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, kManyCols, kManyRows, slope(), place), options);
@@ -80,7 +80,7 @@ TEST_F(ReadingPlan, ReducesOfAWindowOnly) {
   EXPECT_EQ(1050, raster.georeference.map_from_node[0]);
 }
 
-TEST_F(ReadingPlan, FlipsWhatRunsSouthUp) {
+TEST_F(ReadingPlan, FlipsSouthUpRasters) {
   const std::string file = write_tiff("a.tif", GDT_Int16, kManyCols, kManyRows, slope(), [](GDALDataset& dataset) {
     double map[] = {1000, 10, 0, 5000, 0, 10};
     dataset.SetGeoTransform(map);
@@ -90,7 +90,7 @@ TEST_F(ReadingPlan, FlipsWhatRunsSouthUp) {
   EXPECT_EQ(5000 + 12 * 10 - 10, raster.georeference.map_from_node[3]);
 }
 
-TEST_F(ReadingPlan, HolesByValueAndByMask) {
+TEST_F(ReadingPlan, KeepsHolesByValueAndByMask) {
   const auto with_holes = [](double hole) {
     std::vector<double> samples = slope();
     for (const int at : {0, 1, kManyCols}) samples[static_cast<std::size_t>(at)] = hole;
@@ -154,7 +154,7 @@ TEST_F(ReadingPlan, ReducesArraysTilesAndEncodedHeights) {
   EXPECT_EQ((height(0, 2) + 6) * 65793, n[10]);
 }
 
-TEST_F(ReadingPlan, AnOverviewReplacesTheSamples) {
+TEST_F(ReadingPlan, ReadsAnOverviewInsteadOfSamples) {
   // 40 x 24 samples of 7; the overview holds the slope, so that the test can tell them apart.
   const auto write = [&](bool statistics) {
     const std::string file = path(statistics ? "s.tif" : "o.tif");
@@ -187,7 +187,7 @@ TEST_F(ReadingPlan, AnOverviewReplacesTheSamples) {
   EXPECT_TRUE(has_note(coarse, "overview of 20 x 12, average of 2 x 2, minimum"));
 }
 
-TEST_F(ReadingPlan, SkipsWhatSparseFilesLeaveOut) {
+TEST_F(ReadingPlan, SkipsMissingBlocksOfSparseFiles) {
   constexpr int kSide = 100'000;
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   CPLStringList how;
@@ -209,7 +209,7 @@ TEST_F(ReadingPlan, SkipsWhatSparseFilesLeaveOut) {
   EXPECT_EQ(-1, out.front());
 }
 
-TEST_F(ReadingPlan, RefusesMoreSamplesThanCanBeRead) {
+TEST_F(ReadingPlan, RejectsTooManySamples) {
   const std::string file = write_bytes(
       "huge.vrt",
       "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"2147483647\"><VRTRasterBand dataType=\"Int16\" band=\"1\"/>"
@@ -220,7 +220,7 @@ TEST_F(ReadingPlan, RefusesMoreSamplesThanCanBeRead) {
   expect_says(read_error(file), "of memory are free (read a part with --window COL,ROW,COLS,ROWS)");
 }
 
-TEST_F(ReadingPlan, GdalKeepsFewBlocksWhileItReads) {
+TEST_F(ReadingPlan, LimitsTheGdalBlockCache) {
   GIntBig least = GDALGetCacheMax64();
   const GIntBig before = least;
   read_raster(write_tiff("a.tif", GDT_Int16, kManyCols, kManyRows, slope()), {}, [&](double) {

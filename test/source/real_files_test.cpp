@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files as people have them: those of ../shared/data/dem beside the checkout and of Debian's python-matplotlib-data.
+// Real-world files: those of ../shared/data/dem beside the checkout and of Debian's python-matplotlib-data.
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +37,7 @@ Range range_of(const Raster& raster) {
   return range;
 }
 
-TEST(RealFiles, SaintHelensInUtmOfNad27) {
+TEST(RealFiles, ReadsSaintHelensInNad27Utm) {
   const std::string file = shared_dem("SainteHelens.dem");
   SKIP_WITHOUT(file);
   const Raster raster = read_raster(file, {});
@@ -55,7 +55,7 @@ TEST(RealFiles, SaintHelensInUtmOfNad27) {
   EXPECT_EQ("NAD27 / UTM zone 10N", raster.georeference.crs_name);
 }
 
-TEST(RealFiles, ASrtmTileOnTheEquator) {
+TEST(RealFiles, ReadsAnSrtmTileOnTheEquator) {
   const std::string file = shared_dem("N00E010.hgt");
   SKIP_WITHOUT(file);
   const Raster raster = read_raster(file, {});
@@ -71,7 +71,7 @@ TEST(RealFiles, ASrtmTileOnTheEquator) {
   EXPECT_NEAR(92.145, raster.georeference.cell_y_m, 1e-3);
 }
 
-TEST(RealFiles, ALidarModelInUtm) {
+TEST(RealFiles, ReadsALidarModelInUtm) {
   const std::string file = shared_dem("lidar_dsm.tif");
   SKIP_WITHOUT(file);
   const Raster raster = read_raster(file, {});
@@ -82,7 +82,7 @@ TEST(RealFiles, ALidarModelInUtm) {
   EXPECT_NEAR(1.00034, raster.georeference.cell_x_m, 1e-5);
 }
 
-TEST(RealFiles, WebMercatorIsShrunkToTheGround) {
+TEST(RealFiles, ScalesWebMercatorToGroundDistances) {
   const std::string file = shared_dem("rgbify_elev.tif");
   SKIP_WITHOUT(file);
   const Raster raster = read_raster(file, {});
@@ -90,7 +90,7 @@ TEST(RealFiles, WebMercatorIsShrunkToTheGround) {
   EXPECT_NEAR(6.059025744365499 / 1.2693, raster.georeference.cell_y_m, 0.001);
 }
 
-TEST(RealFiles, JacksboroOutOfMatplotlibsArchive) {
+TEST(RealFiles, ReadsJacksboroFromMatplotlib) {
   const std::string file = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "Debian's python-matplotlib-data is not installed";
   RasterOptions options;

@@ -16,19 +16,19 @@ double height(HeightEncoding encoding, std::uint8_t red, std::uint8_t green, std
   return n * scale_of(encoding).scale + scale_of(encoding).offset;
 }
 
-TEST(TerrainRgb, HeightsOfMapboxFormula) {
+TEST(TerrainRgb, DecodesTheMapboxFormula) {
   EXPECT_DOUBLE_EQ(height(HeightEncoding::terrain_rgb, 0, 0, 0), -10000);
   EXPECT_DOUBLE_EQ(height(HeightEncoding::terrain_rgb, 1, 134, 160), -10000 + (65536 + 134 * 256 + 160) * 0.1);
   EXPECT_DOUBLE_EQ(height(HeightEncoding::terrain_rgb, 255, 255, 255), 1667721.5);
 }
 
-TEST(TerrainRgb, HeightsOfTerrarium) {
+TEST(TerrainRgb, DecodesTerrarium) {
   EXPECT_DOUBLE_EQ(height(HeightEncoding::terrarium, 128, 0, 0), 0);
   EXPECT_DOUBLE_EQ(height(HeightEncoding::terrarium, 128, 1, 128), 1.5);
   EXPECT_DOUBLE_EQ(height(HeightEncoding::terrarium, 0, 0, 1), -32768 + 1 / 256.0);
 }
 
-TEST(TerrainRgb, NumbersAreExactAtTheUpperEnd) {
+TEST(TerrainRgb, IsExactAtTheUpperEnd) {
   const std::uint8_t pixels[] = {255, 255, 254, 255, 255, 255};
   float n[2];
   decode_rgb(pixels, 2, 3, n);
@@ -36,7 +36,7 @@ TEST(TerrainRgb, NumbersAreExactAtTheUpperEnd) {
   EXPECT_EQ(n[1], 16777215.0f);
 }
 
-TEST(TerrainRgb, AlphaZeroIsAHoleAndNoOtherAlphaIs) {
+TEST(TerrainRgb, OnlyAlphaZeroIsAHole) {
   const std::uint8_t pixels[] = {1, 2, 3, 0, 1, 2, 3, 1, 1, 2, 3, 255};
   float n[3];
   decode_rgb(pixels, 3, 4, n);
@@ -45,7 +45,7 @@ TEST(TerrainRgb, AlphaZeroIsAHoleAndNoOtherAlphaIs) {
   EXPECT_EQ(n[2], 66051.0f);
 }
 
-TEST(TerrainRgb, NamesGoBothWays) {
+TEST(TerrainRgb, NamesRoundTrip) {
   for (const char* name : {"none", "terrain-rgb", "terrarium"}) EXPECT_EQ(name_of(height_encoding(name).value()), name);
   for (const char* name : {"", "Terrarium", "terrain_rgb", "rgb"}) EXPECT_FALSE(height_encoding(name)) << name;
 }

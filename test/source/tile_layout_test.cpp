@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-TEST(TileLayout, OneTileIsTheWhole) {
+TEST(TileLayout, SingleTileIsTheWhole) {
   const TileRect all = bounding_rect({{-3, 4, 10, 20}});
   EXPECT_EQ(all.col, -3);
   EXPECT_EQ(all.row, 4);
@@ -18,14 +18,14 @@ TEST(TileLayout, OneTileIsTheWhole) {
   EXPECT_EQ(covered_samples({{-3, 4, 10, 20}}), 200);
 }
 
-TEST(TileLayout, TilesAcrossTheEndOfTheCircleLieSideBySide) {
+TEST(TileLayout, JoinsTilesAcrossTheAntimeridian) {
   using Turns = std::vector<int>;
   const auto turns = [](const std::vector<TileSpan>& tiles) { return turns_side_by_side(tiles, 360, 0.01); };
   EXPECT_EQ(turns({{179, 180}, {-180, -179}}), (Turns{0, 1}));
   EXPECT_EQ(turns({{-180, -179}, {179, 180}, {-179, -170}}), (Turns{1, 0, 1}));
   EXPECT_EQ(turns({{-180, -170}, {170, 180}, {160, 170.000001}, {-180.000001, -170}}), (Turns{1, 0, 0, 1}));
   EXPECT_EQ(turns({{359, 360}, {0, 1}}), (Turns{0, 1}));
-  // Two conventions for one place.
+  // Two conventions for one position.
   EXPECT_EQ(turns({{200, 210}, {-150, -140}}), (Turns{0, 1}));
   // Nothing to gain: side by side already, far apart, the whole globe, more than the globe.
   EXPECT_EQ(turns({{5, 6}, {6, 7}}), (Turns{0, 0}));
@@ -35,7 +35,7 @@ TEST(TileLayout, TilesAcrossTheEndOfTheCircleLieSideBySide) {
   EXPECT_EQ(turns({{-180.5, 180.5}}), (Turns{0}));
 }
 
-TEST(TileLayout, OverlapsCountOnce) {
+TEST(TileLayout, CountsOverlapsOnce) {
   EXPECT_EQ(covered_samples({{0, 0, 4, 4}, {0, 0, 4, 4}}), 16);
   EXPECT_EQ(covered_samples({{0, 0, 4, 4}, {3, 3, 4, 4}}), 31);
   EXPECT_EQ(covered_samples({{0, 0, 10, 10}, {2, 2, 3, 3}, {2, 6, 3, 3}}), 100);
@@ -46,7 +46,7 @@ TEST(TileLayout, LargeExtentsDoNotOverflow) {
   EXPECT_EQ(covered_samples({{0, 0, kSide, kSide}, {kSide, kSide, kSide, kSide}}), 2.0 * kSide * kSide);
 }
 
-RC_GTEST_PROP(TileLayout, AgreesWithCountingSamples, ()) {
+RC_GTEST_PROP(TileLayout, MatchesACountOfSamples, ()) {
   std::vector<TileRect> tiles(*rc::gen::inRange<std::size_t>(1, 9));
   for (TileRect& tile : tiles) {
     tile = {*rc::gen::inRange(-9, 9), *rc::gen::inRange(-9, 9), *rc::gen::inRange(1, 8), *rc::gen::inRange(1, 8)};

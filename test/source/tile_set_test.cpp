@@ -55,7 +55,7 @@ class TileSet : public Files {
     }
   }
 
-  // One line that names the file, and says `part`.
+  // One line that names the file, and contains `part`.
   static void expect_refused(const std::vector<std::string>& files, const std::string& file, const std::string& part,
                              const RasterOptions& options = {}) {
     const std::string text = error_of([&] { read_tiles(files, options); });
@@ -64,7 +64,7 @@ class TileSet : public Files {
   }
 };
 
-TEST_F(TileSet, TilesSideBySideAreOneRasterOfTheirType) {
+TEST_F(TileSet, JoinsAdjacentTilesKeepingTheirType) {
   const Raster raster = read_tiles({tile("b.tif", 2, 0, {5, 6, 7, 8}), tile("a.tif", 0, 0)}, {});
   EXPECT_EQ(4, raster.cols);
   EXPECT_EQ(2, raster.rows);
@@ -80,7 +80,7 @@ TEST_F(TileSet, TilesSideBySideAreOneRasterOfTheirType) {
   EXPECT_EQ("WGS 84 / UTM zone 10N (EPSG:32610)", raster.georeference.crs_name);
 }
 
-TEST_F(TileSet, TilesOnBothSidesOf180DegreesLieSideBySide) {
+TEST_F(TileSet, JoinsTilesAcrossTheAntimeridian) {
   const auto at = [&](const std::string& name, double west, const char* crs, std::vector<double> samples) {
     return tile(name, 0, 0, std::move(samples), GDT_Int16, [=](GDALDataset& d) {
       double map[] = {west, 0.5, 0, 50, 0, -0.5};
@@ -99,7 +99,7 @@ TEST_F(TileSet, TilesOnBothSidesOf180DegreesLieSideBySide) {
     EXPECT_TRUE(has_note(raster, "moved 1 of 2 tiles by a full circle of longitude"));
     EXPECT_FALSE(has_note(raster, "gaps"));
   }
-  // Metres are no circle, whatever the bounds.
+  // Maps in metres do not wrap around, for any bounds.
   RasterOptions metres;
   metres.crs = "none";
   EXPECT_EQ(720, read_tiles({path("w.tif"), path("e.tif")}, metres).cols);
@@ -107,7 +107,7 @@ TEST_F(TileSet, TilesOnBothSidesOf180DegreesLieSideBySide) {
       4, read_tiles({at("a.tif", -1, "EPSG:4326", {1, 2, 3, 4}), at("b.tif", 0, "EPSG:4326", {1, 2, 3, 4})}, {}).cols);
 }
 
-TEST_F(TileSet, AFolderStandsForItsRastersByName) {
+TEST_F(TileSet, FolderStandsForItsRastersInNameOrder) {
   std::filesystem::create_directory(path("tiles"));
   tile("tiles/b.tif", 2, 0, {5, 6, 7, 8});
   tile("tiles/a.tif", 0, 0);
@@ -122,7 +122,7 @@ TEST_F(TileSet, AFolderStandsForItsRastersByName) {
                  {1, 2, 5, 6, 3, 4, 7, 8, 9, 9, kHole, kHole, 9, 9, kHole, kHole});
 }
 
-TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
+TEST_F(TileSet, SkipsPicturesInAFolder) {
   std::filesystem::create_directory(path("tiles"));
   tile("tiles/b.tif", 2, 0, {5, 6, 7, 8});
   tile("tiles/a.tif", 0, 0);
@@ -142,7 +142,7 @@ TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
   EXPECT_TRUE(
       has_note(read_raster(path("tiles"), {}), "skipped pictures without a georeference: " + colours + " and 2 more"));
 
-  // Those who say that colours are heights, or name a picture, mean it.
+  // If the caller says that colours are heights, or names an image, it is read.
   RasterOptions options;
   options.band = 1;
   expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif: no georeference");
@@ -151,7 +151,7 @@ TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
   expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif: no georeference");
   expect_refused({colours, path("tiles/a.tif")}, colours, "colour photograph");
 
-  // A picture with a place is no finished figure, but a mistake to be told.
+  // A georeferenced image is not a finished figure, but an error to be reported.
   tile("tiles/d.tif", 4, 0, {1, 2, 3, 4}, GDT_Byte, {}, 3, {"PHOTOMETRIC=RGB"});
   expect_says(error_of([&] { read_raster(path("tiles"), {}); }), "d.tif: colour photograph");
 
@@ -162,7 +162,7 @@ TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
   expect_says(text, "--encoding");
 }
 
-TEST_F(TileSet, WhatBelongsToARasterOfAFolderIsNoTile) {
+TEST_F(TileSet, SkipsSidecarFilesInAFolder) {
   std::filesystem::create_directory(path("tiles"));
   const std::string file = tile("tiles/a.tif", 0, 0);
   {
@@ -176,7 +176,7 @@ TEST_F(TileSet, WhatBelongsToARasterOfAFolderIsNoTile) {
   EXPECT_EQ(file, raster.path);
 }
 
-TEST_F(TileSet, AFolderWithoutRastersIsOneLine) {
+TEST_F(TileSet, RejectsAFolderWithoutRasters) {
   std::filesystem::create_directory(path("none"));
   expect_says(read_error(path("none")), "folder without a raster");
   write_bytes("none/README.txt", "hello");
@@ -185,7 +185,7 @@ TEST_F(TileSet, AFolderWithoutRastersIsOneLine) {
   expect_says(error_of([] { read_tiles({}, {}); }), "no raster given");
 }
 
-TEST_F(TileSet, GapsAreHolesMarkedByTheNodataValueOfTheTiles) {
+TEST_F(TileSet, GapsTakeTheNodataValueOfTheTiles) {
   const Raster raster = read_tiles({tile("a.tif", 0, 0, {1, 2, 3, -9}, GDT_Int16, nodata(-9)),
                                     tile("b.tif", 2, 2, {5, 6, 7, 8}, GDT_Int16, nodata(-9))},
                                    {});
@@ -195,7 +195,7 @@ TEST_F(TileSet, GapsAreHolesMarkedByTheNodataValueOfTheTiles) {
   EXPECT_TRUE(has_note(raster, "gaps between tiles: 8 samples (50 %) are holes"));
 }
 
-TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
+TEST_F(TileSet, GapsAreNanWithoutNodata) {
   const struct {
     GDALDataType type;
     std::vector<double> samples;
@@ -216,14 +216,14 @@ TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
   }
 }
 
-TEST_F(TileSet, TheLaterTileWinsButNotWithItsHoles) {
+TEST_F(TileSet, LaterTilesWinExceptAtHoles) {
   const std::string a = tile("a.tif", 0, 0, {1, 2, 3, 4}, GDT_Int16, nodata(-9)),
                     b = tile("b.tif", 1, 0, {-9, 6, 7, 8}, GDT_Int16, nodata(-9));
   expect_samples(read_tiles({a, b}, {}), {1, 2, 6, 3, 7, 8});
   expect_samples(read_tiles({b, a}, {}), {1, 2, 6, 3, 4, 8});
 }
 
-TEST_F(TileSet, NodataOfTheCallerWinsOverConflicts) {
+TEST_F(TileSet, CallersNodataResolvesConflicts) {
   const std::string a = tile("a.tif", 0, 0, {1, 2, 3, 4}, GDT_Int16, nodata(-9)), b = tile("b.tif", 2, 2, {5, 6, 7, 8});
   expect_refused({a, b}, b, "nodata value is none, but that of '" + a + "' is -9");
   RasterOptions options;
@@ -231,12 +231,12 @@ TEST_F(TileSet, NodataOfTheCallerWinsOverConflicts) {
   const Raster raster = read_tiles({a, b}, options);
   EXPECT_EQ(4, raster.nodata);
   expect_samples(raster, {1, 2, kHole, kHole, 3, kHole, kHole, kHole, kHole, kHole, 5, 6, kHole, kHole, 7, 8});
-  // A value that the samples cannot have marks no gap.
+  // A value that the samples cannot have does not mark gaps.
   options.nodata = 40000;
   EXPECT_TRUE(std::isnan(doubles(read_tiles({a, b}, options))[2]));
 }
 
-TEST_F(TileSet, AMaskHidesNothingOfTheTilesBelow) {
+TEST_F(TileSet, MaskDoesNotHideTilesBelow) {
   const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
   const std::string a = tile("a.tif", 0, 0),
                     b = tile("b.tif", 1, 0, {5, 6, 7, 8}, GDT_Int16, [](GDALDataset&d) {
@@ -248,7 +248,7 @@ TEST_F(TileSet, AMaskHidesNothingOfTheTilesBelow) {
   expect_samples(read_tiles({a, b}, {}), {1, 2, 6, 3, 7, kHole});
 }
 
-TEST_F(TileSet, HeightsInColoursAreDecodedAfterwards) {
+TEST_F(TileSet, DecodesEncodedHeightsAfterJoining) {
   const auto colours = [&](const std::string& name, double col, double value, bool alpha) {
     return tile(name, col, 0, {value, value, value, value}, GDT_Byte,
                 [&](GDALDataset& d) {
@@ -273,7 +273,7 @@ TEST_F(TileSet, HeightsInColoursAreDecodedAfterwards) {
   expect_refused({c, tile("g.tif", 0, 0)}, path("g.tif"), "terrarium needs byte bands", options);
 }
 
-TEST_F(TileSet, ARangeOfHeightsIsThatOfTheTilesTypeThoughGapsWidenIt) {
+TEST_F(TileSet, HeightRangeUsesTheTypeOfTheTiles) {
   RasterOptions options;
   options.height_range = {0, 65535};
   const std::vector<double> values{0, 65535, 1, 2};
@@ -283,7 +283,7 @@ TEST_F(TileSet, ARangeOfHeightsIsThatOfTheTilesTypeThoughGapsWidenIt) {
   EXPECT_EQ(1, raster.scale);
 }
 
-TEST_F(TileSet, ScaleUnitAndBandAreKept) {
+TEST_F(TileSet, KeepsScaleUnitAndBand) {
   const auto feet = [](GDALDataset& d) {
     d.GetRasterBand(1)->SetScale(2);
     d.GetRasterBand(1)->SetOffset(5);
@@ -304,13 +304,13 @@ TEST_F(TileSet, ScaleUnitAndBandAreKept) {
   expect_refused({path("d.tif"), path("e.tif")}, path("d.tif"), "--band 1..2");
 }
 
-TEST_F(TileSet, WindowsCountInTheWhole) {
+TEST_F(TileSet, WindowsApplyToTheJoinedRaster) {
   RasterOptions options;
   options.window = {1, 1, 2, 1};
   expect_samples(read_tiles({tile("a.tif", 0, 0), tile("b.tif", 2, 0, {5, 6, 7, 8})}, options), {4, 7});
 }
 
-TEST_F(TileSet, TilesThatDoNotAgreeAreRefusedByName) {
+TEST_F(TileSet, RejectsMismatchedTilesByName) {
   const std::string a = tile("a.tif", 0, 0);
   const auto crs = [](GDALDataset& d) {
     OGRSpatialReference other;
@@ -344,7 +344,7 @@ TEST_F(TileSet, TilesThatDoNotAgreeAreRefusedByName) {
   expect_refused({a, a}, a, "no georeference", raw);
 }
 
-TEST_F(TileSet, PlacesOffByTheRoundingOfTheirTextAreTaken) {
+TEST_F(TileSet, AcceptsRoundedGeoreferences) {
   const auto close = [](GDALDataset& d) {
     double map[] = {500020.005, 10.0001, 0, 4000000, 0, -10};
     d.SetGeoTransform(map);
@@ -353,7 +353,7 @@ TEST_F(TileSet, PlacesOffByTheRoundingOfTheirTextAreTaken) {
                  {1, 2, 5, 6, 3, 4, 7, 8});
 }
 
-TEST_F(TileSet, ADamagedTileIsRefused) {
+TEST_F(TileSet, RejectsADamagedTile) {
   std::vector<double> noise(200 * 200);
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<double>(i * i * 7919 % 65521);
   const auto big = [&](const std::string& name, double x) {
@@ -368,7 +368,7 @@ TEST_F(TileSet, ADamagedTileIsRefused) {
   error_of([&] { read_tiles({a, b}, {}); });
 }
 
-TEST_F(TileSet, ManyTilesAreRead) {
+TEST_F(TileSet, ReadsManyTiles) {
   std::vector<std::string> files;
   for (int i = 0; i < 400; ++i) {
     const double v = i;

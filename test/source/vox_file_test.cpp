@@ -24,7 +24,7 @@ VoxFile cube_file() {
   return file;
 }
 
-// A root transform, a group, and under it so many transforms with a shape each.
+// A root transform, a group, and below it this many transforms with a shape each.
 VoxFile scene_file(const std::vector<VoxAttributes>& frames) {
   VoxFile file = cube_file();
   VoxGroup group;
@@ -50,7 +50,7 @@ std::string scene_message(const VoxFile& file) {
   return refusal([&] { vox_bytes(file); });
 }
 
-TEST(VoxFile, ReadsWhatItWrites) {
+TEST(VoxFile, RoundTrips) {
   VoxFile file = scene_file({{{"_t", "1 2 3"}, {"_r", "40"}}, {}});
   file.layers = {{0, {{"_name", "walls"}}, -1}, {1, {{"_hidden", "1"}}, -1}};
   file.palette.emplace();
@@ -76,7 +76,7 @@ TEST(VoxFile, HasTheDefaultPaletteOfTheFormat) {
   EXPECT_EQ(&cube_file().colours(), &palette);
 }
 
-TEST(VoxFile, RefusesWhatIsNone) {
+TEST(VoxFile, RejectsOtherFiles) {
   const std::string good = vox_bytes(cube_file());
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "empty file", parse_message(""));
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "begins with the bytes ff d8 ff e0",
@@ -86,7 +86,7 @@ TEST(VoxFile, RefusesWhatIsNone) {
   std::string version = good;
   version[4] = 77;
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "unsupported version 77", parse_message(version));
-  // Whatever is missing: an error, in one line.
+  // A one-line error for any missing part.
   for (std::size_t length = 0; length < good.size(); ++length) {
     const std::string message = parse_message(good.substr(0, length));
     EXPECT_NE(message, "") << length;
@@ -94,7 +94,7 @@ TEST(VoxFile, RefusesWhatIsNone) {
   }
 }
 
-TEST(VoxFile, RefusesSizesThatLie) {
+TEST(VoxFile, RejectsInconsistentSizes) {
   const std::string good = vox_bytes(cube_file());
   const auto with = [&](std::size_t at, unsigned value) {
     std::string bytes = good;
@@ -119,7 +119,7 @@ TEST(VoxFile, CountsVoxelsOfIndexZeroAsEmpty) {
   EXPECT_EQ(vox_notes(read), std::vector<std::string>{"voxels with palette index 0, treated as empty: 1"});
 }
 
-TEST(VoxFile, RefusesScenesThatCannotBe) {
+TEST(VoxFile, RejectsInvalidScenes) {
   VoxFile cyclic = scene_file({{}});
   std::get<VoxTransform>(cyclic.nodes[2].content).child = 1;
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "contains itself", scene_message(cyclic));
@@ -138,7 +138,7 @@ TEST(VoxFile, RefusesScenesThatCannotBe) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "(limited to ", scene_message(scene_file({{{"_t", "1 2 99999999"}}})));
 }
 
-// Made where it stays: of one that is moved there, g++ 12 warns that some kind of its content is not initialised.
+// Constructed in place: for a moved one, g++ 12 warns about uninitialised content.
 template <class Content>
 void add_node(VoxFile& file, int id, const Content& content) {
   VoxNode& node = file.nodes.emplace_back();
@@ -147,7 +147,7 @@ void add_node(VoxFile& file, int id, const Content& content) {
 }
 
 // Each level of groups holds the next one twice: 2^40 models in 100 nodes.
-TEST(VoxFile, RefusesMoreInstancesThanThereCanBe) {
+TEST(VoxFile, RejectsTooManyInstances) {
   VoxFile file = cube_file();
   for (int level = 0; level < 40; ++level) {
     add_node(file, 3 * level, VoxGroup{{3 * level + 1, 3 * level + 2}});
@@ -158,7 +158,7 @@ TEST(VoxFile, RefusesMoreInstancesThanThereCanBe) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "more than 1048576 model instances", refusal([&] { vox_instances(file); }));
 }
 
-TEST(VoxScene, TurnsAndMovesFromTheInsideOut) {
+TEST(VoxScene, AppliesTransformsFromTheInsideOut) {
   // Row 0 takes y, row 1 takes -x: a quarter turn clockwise about z.
   VoxFile file = scene_file({{{"_t", "10 0 0"}, {"_r", std::to_string(1 | 0 << 2 | 1 << 5)}}});
   std::get<VoxTransform>(file.nodes[0].content).frames = {
@@ -169,7 +169,7 @@ TEST(VoxScene, TurnsAndMovesFromTheInsideOut) {
   EXPECT_EQ(instances[0].turn(ivec3(1, 2, 3)), ivec3(-1, -2, 3));
 }
 
-TEST(VoxScene, LeavesOutWhatIsHidden) {
+TEST(VoxScene, SkipsHiddenNodes) {
   VoxFile file = scene_file({{}, {}, {}});
   file.nodes[2].attributes = {{"_hidden", "1"}};
   file.layers = {{0, {}, -1}, {4, {{"_hidden", "1"}}, -1}};
@@ -178,7 +178,7 @@ TEST(VoxScene, LeavesOutWhatIsHidden) {
   EXPECT_EQ(vox_instances(file, {.frame = 0, .hidden = true}).size(), 3u);
 }
 
-TEST(VoxScene, BeginsWithNodeZero) {
+TEST(VoxScene, StartsAtNodeZero) {
   VoxFile file = scene_file({{{"_t", "1 2 3"}}});
   std::reverse(file.nodes.begin(), file.nodes.end());
   ASSERT_EQ(vox_instances(file).size(), 1u);
@@ -186,7 +186,7 @@ TEST(VoxScene, BeginsWithNodeZero) {
 }
 
 // Keyframes at 2 and 5, in any order: the first and the last are held, positions in between are rounded.
-TEST(VoxScene, InterpolatesPositionsAndSwitchesTheRest) {
+TEST(VoxScene, InterpolatesPositionsAndSwitchesOtherAttributes) {
   VoxFile file = scene_file({{}});
   file.models.push_back({{1, 1, 1}, {{0, 0, 0, 1}}});
   const std::string quarter = std::to_string(1 | 0 << 2 | 1 << 5);
@@ -219,7 +219,7 @@ TEST(VoxScene, RepeatsLoops) {
   EXPECT_EQ(x, (std::vector<int>{2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1}));
 }
 
-TEST(VoxScene, CountsFramesAndNotesThoseBeyondTheEnd) {
+TEST(VoxScene, CountsFramesAndNotesFramesPastTheEnd) {
   VoxFile file = scene_file({{}, {}});
   const auto note = [&](int frame) {
     const std::vector<std::string> notes = vox_notes(file, {.frame = frame});
@@ -244,7 +244,7 @@ TEST(VoxScene, CountsFramesAndNotesThoseBeyondTheEnd) {
   EXPECT_EQ(vox_animation(old).frames, 2);
 }
 
-TEST(VoxFile, IsWrittenWholeOrNotAtAll) {
+TEST(VoxFile, WritesAtomically) {
   const auto path = (std::filesystem::path(testing::TempDir()) / "written.vox").string();
   write_vox(path, cube_file());
   EXPECT_EQ(read_vox(path), cube_file());
@@ -257,7 +257,7 @@ TEST(VoxFile, IsWrittenWholeOrNotAtAll) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "cannot be", refusal([&] { read_vox(testing::TempDir()); }));
 }
 
-// Files as people have them: those of ../shared/data/vox beside the checkout. The bytes come back as they were.
+// Real-world files: those of ../shared/data/vox beside the checkout. Writing restores the same bytes.
 TEST(VoxFile, ReadsRealFiles) {
   const auto folder = std::filesystem::path(SCARP_SOURCE_DIR) / ".." / "shared" / "data" / "vox";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the checkout (../shared/data/vox)";
@@ -286,7 +286,7 @@ TEST(VoxMaterial, IsReadAsLight) {
   EXPECT_FALSE(is_vox_glass(of({{"_type", "_blend"}, {"_metal", "1"}})));
 }
 
-TEST(VoxNotes, SayThatGlassIsShownOpaque) {
+TEST(VoxNotes, ReportThatGlassIsShownOpaque) {
   VoxFile file = cube_file();
   file.materials = {{7, {{"_type", "_glass"}}}};
   EXPECT_TRUE(vox_notes(file).empty());  // no voxel has this colour

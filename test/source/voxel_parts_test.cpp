@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Qubicle and Voxlap files, byte by byte after the descriptions of their formats.
+// Qubicle and Voxlap files, byte by byte from the descriptions of their formats.
 #include "scarp/source/voxel_parts.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(Qubicle, ReadsPlainAndCompressedMatrices) {
   }
 }
 
-TEST(Qubicle, SaysWhatIsWrong) {
+TEST(Qubicle, ReportsErrors) {
   const auto refused = [](const std::string& bytes, std::string_view fragment) {
     refused_with([](const std::string& b) { parse_qubicle(b); }, bytes, fragment);
   };

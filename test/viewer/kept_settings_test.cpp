@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the window remembers is read as written; what is wrong in the file has no effect.
+// Saved settings of the window are read as written; errors in the file have no effect.
 #include "app/viewer/kept_settings.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ struct Settings : testing::Test {
   ~Settings() override { fs::remove_all(folder); }
 };
 
-TEST_F(Settings, AreReadAsWritten) {
+TEST_F(Settings, RoundTrip) {
   ASSERT_TRUE(write_settings(file, {800, 600, false}));
   const KeptSettings read = read_settings(file);
   EXPECT_EQ(read.width, 800);
@@ -28,7 +28,7 @@ TEST_F(Settings, AreReadAsWritten) {
   EXPECT_FALSE(read.panel);
 }
 
-TEST_F(Settings, HaveDefaultsForWhatIsMissingOrWrong) {
+TEST_F(Settings, FallBackToDefaults) {
   EXPECT_EQ(read_settings(file).width, 1280);
   fs::create_directories(folder / "scarp");
   std::ofstream(file) << "size 0 -3\npanel 0\nsize 99999 5 nonsense";
@@ -40,7 +40,7 @@ TEST_F(Settings, HaveDefaultsForWhatIsMissingOrWrong) {
   EXPECT_FALSE(write_settings("", {}));
 }
 
-TEST_F(Settings, AreInTheFolderOfTheEnvironment) {
+TEST_F(Settings, UseTheFolderFromTheEnvironment) {
   ::setenv("XDG_CONFIG_HOME", folder.c_str(), 1);
   EXPECT_EQ(settings_file(), file);
   ::setenv("XDG_CONFIG_HOME", "relative", 1);

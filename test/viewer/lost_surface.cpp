@@ -33,7 +33,7 @@ Plan read_plan() {
 
 bool surface_lost = false, device_lost = false;
 
-// What a call at `place` meets.
+// Result of a call at `place`.
 VkResult meet(const char* place) {
   static const Plan plan = read_plan();
   static int calls = 0;
@@ -66,7 +66,7 @@ VkResult vkAcquireNextImageKHR(VkDevice device, VkSwapchainKHR swapchain, uint64
   return result == VK_SUCCESS ? met : result;
 }
 
-// The present itself takes place, as it may for these results: it waits for the semaphores.
+// The present itself still happens, as it may for these results: it waits for the semaphores.
 VkResult vkQueuePresentKHR(VkQueue queue, const VkPresentInfoKHR* info) {
   static const auto call = original<PFN_vkQueuePresentKHR>("vkQueuePresentKHR");
   const VkResult result = call(queue, info), met = meet("present");

@@ -36,7 +36,7 @@ struct Navigation : testing::Test {
   Scene scene{terrain};
 };
 
-TEST_F(Navigation, BeginsWithTheGivenCamera) {
+TEST_F(Navigation, StartsAtTheGivenCamera) {
   const Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   const Camera camera = navigator.camera(800, 600);
   EXPECT_EQ(camera.eye(), dvec3(20, 5, 30));
@@ -45,7 +45,7 @@ TEST_F(Navigation, BeginsWithTheGivenCamera) {
   EXPECT_NEAR(navigator.pose().distance, std::hypot(45, 30), 1e-6);
 }
 
-TEST_F(Navigation, OrbitKeepsItsPoint) {
+TEST_F(Navigation, OrbitKeepsItsPivot) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   navigator.turn({120, 35}, kSize);
   navigator.turn({-33, 70}, kSize);
@@ -58,14 +58,14 @@ TEST_F(Navigation, OrbitKeepsItsPoint) {
   EXPECT_LT(other.pose().eye.x, 20);
 }
 
-TEST_F(Navigation, OrbitDoesNotTurnOver) {
+TEST_F(Navigation, OrbitDoesNotFlip) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   for (int i = 0; i < 50; ++i) navigator.turn({0, 100}, kSize);
   EXPECT_LT(std::abs(navigator.pose().altitude), 1.5707);
   EXPECT_NO_THROW(navigator.camera(80, 60));
 }
 
-TEST_F(Navigation, TheWheelComesNearerAndShiftKeepsTheDistance) {
+TEST_F(Navigation, WheelApproachesAndShiftKeepsTheDistance) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   const double before = navigator.pose().distance;
   navigator.wheel(1, {400, 300}, kSize);
@@ -75,7 +75,7 @@ TEST_F(Navigation, TheWheelComesNearerAndShiftKeepsTheDistance) {
   EXPECT_EQ(navigator.pose().distance, near);
 }
 
-TEST_F(Navigation, AMapZoomsTowardsTheCursor) {
+TEST_F(Navigation, MapZoomsTowardsTheCursor) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   navigator.set_mode(MoveMode::top);
   const dvec2 cursor(700, 100);
@@ -85,14 +85,14 @@ TEST_F(Navigation, AMapZoomsTowardsTheCursor) {
   const dvec3 after = under();
   EXPECT_NEAR(after.x, before.x, 1e-6);
   EXPECT_NEAR(after.y, before.y, 1e-6);
-  // A drag takes the ground along.
+  // A drag moves the ground along.
   navigator.shift({30, -40}, kSize);
   const dvec3 moved = navigator.camera(800, 600).ray(cursor.x + 30, cursor.y - 40).origin;
   EXPECT_NEAR(moved.x, after.x, 1e-6);
   EXPECT_NEAR(moved.y, after.y, 1e-6);
 }
 
-TEST_F(Navigation, FlyingIsAsFarAsTheSpeed) {
+TEST_F(Navigation, FlightDistanceFollowsTheSpeed) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 30});
   navigator.set_mode(MoveMode::fly);
   hold(navigator, MoveKey::forward, kSecond);
@@ -101,7 +101,7 @@ TEST_F(Navigation, FlyingIsAsFarAsTheSpeed) {
   EXPECT_FALSE(navigator.advance(kFrame)) << "nothing moves";
 }
 
-TEST_F(Navigation, AWalkerStandsOnTheGroundAndStopsAtWalls) {
+TEST_F(Navigation, WalkerStandsOnTheGroundAndStopsAtWalls) {
   Navigator navigator = at(scene, {10, 20, 30}, {90, 20, 30});
   navigator.set_mode(MoveMode::walk);
   EXPECT_NEAR(navigator.pose().eye.z, Navigator::kEyeHeight, 1e-6);
@@ -124,7 +124,7 @@ TEST_F(Navigation, AWalkerStandsOnTheGroundAndStopsAtWalls) {
   EXPECT_GE(navigator.pose().eye.x, 0);
 }
 
-TEST_F(Navigation, ADoubleClickGoesThere) {
+TEST_F(Navigation, DoubleClickMovesThere) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   const dvec3 clicked(30, 60, 0);
   const double before = length(clicked - navigator.pose().eye);
@@ -134,7 +134,7 @@ TEST_F(Navigation, ADoubleClickGoesThere) {
   EXPECT_LT(length(pose.eye + pose.distance * forward_of(pose) - clicked), 1e-6);
 }
 
-TEST_F(Navigation, AMapIsThatOfItsCorners) {
+TEST_F(Navigation, MapMatchesItsCorners) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   navigator.set_mode(MoveMode::top);
   navigator.wheel(3, {200, 100}, kSize);
@@ -150,7 +150,7 @@ TEST_F(Navigation, AMapIsThatOfItsCorners) {
   }
 }
 
-TEST_F(Navigation, HigherGroundKeepsThePointInTheMiddle) {
+TEST_F(Navigation, RaisedGroundKeepsTheCentrePoint) {
   const Navigator navigator = at(scene, {20, 5, 30}, {50, 50, 20});
   const Pose before = navigator.pose(), after = with_heights_times(before, 3);
   const dvec3 was = before.eye + before.distance * forward_of(before),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The thread that renders a window's pictures: stages, what newer requests end, errors, and its own end.
+// The thread that renders a window's pictures: stages, interruption by newer requests, errors, and shutdown.
 #include "app/viewer/picture_worker.h"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ class Worker : public testing::Test {
   std::chrono::milliseconds render_time_ = 5ms;
 };
 
-TEST_F(Worker, GoesThroughAllStages) {
+TEST_F(Worker, RunsAllStages) {
   const auto worker = make();
   const auto generation = worker->request(request(false));
   const auto last = converged(*worker);
@@ -120,7 +120,7 @@ TEST_F(Worker, SidesHaveTheirOwnSizes) {
   for (const dvec2& size : cameras) EXPECT_TRUE(size.x == 40 && size.y == 30) << size.x << ' ' << size.y;
 }
 
-TEST_F(Worker, SkipsAStageThatIsTheSame) {
+TEST_F(Worker, SkipsIdenticalStages) {
   const auto worker = make();
   worker->request(request(false, 1, 0));
   ASSERT_TRUE(converged(*worker));
@@ -128,10 +128,10 @@ TEST_F(Worker, SkipsAStageThatIsTheSame) {
   EXPECT_EQ(asked_.size(), 2u);
 }
 
-// Rays of a picture: each sample has one, and as many to the sun and to the sky as are asked for.
+// Rays of a picture: each sample has one, plus the requested numbers to the sun and to the sky.
 double cost_of(const PictureSettings& settings) { return settings.aa * settings.aa * (1 + 2.0 * settings.samples); }
 
-TEST_F(Worker, RefinementEndsAtWhatIsAskedForAndCostsAThirdMore) {
+TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
   for (const auto& [aa, samples] : {std::pair{1, 0}, {2, 0}, {4, 64}, {3, 5}, {16, 0}, {1, 4096}}) {
     PictureSettings settings;
     settings.aa = aa, settings.samples = samples;
@@ -144,7 +144,7 @@ TEST_F(Worker, RefinementEndsAtWhatIsAskedForAndCostsAThirdMore) {
       before_the_last += cost_of(stages[i]);
       EXPECT_GT(cost_of(stages[i + 1]), 3 * cost_of(stages[i]));
     }
-    // Of 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
+    // For 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
     EXPECT_LE(before_the_last, cost_of(stages.back()) / 3 + 3) << aa << ' ' << samples;
   }
   PictureSettings counted;
@@ -189,7 +189,7 @@ TEST_F(Worker, JudgesTheCompletePicture) {
   ASSERT_TRUE(verdict->sides.at(0));
   EXPECT_EQ(verdict->sides[0]->mean_steps, 400);
   EXPECT_FALSE(worker->take_verdict());
-  // Nothing is judged while the view moves.
+  // No verdicts while the view moves.
   judged.moving = true;
   worker->request(judged);
   ASSERT_TRUE(next(*worker));
@@ -197,7 +197,7 @@ TEST_F(Worker, JudgesTheCompletePicture) {
   EXPECT_FALSE(worker->take_verdict());
 }
 
-TEST_F(Worker, RendersTheFirstStageAloneWhileMoving) {
+TEST_F(Worker, RendersOnlyTheFirstStageWhileMoving) {
   const auto worker = make();
   worker->request(request(true));
   const auto worked = next(*worker);
@@ -208,7 +208,7 @@ TEST_F(Worker, RendersTheFirstStageAloneWhileMoving) {
   EXPECT_FALSE(worker->take());
 }
 
-TEST_F(Worker, ANewerRequestEndsTheOlderOne) {
+TEST_F(Worker, NewerRequestCancelsTheOlderOne) {
   render_time_ = 20s;  // the second stage would take that long
   const auto worker = make();
   render_time_ = 5ms;
@@ -222,7 +222,7 @@ TEST_F(Worker, ANewerRequestEndsTheOlderOne) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
 }
 
-TEST_F(Worker, TellsWhyThereIsNoPictureAndGoesOn) {
+TEST_F(Worker, ReportsErrorsAndContinues) {
   const auto worker = make();
   fails_ = true;
   worker->request(request(false));
@@ -234,7 +234,7 @@ TEST_F(Worker, TellsWhyThereIsNoPictureAndGoesOn) {
   EXPECT_TRUE(converged(*worker));
 }
 
-TEST_F(Worker, EndsWhileItRenders) {
+TEST_F(Worker, StopsWhileRendering) {
   render_time_ = 20s;
   const auto begin = std::chrono::steady_clock::now();
   {
@@ -245,7 +245,7 @@ TEST_F(Worker, EndsWhileItRenders) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
 }
 
-TEST_F(Worker, TakesRequestsByTheThousand) {
+TEST_F(Worker, HandlesThousandsOfRequests) {
   render_time_ = 0ms;
   const auto worker = make();
   std::uint64_t generation = 0;

@@ -31,7 +31,7 @@ struct Recordings : testing::Test {
   }
 };
 
-TEST_F(Recordings, AreReadAsWritten) {
+TEST_F(Recordings, RoundTrip) {
   Recording recording{640, 480, {}};
   recording.events.push_back({.seconds = 0.25, .kind = WindowEvent::Kind::move, .x = 12.5, .y = 300});
   recording.events.push_back(
@@ -55,7 +55,7 @@ TEST_F(Recordings, AreReadAsWritten) {
   }
 }
 
-TEST_F(Recordings, TheExampleOfThePageIsOne) {
+TEST_F(Recordings, DocumentedExampleIsValid) {
   std::ifstream in(std::filesystem::path(SCARP_SOURCE_DIR) / "doc" / "user" / "viewer.md");
   const std::string page{std::istreambuf_iterator<char>(in), {}}, fence = "\n```\n";
   const std::size_t begin = page.find(fence, page.find("## Recordings")) + fence.size();
@@ -69,7 +69,7 @@ TEST_F(Recordings, TheExampleOfThePageIsOne) {
   }
 }
 
-TEST_F(Recordings, TellWhatIsWrong) {
+TEST_F(Recordings, ReportErrors) {
   EXPECT_EQ(why_not(""), ": is empty");
   EXPECT_EQ(why_not("png 3x3\n"), ", line 1: expected 'scarp-view WIDTHxHEIGHT'");
   EXPECT_EQ(why_not("scarp-view 0x3\n"), ", line 1: expected 'scarp-view WIDTHxHEIGHT'");

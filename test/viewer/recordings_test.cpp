@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Recordings of the window and the pictures that they end with (recordings/): five in each run, all of them under
-// SCARP_LONG_TESTS. SCARP_NEW_GOLDEN=1 SCARP_LONG_TESTS=1 recordings_test writes all pictures anew.
+// SCARP_LONG_TESTS. SCARP_NEW_GOLDEN=1 SCARP_LONG_TESTS=1 recordings_test rewrites all pictures.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -48,8 +48,8 @@ constexpr Recorded kRecordings[] = {
     {"hillshade", "dem.tif --look hillshade --exaggeration 2"},
 };
 
-// Where one of two pictures of a window has a panel, and nowhere else, they differ: all sides of the rectangle that
-// holds the differences are the panel's border.
+// Two pictures of a window, one of them with a panel, differ only in the panel: all sides of the rectangle that
+// contains the differences are the panel's border.
 void expect_differences_in_panel(const Rgb& window, const Rgb& film) {
   ASSERT_TRUE(window.width == film.width && window.height == film.height);
   const auto differs = [&](int x, int y) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One scene for two threads, as in the window: the worker renders it, with coarser voxels, and the window's thread asks
-// it for what is under the cursor. For the thread sanitizer.
+// One scene for two threads, as in the window: the worker renders it, with coarser voxels, and the window's thread
+// queries the point under the cursor. For the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -64,7 +64,7 @@ ViewRequest request_from(const Scene& scene, double turn, bool moving) {
           moving};
 }
 
-TEST(SharedScene, IsAskedWhileItIsRendered) {
+TEST(SharedScene, CanBeQueriedWhileRendering) {
   const Scene scene = ground_and_voxels();
   PictureWorker worker([] {});
   constexpr int kRequests = 60;
@@ -73,7 +73,7 @@ TEST(SharedScene, IsAskedWhileItIsRendered) {
     const ViewRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
     const Camera camera = request.camera(96, 64);
     worker.request(request);
-    // As many readings as it takes until there is a picture, so that the threads meet.
+    // Reads until there is a picture, so that the threads run concurrently.
     for (int k = 0; k < 1000; ++k) {
       const Ray ray = camera.ray((17 * k) % 96, (29 * k) % 64);
       const Hit hit = scene.closest_hit(ray);

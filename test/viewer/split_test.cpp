@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two pictures in one window, and the words for a judgement.
+// Two pictures in one window, and the text of a verdict.
 #include "app/viewer/split.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST(Split, ShowsEachPictureOnItsSide) {
   }
 }
 
-TEST(Split, StretchesByNearestPixels) {
+TEST(Split, ScalesByNearestPixel) {
   Image image(3, 2);
   for (int i = 0; i < 6; ++i) std::fill_n(image.pixel(i % 3, i / 3), 3, static_cast<std::uint8_t>(10 * i));
   // Middles of 7 pixels over 3, and of 4 over 2.
@@ -42,14 +42,14 @@ TEST(Split, StretchesByNearestPixels) {
   EXPECT_EQ(stretched(image, 1, 1).rgb, (std::vector<std::uint8_t>{40, 40, 40}));
 }
 
-TEST(Split, TheLineIsTakenAndDragged) {
+TEST(Split, LineCanBeDragged) {
   SplitLine line;
   EXPECT_EQ(line.column(640), 320);
   EXPECT_TRUE(line.is_at({322, 10}, {640, 480}));
   EXPECT_FALSE(line.is_at({340, 10}, {640, 480}));
   line.drag_to(160, 640);
   EXPECT_EQ(line.column(640), 160);
-  // It is the same place in pictures of other sizes.
+  // It is the same position in pictures of other sizes.
   EXPECT_EQ(line.column(64), 16);
   line.drag_to(-50, 640);
   EXPECT_EQ(line.column(640), 0);
@@ -57,7 +57,7 @@ TEST(Split, TheLineIsTakenAndDragged) {
   EXPECT_EQ(line.column(640), 640);
 }
 
-TEST(VerdictText, CountsWhatIsWrong) {
+TEST(VerdictText, CountsErrors) {
   EXPECT_EQ(verdict_text({}), "");
   JudgedRays judged;
   judged.mean_steps = 23.44;

@@ -78,7 +78,7 @@ class Window : public testing::Test {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n" << events;
     return run("'" SCARP_VIEW "' " + arguments + " --play events --validation");
   }
-  // Opens the window, waits for its picture, and runs xdotool's commands on it; $window is its number.
+  // Opens the window, waits for its picture, and runs xdotool's commands on it; $window is its ID.
   int use(const std::string& arguments, const std::string& commands) {
     std::ofstream(folder_ / "use.sh")
         << "export XDG_CONFIG_HOME=$PWD/settings\n"

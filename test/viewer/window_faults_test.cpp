@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The window when something fails: surface, device, driver, disk and files. It goes on with its last picture, or ends
-// with one line and status 1.
+// Failures in the window: surface, device, driver, disk and files. It continues with its last picture, or exits with
+// one line and status 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class WindowFaults : public Window {
  protected:
-  // Plays a drag while Vulkan calls fail, as lost_surface.cpp says.
+  // Plays a drag while Vulkan calls fail, as described in lost_surface.cpp.
   int lose(const std::string& plan, const std::string& screenshot) {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n0.1 key 258 1 0\n0.1 key 258 0 0\n0.2 move 200 120\n"
                                          "0.2 button 0 1 0\n0.25 move 260 125\n0.3 button 0 0 0\n";
@@ -36,7 +36,7 @@ class WindowFaults : public Window {
   }
 };
 
-TEST_F(WindowFaults, ALostSurfaceIsOpenedAgain) {
+TEST_F(WindowFaults, ReopensALostSurface) {
   ASSERT_EQ(lose("acquire:suboptimal:0:0", "whole.png"), 0) << output_;
   ASSERT_EQ(output_, "");
   for (const std::string place : {"acquire", "present"}) {
@@ -54,7 +54,7 @@ TEST_F(WindowFaults, ALostSurfaceIsOpenedAgain) {
   }
 }
 
-TEST_F(WindowFaults, ALostDeviceIsReported) {
+TEST_F(WindowFaults, ReportsALostDevice) {
   for (const std::string plan : {"acquire:device:1:1", "acquire:device:20:1", "present:device:20:1"}) {
     EXPECT_EQ(lose(plan, "now.png"), 1) << plan << '\n' << output_;
     output_.erase(0, std::string("lost: device\n").size());
@@ -62,7 +62,7 @@ TEST_F(WindowFaults, ALostDeviceIsReported) {
   }
 }
 
-TEST_F(WindowFaults, WhatIsMissingOrNoInputIsReportedInOneLine) {
+TEST_F(WindowFaults, ReportsMissingOrInvalidInputInOneLine) {
   EXPECT_EQ(run("env VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent '" SCARP_VIEW "' dem.tif"), 1);
   EXPECT_TRUE(is_one_line("Vulkan")) << output_;
   EXPECT_EQ(run("env DISPLAY=:9999 WAYLAND_DISPLAY= '" SCARP_VIEW "' dem.tif"), 1);
@@ -83,8 +83,8 @@ TEST_F(WindowFaults, WhatIsMissingOrNoInputIsReportedInOneLine) {
   EXPECT_TRUE(bytes_of("dem.tif") == dem && bytes_of("dem.png") == dem);
 }
 
-TEST_F(WindowFaults, AFullDiskLeavesNoPartOfAPicture) {
-  // A limit on the size of files, in KiB, stands for the full disk: writing fails in the same way.
+TEST_F(WindowFaults, FullDiskLeavesNoPartialPicture) {
+  // A limit on the size of files, in KiB, simulates a full disk: writing fails in the same way.
   std::ofstream(folder_ / "scarp-path.csv") << "x,y,z,tx,ty,tz\n" << std::string(1020, '#');
   const std::string before = bytes_of("scarp-path.csv");
   ASSERT_EQ(use("dem.tif --size 320x240",
@@ -95,7 +95,7 @@ TEST_F(WindowFaults, AFullDiskLeavesNoPartOfAPicture) {
             0)
       << output_;
   EXPECT_TRUE(bytes_of("scarp-path.csv") == before);
-  // The first picture that could be saved has the first name, and nothing else was left.
+  // The first picture that could be saved has the first name, and no other file is left.
   EXPECT_EQ(files_like("scarp-view"), 1);
   EXPECT_EQ(files_like(".png"), 1);
   EXPECT_EQ(files_like("scarp-path"), 1);
@@ -105,7 +105,7 @@ TEST_F(WindowFaults, AFullDiskLeavesNoPartOfAPicture) {
   EXPECT_TRUE(bytes_of("saved.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, AFileThatIsGoneLeavesTheLastPicture) {
+TEST_F(WindowFaults, MissingFileKeepsTheLastPicture) {
   // F5 opens the input again. Errors show the panel, which was hidden by Tab.
   ASSERT_EQ(
       use("dem.tif --size 320x240 --record events",
@@ -129,7 +129,7 @@ TEST_F(WindowFaults, AFileThatIsGoneLeavesTheLastPicture) {
   EXPECT_TRUE(bytes_of("scarp-view-5.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, AnErrorInASceneLeavesTheLastPicture) {
+TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
   const std::string scene = R"({"camera": {"eye": [0, -9, 3], "target": [0, 0, 0]},
                                 "objects": [{"shape": {"sphere": {"radius": 2}}}]})";
   std::ofstream(folder_ / "scene.json") << scene;
@@ -144,8 +144,8 @@ TEST_F(WindowFaults, AnErrorInASceneLeavesTheLastPicture) {
   EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, CtrlCEndsItWhileItConverges) {
-  // A picture that takes minutes. Shells start what is in the background without this signal.
+TEST_F(WindowFaults, CtrlCEndsItWhileConverging) {
+  // A picture that takes minutes. Shells start background jobs with this signal ignored.
   std::ofstream(folder_ / "end.sh") << "env --default-signal=INT '" SCARP_VIEW
                                        "' dem.tif --size 320x240 --samples 1024 --aa 16 --timings times.csv &\n"
                                        "pid=$!\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the panel shows and sets, without a window: controls made of the declared options, and what changes of options
-// do to the pictures.
+// The controls of the panel, without a window: generated from the declared options, and the effects of option changes
+// on the pictures.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -64,7 +64,7 @@ struct WindowOptions : testing::Test {
   }
 };
 
-TEST_F(WindowOptions, RestWhileTheyHaveNoEffect) {
+TEST_F(WindowOptions, AreSuspendedWithoutEffect) {
   const Opening plain = opening_of(file);
   EXPECT_EQ(words_of(plain), "");
   const Opening wavy = with(plain, {{"--water", "10"}, {"--waves", "0.1"}});
@@ -77,26 +77,26 @@ TEST_F(WindowOptions, RestWhileTheyHaveNoEffect) {
   const Opening counted = with(wavy, {{"--look", "steps"}});
   EXPECT_EQ(words_of(counted), " --look=steps");
   EXPECT_EQ(words_of(with(counted, {{"--look", {}}})), " --water=10 --waves=0.1");
-  // What cannot be combined: the newer one counts.
+  // Options that cannot be combined: the newer one counts.
   const Opening unlit = with(plain, {{"--samples", "4"}, {"--unlit", "true"}});
   EXPECT_EQ(words_of(unlit), " --unlit");
   EXPECT_EQ(words_of(with(unlit, {{"--samples", "8"}})), " --samples=8");
 }
 
-TEST_F(WindowOptions, SaysWhatIsWrong) {
+TEST_F(WindowOptions, ReportErrors) {
   const Opening plain = opening_of(file);
   EXPECT_THROW(changed(plain, {"--nothing", "1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--samples", "-1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--waves", "0.1"}), Error);  // there is no water
   EXPECT_THROW(changed(plain, {"--sun", "high"}), Error);
-  // What would change nothing in the window.
+  // Changes without effect in the window.
   Subject subject(plain, 64, 48);
   for (const OptionChange& change :
        {OptionChange{"--top", "true"}, {"--fov", "30"}, {"--size", "80x60"}, {"--eye", {}}})
     EXPECT_THROW(subject.change(change), cli::WrongUsage) << change.option;
 }
 
-TEST_F(WindowOptions, ScreenshotsHaveNamesOfPng) {
+TEST_F(WindowOptions, ScreenshotsAreNamedPng) {
   const Opening played = with(opening_of(file), {{"--play", "events"}});
   EXPECT_NO_THROW(changed(played, {"--screenshot", "window.PNG"}));
   for (const char* name : {"window.bmp", "window", "png"})
@@ -138,7 +138,7 @@ TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
   EXPECT_FALSE(has_control(controls, "--water"));
 }
 
-// Whatever a control does is an option with a value of its range, and the control then shows it.
+// Every change of a control is an option with a value in range, and the control then shows it.
 TEST_F(WindowOptions, EveryControlChangesItsOption) {
   for (const char* look : {"shaded", "steps", "height", "error", "hillshade"}) {
     Subject subject(with(opening_of(file), {{"--look", look}}), 16, 12);
@@ -159,7 +159,7 @@ TEST_F(WindowOptions, EveryControlChangesItsOption) {
       EXPECT_EQ(shown.choice, moved.choice) << moved.option;
       EXPECT_FALSE(shown.rests) << moved.option;
       for (std::size_t i = 0; i < 3; ++i) {
-        // As many digits as a text of it has.
+        // As many digits as its text has.
         const double tolerance = moved.kind == ControlKind::colour ? 0.5 / 255 : std::max(1e-3 * moved.numbers[i], 0.5);
         EXPECT_NEAR(shown.numbers[i], moved.numbers[i], tolerance) << moved.option;
       }
@@ -169,8 +169,8 @@ TEST_F(WindowOptions, EveryControlChangesItsOption) {
   }
 }
 
-// Without the input being read again, the picture is that of an input that is.
-TEST_F(WindowOptions, WhatTakesEffectAtOnceIsTheSame) {
+// Without rereading the input, the picture is the same as after rereading it.
+TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
   const std::vector<OptionChange> changes = {{"--water", "8"},      {"--fog", "height"}, {"--fog-base", "4"},
                                              {"--ramp", "viridis"}, {"--sun", "100,20"}, {"--sky", "scattering"},
                                              {"--haze", "0.4"},     {"--contours", "3"}, {"--look", "height"}};
@@ -194,12 +194,12 @@ TEST_F(WindowOptions, WhatTakesEffectAtOnceIsTheSame) {
   EXPECT_EQ(subject.stage().exaggeration(), 3);
 }
 
-TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
+TEST_F(WindowOptions, SidesDifferInOneOption) {
   Subject subject(opening_of(file), 64, 48);
   const auto with = subject.comparisons();
   EXPECT_NE(std::find(with.begin(), with.end(), "march fixed-step"), with.end());
   EXPECT_NE(std::find(with.begin(), with.end(), "look steps"), with.end());
-  // Settings of a march rest while another one is in use.
+  // Settings of a march have no effect while another one is in use.
   for (const OptionChange& change : {OptionChange{"--march", "fixed-step"}, {"--fixed-step", "30"}, {"--march", {}}})
     subject.change(change);
   EXPECT_EQ(words_of(subject.opening()), "");
@@ -207,7 +207,7 @@ TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
   ASSERT_EQ(subject.sides(64, 48).size(), 2u);
   EXPECT_EQ(words_of(*subject.openings()[1]), " --fixed-step=30 --march=fixed-step");
   EXPECT_FALSE(picture_of(subject, 0) == picture_of(subject, 1));
-  // Both sides take changes over.
+  // Both sides take over changes.
   subject.change({"--water", "9"});
   EXPECT_EQ(words_of(*subject.openings()[0]), " --water=9");
   EXPECT_EQ(words_of(*subject.openings()[1]), " --fixed-step=30 --water=9 --march=fixed-step");
@@ -233,7 +233,7 @@ TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
   EXPECT_EQ(subject.sides(64, 48).size(), 1u);
 }
 
-TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
+TEST_F(WindowOptions, CommandContainsTheSettings) {
   const Opening opening = with(opening_of(file), {{"--sun", "100,20"}, {"--no-shadows", "true"}, {"--top", "true"}});
   const cli::Places local({}, Coordinates::local, 1);
   Pose pose;
@@ -247,9 +247,10 @@ TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
                                " --sun=100,20 --no-shadows -o a.png --size 80x40 --eye=10,20,5 --target="));
 }
 
-// Ground below the eye and under the cursor is asked of the CPU.
-TEST_F(WindowOptions, OnADeviceSingleRaysAreTheCpus) {
-  // Never deleted: what a driver keeps has no name any more once the driver is gone, and libraries.lsan names it.
+// The CPU finds the ground below the eye and under the cursor.
+TEST_F(WindowOptions, SingleRaysUseTheCpu) {
+  // Never deleted: memory kept by a driver has no symbol once the driver is unloaded, and libraries.lsan needs the
+  // symbol.
   static const Subject* subject = nullptr;
   try {
     subject = new Subject(with(opening_of(file), {{"--device", "auto"}}), 64, 48);
@@ -289,7 +290,7 @@ TEST_F(WindowOptions, LargePixelsFillTheWindow) {
        1,
        1,
        64},
-      // That which was typed is another window's.
+      // The typed value belongs to another window.
       {{{"--look", "height"}, {"--lowres", "300x200"}}, " --look=height -o a.png --lowres 21x16 --eye=", 21, 16, 3},
       {{{"--look", "height"}}, " --look=height -o a.png --size 64x48 --eye=", 64, 48, 1}};
   for (const Case& one : cases) {
@@ -304,7 +305,7 @@ TEST_F(WindowOptions, LargePixelsFillTheWindow) {
   }
 }
 
-TEST_F(WindowOptions, OtherLooksAreComparedWithLargePixels) {
+TEST_F(WindowOptions, CompareOtherLooksWithLargePixels) {
   Subject subject(with(opening_of(file), {{"--look", "comanche"}, {"--pixel-size", "4"}}), 64, 48);
   for (const std::string& comparison : subject.comparisons()) {
     ASSERT_NO_THROW(subject.compare(comparison)) << comparison;
@@ -319,7 +320,7 @@ TEST_F(WindowOptions, OtherLooksAreComparedWithLargePixels) {
   }
 }
 
-TEST_F(WindowOptions, TheCommandHasTheMeshWhereItStandsInTheWindow) {
+TEST_F(WindowOptions, CommandContainsTheMeshPosition) {
   // Cells of 2 m, the south-west one at 1000,2000 of the map: its sample at 1001,2001.
   const std::string map = file + ".asc", mesh = file + ".obj";
   std::ofstream grid(map);

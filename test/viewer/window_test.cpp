@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The window on a display without a screen: recordings are played, the picture of the window is looked at, and that
-// which P saves is, byte for byte, what `scarp render` makes of the command that it prints.
+// The window on a display without a screen: recordings are played, the picture of the window is compared, and the
+// picture saved by P is, byte for byte, that of the printed `scarp render` command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,14 +27,14 @@ constexpr const char* kDrag =
     "wheel 0 2\n";
 constexpr const char* kSave = "1.0 key 80 1 0\n1.1 key 80 0 0\n";
 
-TEST_F(Window, SavesWhatRenderMakes) {
+TEST_F(Window, SavesThePictureOfRender) {
   ASSERT_EQ(view(std::string(kDrag) + kSave, "dem.tif --exaggeration 2 --samples 2"), 0) << output_;
   ASSERT_TRUE(output_.starts_with("scarp-view-1.png: scarp render dem.tif --exaggeration=2 ")) << output_;
   expect_saved_again(1);
 }
 
-TEST_F(Window, SavesWhatRenderMakesOfItsSettings) {
-  // Water, fog and colours; ground that is opened again; a look with its scale; a part of a map; the sun, dragged.
+TEST_F(Window, SavesThePictureOfRenderWithItsSettings) {
+  // Water, fog and colours; reopened ground; a look with its scale; a part of a map; a dragged sun.
   const std::string kSettings[] = {
       "0.7 option --water 300\n0.7 option --fog height\n0.7 option --visibility 9000\n0.7 option --ramp viridis\n",
       "0.7 option --exaggeration 3\n0.7 option --no-plinth true\n0.7 option --haze 0.3\n",
@@ -55,7 +55,7 @@ TEST_F(Window, SavesWhatRenderMakesOfItsSettings) {
   EXPECT_NE(output_.find("--sun="), std::string::npos) << output_;
 }
 
-TEST_F(Window, SavesWhatRenderMakesOfLargePixels) {
+TEST_F(Window, SavesThePictureOfRenderWithLargePixels) {
   const std::string kArguments[] = {"dem.tif --look comanche", "dem.tif --look comanche --pixel-size 7",
                                     "dem.tif --look height --lowres 30x20 --march fixed-step --shells"};
   for (const std::string& arguments : kArguments) {
@@ -79,13 +79,13 @@ TEST_F(Window, SavesWhatRenderMakesOfLargePixels) {
   }
 }
 
-TEST_F(Window, SavesLargePixelsAndTheLookBeside) {
+TEST_F(Window, SavesLargePixelsAndTheOtherLook) {
   ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look steps\n" + kSave, "dem.tif --look comanche"), 0) << output_;
   expect_saved_again(1);
   expect_saved_again(2);
 }
 
-TEST_F(Window, ALowResolutionSetsTheSizeOfTheWindow) {
+TEST_F(Window, LowResolutionSetsTheWindowSize) {
   ASSERT_EQ(use("dem.tif --look comanche --lowres 100x70 --pixel-size 4 --record events",
                 "xdotool key c sleep 0.1 key Escape"),
             0)
@@ -117,8 +117,8 @@ bool same_beside_line(const Rgb& a, const Rgb& b) {
   return true;
 }
 
-TEST_F(Window, TheLineBetweenTwoSidesIsDragged) {
-  // To the edges of the window, so that one side alone is seen.
+TEST_F(Window, SplitLineCanBeDragged) {
+  // To the edges of the window, so that only one side is visible.
   for (const int side : {1, 2}) {
     ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look height\n0.8 move 160 30\n0.9 button 0 1 0\n1.0 move " +
                        (side == 1 ? "500" : "-50") + " 30\n1.1 button 0 0 0\n1.2 key 80 1 0\n",
@@ -133,7 +133,7 @@ TEST_F(Window, TheLineBetweenTwoSidesIsDragged) {
   }
 }
 
-TEST_F(Window, ARecordingEndsAtALineThatFails) {
+TEST_F(Window, RecordingStopsAtAFailingLine) {
   const std::pair<const char*, const char*> kLines[] = {
       {"option --samples -1", "--samples '-1': expected a whole number"},
       {"option --waves 0.1", "--waves has no effect without --water M"},
@@ -152,7 +152,7 @@ TEST_F(Window, ARecordingEndsAtALineThatFails) {
   }
 }
 
-TEST_F(Window, RecordingsEndAtTheSamePicture) {
+TEST_F(Window, RecordingsAreReproducible) {
   const char* kFlight = "0.7 key 70 1 0\n0.8 key 87 1 0\n1.0 key 87 0 0\n1.1 key 84 1 0\n1.2 wheel 0 1\n";
   for (const char* name : {"one.png", "two.png"}) {
     ASSERT_EQ(view(std::string(kDrag) + kFlight, std::string("dem.tif --screenshot ") + name), 0) << output_;
@@ -161,7 +161,7 @@ TEST_F(Window, RecordingsEndAtTheSamePicture) {
   EXPECT_TRUE(bytes_of("one.png") == bytes_of("two.png"));
 }
 
-TEST_F(Window, ShowsWhatItRenders) {
+TEST_F(Window, ShowsTheRenderedPicture) {
   // Without the panel, the window shows the film, and nothing else.
   ASSERT_EQ(view(std::string(kDrag) + kSave, "dem.tif --screenshot window.png"), 0) << output_;
   ASSERT_TRUE(fs::exists(folder_ / "scarp-view-1.png"));
@@ -171,7 +171,7 @@ TEST_F(Window, ShowsWhatItRenders) {
   EXPECT_FALSE(bytes_of("panel.png") == bytes_of("window.png"));
 }
 
-TEST_F(Window, SaysWhatIsWrong) {
+TEST_F(Window, ReportsErrors) {
   EXPECT_EQ(view("", "nothing.tif"), 1);
   EXPECT_NE(output_.find("scarp: error: nothing.tif: "), std::string::npos) << output_;
   EXPECT_EQ(run("env -u DISPLAY -u WAYLAND_DISPLAY '" SCARP_VIEW "' dem.tif"), 1);
@@ -188,7 +188,7 @@ TEST_F(Window, SaysWhatIsWrong) {
   EXPECT_FALSE(fs::exists(folder_ / "window.bmp"));
 }
 
-TEST_F(Window, TakesRealPressesAndDrags) {
+TEST_F(Window, HandlesRealPressesAndDrags) {
   ASSERT_EQ(
       use("dem.tif --size 320x240 --record events",
           "xdotool mousemove 280 200 sleep 0.1 mousedown 1 sleep 0.1 mousemove_relative 30 5 sleep 0.1 mouseup 1\n"
@@ -201,7 +201,7 @@ TEST_F(Window, TakesRealPressesAndDrags) {
     EXPECT_NE(events.find(event), std::string::npos) << event << '\n' << events;
 }
 
-TEST_F(Window, SurvivesChangesOfItsSize) {
+TEST_F(Window, SurvivesResizing) {
   ASSERT_EQ(use("dem.tif --size 320x240",
                 "for size in '400 300' '100 90' '1 1' '639 31' '320 400'; do xdotool windowsize $window $size; done\n"
                 "xdotool windowunmap $window sleep 0.3 windowmap $window sleep 0.3 windowsize --sync $window 333 222\n"
@@ -216,8 +216,8 @@ TEST_F(Window, SurvivesChangesOfItsSize) {
   EXPECT_TRUE(bytes_of("events").starts_with("scarp-view 333x222\n"));
 }
 
-TEST_F(Window, SaysWhatCannotBeSaved) {
-  // A folder that is gone takes no files. K writes at once, P when the picture is complete.
+TEST_F(Window, ReportsFilesThatCannotBeSaved) {
+  // No files can be written to a deleted folder. K writes at once, P when the picture is complete.
   const std::string where = folder_.string();
   for (const char* key : {"75", "80"}) {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n1 key " << key << " 1 0\n1.1 key " << key << " 0 0\n";
@@ -258,7 +258,7 @@ std::string random_events(int count, unsigned seed) {
   return text.str();
 }
 
-TEST_F(Window, RandomEventsEndWithoutACrash) {
+TEST_F(Window, SurvivesRandomEvents) {
   fs::create_symlink(fs::path(SCARP_SOURCE_DIR) / "examples" / "scenes", folder_ / "SCENES");
   unsigned seed = 0;
   for (const char* input : {"dem.tif", "--function hills", "SCENES/church.vox"})

@@ -43,7 +43,7 @@ class Compute : public test::OnDevice {
   }
 };
 
-TEST_F(Compute, APassComputes) {
+TEST_F(Compute, RunsAPass) {
   const Words words = numbers(1000);
   DeviceBuffer from(device(), 4 * words.size(), "from"), to(device(), 4 * words.size(), "to");
   EXPECT_EQ(from.address() % 16, 0u);
@@ -59,7 +59,7 @@ TEST_F(Compute, APassComputes) {
   EXPECT_EQ(commands.passes()[0].nanoseconds.has_value(), device().description().abilities.timestamps);
 }
 
-TEST_F(Compute, PassesSeeOneAnotherThroughBarriers) {
+TEST_F(Compute, BarriersOrderPasses) {
   DeviceBuffer a(device(), 4 * 300, "a"), b(device(), 4 * 300, "b");
   const ComputePipeline pipeline = twice();
   Commands commands(device());
@@ -77,7 +77,7 @@ TEST_F(Compute, PassesSeeOneAnotherThroughBarriers) {
   }
 }
 
-TEST_F(Compute, ARunDeliversItsReads) {
+TEST_F(Compute, RunDeliversItsReads) {
   const Words words = numbers(64);
   DeviceBuffer from(device(), 4 * words.size(), "from"), to(device(), 4 * words.size(), "to");
   upload(from, 0, words.data(), from.bytes());
@@ -108,7 +108,7 @@ TEST_F(Compute, CopiesMoreThanTheRingHolds) {
   EXPECT_TRUE(back == words);
 }
 
-TEST_F(Compute, CopiesRowsToTheirPlaces) {
+TEST_F(Compute, CopiesRowsIntoPlace) {
   DeviceBuffer buffer(device(), 4 * 100, "rows");
   const Words nothing(100, 0);
   upload(buffer, 0, nothing.data(), buffer.bytes());
@@ -124,13 +124,13 @@ TEST_F(Compute, CopiesRowsToTheirPlaces) {
   EXPECT_EQ(read(buffer), expected);
 }
 
-TEST_F(Compute, WhatDoesNotFitIsRefused) {
+TEST_F(Compute, RejectsRangesOutOfBounds) {
   DeviceBuffer buffer(device(), 400, "small");
   std::uint32_t words[200] = {};
   for (const auto& range : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
            {0, 404}, {400, 4}, {2, 4}, {0, 3}, {404, 0}, {~3ull, 8}, {8, ~3ull}}) {
     const std::uint64_t offset = range.first, bytes = range.second;
-    // Nothing has its place anywhere.
+    // An empty write is valid anywhere.
     EXPECT_EQ(refusal([&] { upload(buffer, offset, words, bytes); }).empty(), bytes == 0);
     EXPECT_NE(refusal([&] { download(buffer, offset, words, bytes); }), "");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What corners.vert, corners.frag and the tests agree upon.
+// Shared by corners.vert, corners.frag and the tests.
 #ifndef TEST_VK_CORNERS_GLSL_H
 #define TEST_VK_CORNERS_GLSL_H
 

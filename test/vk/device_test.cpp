@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What happens without a device, with one that lacks something, is out of memory, or is lost.
+// Behaviour without a device, or with a device that lacks a feature, is out of memory, or is lost.
 #include "scarp/vk/device.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ DeviceDescription described(const std::string& name, DeviceKind kind, const std:
 
 using test::refusal;
 
-TEST(DeviceChoice, TakesTheBestThatFits) {
+TEST(DeviceChoice, PicksTheBestMatch) {
   const std::vector<DeviceDescription> devices = {
       described("llvmpipe (LLVM 15)", DeviceKind::cpu), described("Old card", DeviceKind::discrete_gpu, "Vulkan 1.2"),
       described("Intel UHD", DeviceKind::integrated_gpu), described("NVIDIA H200", DeviceKind::discrete_gpu),
@@ -65,7 +65,7 @@ TEST(DeviceChoice, TakesTheBestThatFits) {
             "device 'gpu': no Vulkan device matches (available: 'llvmpipe (LLVM 15)' (CPU))");
 }
 
-TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
+TEST(DeviceAbility, NamesTheFirstMissingAbility) {
   DeviceAbilities all{.api_major = 1,
                       .api_minor = 2,
                       .compute_queue = true,
@@ -84,7 +84,7 @@ TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
 }
 
 // Timestamps and graphics are reported for the queue that is opened.
-TEST(DeviceQueues, OneThatDrawsIsPreferredThenOneWithTimestamps) {
+TEST(DeviceQueues, PrefersGraphicsThenTimestamps) {
   using Bits = vk::QueueFlagBits;
   const vk::QueueFamilyProperties transfers(Bits::eTransfer, 1, 64), computes(Bits::eCompute, 1, 0),
       computes_timed(Bits::eCompute, 1, 64), draws(Bits::eGraphics | Bits::eCompute, 1, 0),
@@ -97,7 +97,7 @@ TEST(DeviceQueues, OneThatDrawsIsPreferredThenOneWithTimestamps) {
   EXPECT_EQ(chosen({draws, computes_timed, draws_timed, draws_timed}), 2u);
 }
 
-// Exceptions of Vulkan become one line; the test throws them in place of the driver.
+// Vulkan exceptions become one line; the test throws them instead of the driver.
 TEST(DeviceFailure, BecomesOneLine) {
   const auto failing = [](const auto& failure) {
     return refusal([&] { guarded("Card", "computing", [&] { throw failure; }); });
@@ -116,7 +116,7 @@ std::string in_child(const char* drivers, const std::function<std::string()>& f)
   if (::pipe(ends) != 0) return "no pipe";
   const ::pid_t child = ::fork();
   if (child == 0) {
-    // Older loaders know the second name alone.
+    // Older loaders know only the second name.
     ::setenv("VK_DRIVER_FILES", drivers, 1);
     ::setenv("VK_ICD_FILENAMES", drivers, 1);
     const std::string text = f();
@@ -132,7 +132,7 @@ std::string in_child(const char* drivers, const std::function<std::string()>& f)
   return text;
 }
 
-TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
+TEST(DeviceList, IsEmptyWithoutADriverAndExplainsWhy) {
   const auto list = [] {
     const DeviceList devices = list_devices();
     return std::to_string(devices.devices.size()) + ": " + devices.why_none;
@@ -146,7 +146,7 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
   const std::string manifest = testing::TempDir() + "scarp-damaged-driver-" + std::to_string(::getpid()) + ".json";
   std::ofstream(manifest) << "x";
   const std::string damaged = in_child(manifest.c_str(), list);
-  // Other loaders may pass over it.
+  // Other loaders may ignore it.
   EXPECT_TRUE(damaged ==
                   "0: Vulkan: the loader is out of memory, or a driver manifest (.json) is damaged (search path: "
                   "VK_DRIVER_FILES=" +
@@ -157,7 +157,7 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
   std::filesystem::remove(manifest);
 }
 
-TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
+TEST(DeviceSettingsTest, RejectsInvalidTimeouts) {
   for (const double seconds : {0.0, -1.0, std::nan(""), 1e10}) {
     EXPECT_NE(refusal([&] { Device device({.timeout_s = seconds}); }).find("timeout"), std::string::npos);
   }
@@ -165,11 +165,11 @@ TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
 
 class OpenDevice : public test::OnDevice {};
 
-TEST_F(OpenDevice, IsTheOneThatIsListed) {
+TEST_F(OpenDevice, MatchesTheList) {
   const DeviceDescription& open = device().description();
   EXPECT_TRUE(open.usable());
   EXPECT_GT(open.memory_bytes, 0u);
-  EXPECT_GE(open.max_allocation_bytes, 1u << 30);  // what Vulkan 1.1 grants
+  EXPECT_GE(open.max_allocation_bytes, 1u << 30);  // guaranteed by Vulkan 1.1
   bool listed = false;
   for (const DeviceDescription& other : list_devices().devices) listed |= other.name == open.name;
   EXPECT_TRUE(listed);
@@ -180,7 +180,7 @@ TEST_F(OpenDevice, IsTheOneThatIsListed) {
             0u);
 }
 
-TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
+TEST_F(OpenDevice, ReportsMissingMemory) {
   const std::string error = refusal([&] { DeviceBuffer(device(), 1ull << 50, "a continent"); });
   EXPECT_NE(error.find("no memory for a continent (1073741824.0 MiB): "), std::string::npos) << error;
   EXPECT_NE(refusal([&] { DeviceBuffer(device(), 0, "nothing"); }), "");
@@ -192,13 +192,13 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
 #define SCARP_WATCHES_MEMORY __has_feature(address_sanitizer)
 #endif
 #if !defined(__SANITIZE_ADDRESS__) && !SCARP_WATCHES_MEMORY
-// On a CPU device, whose memory is that of the process, in a process of its own.
-TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
+// In a separate process, on a CPU device, whose memory is that of the process.
+TEST_F(OpenDevice, ReportsExhaustedMemoryAndContinues) {
   if (device().description().kind != DeviceKind::cpu) GTEST_SKIP() << "this device has memory of its own";
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto use_up = [] {
     const Device limited({.choice = "cpu"});
-    // What has been asked for once is there from then on.
+    // The memory of the first upload stays allocated.
     const std::uint32_t word = 7;
     upload(DeviceBuffer(limited, 4096, "the first"), 0, &word, 4);
     std::uint64_t pages = 0;
@@ -222,7 +222,7 @@ TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
 }
 #endif
 
-TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
+TEST_F(OpenDevice, RejectsDrawingWithoutGraphics) {
   const Device other;
   other.impl()->description.abilities.draws = false;
   const std::string expected = "device '" + other.description().name +
@@ -231,9 +231,9 @@ TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
   EXPECT_EQ(refusal([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), expected);
 }
 
-// The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
-// one beyond the end of a buffer.
-TEST_F(OpenDevice, TellsWhatValidationSays) {
+// Silence of the tests would mean nothing without validation: two copies to one position without a barrier between
+// them, and one beyond the end of a buffer.
+TEST_F(OpenDevice, ReportsValidationMessages) {
   if (!test::tests_validate()) GTEST_SKIP() << "SCARP_TEST_VALIDATION=off";
   const Device watched({.validation = true});
   const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");
@@ -252,7 +252,7 @@ TEST_F(OpenDevice, TellsWhatValidationSays) {
   EXPECT_GT(watched.validation_messages().size(), 1u);
 }
 
-TEST_F(OpenDevice, IsGivenUpAfterTheTimeout) {
+TEST_F(OpenDevice, GivesUpAfterTheTimeout) {
   const Device hurried({.timeout_s = 1e-6});
   DeviceBuffer words(hurried, 4 << 20, "words");
   const std::uint32_t constants[] = {64, 1};
@@ -260,7 +260,7 @@ TEST_F(OpenDevice, IsGivenUpAfterTheTimeout) {
   Commands commands(hurried);
   commands.dispatch(pipeline, glsl::TwicePush{words.address(), words.address(), 1 << 20, 200}, {1 << 14, 1, 1});
   EXPECT_NE(refusal([&] { commands.run(); }).find("'slow' did not finish within 1e-06 s"), std::string::npos);
-  // Nothing waits for it again, but whoever lets go of it, for a few seconds.
+  // Nothing waits for it again, except its release, for a few seconds.
   const std::string said = refusal([&] { commands.fill(words, 0, 4, 0); });
   EXPECT_NE(said.find("'slow' did not finish"), std::string::npos) << said;
   EXPECT_NE(said.find("given up"), std::string::npos) << said;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The device on which tests run, with validation: any message of it fails the program's tests.
+// The device on which tests run, with validation: any validation message fails the program's tests.
 // SCARP_TEST_VALIDATION=off runs them without the validation layer, where it is not installed.
 #pragma once
 
@@ -22,7 +22,7 @@ inline bool tests_validate() {
   return !choice || choice != std::string_view("off");
 }
 
-/// Why there is none, or nothing. Without a device tests are skipped; without the validation layer they fail.
+/// Why there is no device, or empty. Without a device tests are skipped; without the validation layer they fail.
 struct DeviceUnderTest {
   std::optional<Device> device;
   std::string why_none;
@@ -30,7 +30,7 @@ struct DeviceUnderTest {
 
 inline const DeviceUnderTest& device_under_test() {
   static const DeviceUnderTest under_test = [] {
-    // The leak sanitizer can tell whose memory it is only while the driver is loaded (see libraries.lsan).
+    // The leak sanitizer can attribute memory only while the driver is loaded (see libraries.lsan).
     for (const char* module : {"libvulkan.so.1", "libvulkan_lvp.so", "libVkLayer_khronos_validation.so"}) {
       ::dlopen(module, RTLD_NOW | RTLD_NODELETE);
     }

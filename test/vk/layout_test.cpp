@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The check of layouts itself; those of a station's shaders are checked beside their tests.
+// Tests the check of layouts itself; the tests of each station check the layouts of its shaders.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -16,7 +16,7 @@ constexpr std::uint32_t kTwiceWords[] = {
 #include "test/vk/twice.comp.inc"
 };
 
-TEST(ShaderLayout, IsThatOfTheSharedStruct) {
+TEST(ShaderLayout, MatchesTheSharedStruct) {
   using glsl::TwicePush;
   EXPECT_TRUE(test::has_struct(kTwiceWords, {offsetof(TwicePush, from), offsetof(TwicePush, to),
                                              offsetof(TwicePush, count), offsetof(TwicePush, rounds)}));
@@ -30,7 +30,7 @@ TEST(ShaderLayout, IsThatOfTheSharedStruct) {
     float more;
   };
   EXPECT_FALSE(test::is_laid_out_like<Longer>(kTwiceWords));
-  // A gap, as other layouts than `scalar` have them: the second member four bytes on.
+  // A gap, as in layouts other than `scalar`: the second member is four bytes later.
   std::vector<std::uint32_t> gapped(std::begin(kTwiceWords), std::end(kTwiceWords));
   const auto second = [&](std::size_t at) {
     return (gapped[at] & 0xffff) == 72 && gapped[at + 2] == 1 && gapped[at + 3] == 35;  // OpMemberDecorate, Offset

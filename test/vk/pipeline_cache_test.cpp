@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled pipelines in the user's cache folder: files that are damaged or another device's are ignored, and so are
+// Compiled pipelines in the user's cache folder: damaged files and those of other devices are ignored, and so are
 // folders that cannot be written.
 #include "scarp/vk/pipeline_cache.h"
 
@@ -30,7 +30,7 @@ constexpr std::uint32_t kTwiceOfAll[] = {
 #include "test/vk/twice.comp.inc"
 };
 
-// A folder of its own, which is where the user's caches are until the end of a test.
+// A temporary folder for the user's caches until the end of a test.
 class PipelineFiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -69,7 +69,7 @@ PipelineCacheKey some_key() {
   return key;
 }
 
-// As a driver's: with the header of Vulkan's first version.
+// Like a driver's: with the header of Vulkan's first version.
 std::vector<std::byte> some_data(const PipelineCacheKey& key, std::size_t more = 1000) {
   const std::uint32_t head[] = {32, 1, key.vendor, key.device};
   std::vector<std::byte> data(32 + more, std::byte{5});
@@ -78,7 +78,7 @@ std::vector<std::byte> some_data(const PipelineCacheKey& key, std::size_t more =
   return data;
 }
 
-TEST_F(PipelineFiles, LieInTheUsersCaches) {
+TEST_F(PipelineFiles, AreInTheUserCacheFolder) {
   EXPECT_EQ(user_cache_folder(), caches_.string() + "/scarp");
   const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
   ::setenv("HOME", "/home/somebody", 1);
@@ -92,7 +92,7 @@ TEST_F(PipelineFiles, LieInTheUsersCaches) {
   EXPECT_EQ(pipeline_cache_name(some_key()), "pipelines-10de-2330-12345678-00112233445566778899aabbccddeeff.bin");
 }
 
-TEST_F(PipelineFiles, AreReadAsTheyWereWritten) {
+TEST_F(PipelineFiles, RoundTrip) {
   const PipelineCacheKey key = some_key();
   const std::string path = (caches_ / "scarp" / "a.bin").string();
   EXPECT_TRUE(read_pipeline_cache(path, key).empty());
@@ -104,7 +104,7 @@ TEST_F(PipelineFiles, AreReadAsTheyWereWritten) {
   EXPECT_EQ(std::distance(fs::directory_iterator(caches_ / "scarp"), {}), 1) << "no temporary files";
 }
 
-TEST_F(PipelineFiles, OfOtherDevicesAreIgnored) {
+TEST_F(PipelineFiles, FromOtherDevicesAreIgnored) {
   const PipelineCacheKey key = some_key();
   const std::string path = (caches_ / "scarp" / "a.bin").string();
   ASSERT_TRUE(write_pipeline_cache(path, some_data(key)));
@@ -117,7 +117,7 @@ TEST_F(PipelineFiles, OfOtherDevicesAreIgnored) {
   other = key;
   other.uuid[15] += 1;
   EXPECT_TRUE(read_pipeline_cache(path, other).empty());
-  // The driver's version is in the name alone: Vulkan's header does not have it.
+  // The driver's version is only in the name: Vulkan's header does not have it.
   other = key;
   other.driver += 1;
   EXPECT_NE(pipeline_cache_name(other), pipeline_cache_name(key));
@@ -127,7 +127,7 @@ TEST_F(PipelineFiles, OfOtherDevicesAreIgnored) {
   EXPECT_TRUE(read_pipeline_cache(path, key).empty());
 }
 
-TEST_F(PipelineFiles, ThatAreDamagedAreIgnored) {
+TEST_F(PipelineFiles, AreIgnoredWhenDamaged) {
   const PipelineCacheKey key = some_key();
   const std::string path = (caches_ / "scarp" / "a.bin").string();
   ASSERT_TRUE(write_pipeline_cache(path, some_data(key)));
@@ -149,7 +149,7 @@ TEST_F(PipelineFiles, ThatAreDamagedAreIgnored) {
   EXPECT_FALSE(read_pipeline_cache(path, key).empty());
 }
 
-TEST_F(PipelineFiles, ThatCannotBeWrittenAreNone) {
+TEST_F(PipelineFiles, AreSkippedWhenUnwritable) {
   const std::vector<std::byte> data = some_data(some_key());
   put((caches_ / "file").string(), "no folder");
   EXPECT_FALSE(write_pipeline_cache((caches_ / "file" / "scarp" / "a.bin").string(), data));
@@ -190,12 +190,12 @@ class DevicePipelines : public PipelineFiles {
   }
 };
 
-TEST_F(DevicePipelines, AreKept) {
+TEST_F(DevicePipelines, AreCached) {
   const std::string path = compute();
   ASSERT_EQ(fs::path(path).parent_path(), caches_ / "scarp");
   const std::string first = content(path);
   EXPECT_GE(first.size(), 48u) << "the driver's header at least: lavapipe keeps no more";
-  // What has not changed is not written again.
+  // Unchanged caches are not written again.
   fs::last_write_time(path, fs::last_write_time(path) - std::chrono::hours(1));
   const fs::file_time_type earlier = fs::last_write_time(path);
   EXPECT_EQ(compute(), path);
@@ -205,7 +205,7 @@ TEST_F(DevicePipelines, AreKept) {
   EXPECT_TRUE(fs::exists(path));
 }
 
-TEST_F(DevicePipelines, ReplaceAFileThatIsOfNoUse) {
+TEST_F(DevicePipelines, ReplaceUselessFiles) {
   const std::string path = compute(), whole = content(path);
   ASSERT_GE(whole.size(), 48u);
   for (const std::string& useless : {std::string(), std::string("no pipelines"), whole.substr(0, 40)}) {
@@ -220,7 +220,7 @@ TEST_F(DevicePipelines, ReplaceAFileThatIsOfNoUse) {
   EXPECT_NE(content(path), of_another_device);
 }
 
-TEST_F(DevicePipelines, AreNotKeptIfNotWantedOrNotPossible) {
+TEST_F(DevicePipelines, AreNotCachedWhenDisabledOrImpossible) {
   EXPECT_EQ(compute(false), "");
   EXPECT_FALSE(fs::exists(caches_ / "scarp"));
   // A file where the folder should be.

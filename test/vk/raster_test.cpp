@@ -82,8 +82,8 @@ TEST_F(Drawing, CoversThePixelsWhoseCentresAreInside) {
   EXPECT_GE(images.passes[0].nanoseconds.value_or(1), 0);
 }
 
-// Two slopes through one another: everywhere the larger depth is seen, whichever is drawn last.
-TEST_F(Drawing, TheLargerDepthIsInFront) {
+// Two slopes through one another: the larger depth is visible everywhere, in any drawing order.
+TEST_F(Drawing, LargerDepthIsInFront) {
   const DeviceBuffer rising = buffer_of({{-1, -3, 0, 1}, {-1, 1, 0, 1}, {3, 1, 2, 1}}),
                      falling = buffer_of({{-1, -3, 1, 1}, {-1, 1, 1, 1}, {3, 1, -1, 1}});
   const RasterPipeline shown = pipeline();
@@ -98,7 +98,7 @@ TEST_F(Drawing, TheLargerDepthIsInFront) {
   }
 }
 
-TEST_F(Drawing, WithoutTheTestTheLastIsSeen) {
+TEST_F(Drawing, LastDrawWinsWithoutDepthTest) {
   const DeviceBuffer near = buffer_of({{-1, -3, 0.9, 1}, {-1, 1, 0.9, 1}, {3, 1, 0.9, 1}}),
                      far = buffer_of({{-1, -3, 0.1, 1}, {-1, 1, 0.1, 1}, {3, 1, 0.1, 1}});
   const RasterPipeline tested = pipeline(),
@@ -110,7 +110,7 @@ TEST_F(Drawing, WithoutTheTestTheLastIsSeen) {
 }
 
 // A square of four corners and six indices, drawn twice side by side.
-TEST_F(Drawing, IndicesAndInstances) {
+TEST_F(Drawing, DrawsIndexedInstances) {
   const DeviceBuffer corners = buffer_of({{-1, -1, 0.5, 1}, {-0.5, -1, 0.5, 1}, {-1, 1, 0.5, 1}, {-0.5, 1, 0.5, 1}});
   const std::vector<std::uint32_t> order = {0, 1, 2, 2, 1, 3};
   const DeviceBuffer indices(device(), 4 * order.size(), "indices");
@@ -123,7 +123,7 @@ TEST_F(Drawing, IndicesAndInstances) {
   }
 }
 
-TEST_F(Drawing, DepthsAlone) {
+TEST_F(Drawing, DrawsDepthOnly) {
   const RasterTarget target(device(), kWidth, kHeight, 0);
   const DeviceBuffer corners = buffer_of({{-1, -3, 0.25, 1}, {-1, 1, 0.25, 1}, {3, 1, 0.25, 1}}),
                      depths(device(), 4 * kWidth * kHeight, "depths");
@@ -138,7 +138,7 @@ TEST_F(Drawing, DepthsAlone) {
   EXPECT_EQ(found, std::vector<float>(kWidth * kHeight, 0.25f));
 }
 
-TEST_F(Drawing, BadRequestsAreRefused) {
+TEST_F(Drawing, RejectsBadRequests) {
   const std::string name = device().description().name;
   const std::uint32_t most = raster_limits(device()).most_pixels;
   EXPECT_EQ(refusal([&] { RasterTarget(device(), most + 1, 1, 1); }),

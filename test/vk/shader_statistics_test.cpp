@@ -17,7 +17,7 @@ constexpr std::uint32_t kSmallShader[] = {
 #include "test/vk/twice.comp.inc"
 };
 
-TEST(ShaderStatistics, AreReportedOrTheDevicesNamedThatReportNone) {
+TEST(ShaderStatistics, AreReportedOrErrorNamesTheDevice) {
   const DeviceList list = list_devices();
   try {
     const ShaderCompiler compiler;

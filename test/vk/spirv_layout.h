@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a shader lays out its structs, read from its SPIR-V.
+// The layout of a shader's structs, read from its SPIR-V.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ inline std::vector<Offsets> struct_offsets(std::span<const std::uint32_t> spirv)
   return all;
 }
 
-/// Whether arrays of the shader have elements of so many bytes.
+/// Whether arrays of the shader have elements of this many bytes.
 inline bool has_array_stride(std::span<const std::uint32_t> spirv, std::uint32_t stride) {
   bool found = false;
   each_operation(spirv, [&](std::uint32_t code, std::span<const std::uint32_t> words) {
@@ -47,9 +47,9 @@ inline bool has_struct(std::span<const std::uint32_t> spirv, const Offsets& offs
   return std::find(structs.begin(), structs.end(), offsets) != structs.end();
 }
 
-/// Whether C++ and the shader have T, whose text they share, in the same places. Both put its members in the order of
-/// the text and without gaps: C++ because none is aligned to more than its four bytes or smaller than that; the shader
-/// where this finds its structs so, and one of T's size among them.
+/// Whether C++ and the shader lay out T, whose text they share, alike. Both put its members in the order of the text
+/// and without gaps: C++ because no member is aligned to more than its four bytes or smaller than that; the shader if
+/// this finds its structs so, and one of T's size among them.
 template <class T>
 bool is_laid_out_like(std::span<const std::uint32_t> spirv) {
   static_assert(alignof(T) == 4 && sizeof(T) % 4 == 0);

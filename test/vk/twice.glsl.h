@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What twice.comp and the tests agree upon.
+// Shared by twice.comp and the tests.
 #ifndef TEST_VK_TWICE_GLSL_H
 #define TEST_VK_TWICE_GLSL_H
 
@@ -11,7 +11,7 @@ struct TwicePush {
   Address from;
   Address to;
   uint count;
-  uint rounds;  // how often it is done
+  uint rounds;  // number of repetitions
 };
 
 SCARP_FN uint twice(uint x) { return 2u * x; }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The reference for marches over terrain functions: the first crossing of a ray by bisection in interval arithmetic.
 //
-// The ray's part over the ground is halved until an interval is provably free of the ground, or shorter than 1e-9 of
-// that part; leftmost first. The tree of the function is evaluated in intervals by separate code, which shares with the
-// marches only the settings (function_node.h), the lattice's integers and the bounds of noise (noise.h) and, for damped
-// fractals, the gradient of noise at a point.
+// The part of the ray over the ground is halved, leftmost interval first, until an interval is provably free of the
+// ground or shorter than 1e-9 of that part. The tree of the function is evaluated in intervals by separate code, which
+// shares with the marches only the settings (function_node.h), the lattice's integers and the bounds of noise (noise.h)
+// and, for damped fractals, the gradient of noise at a point.
 //
 // Guarantee: a proof, including rounding. Cost: some thousand evaluations per ray. Source: R. E. Moore, "Interval
 // analysis", 1966; for rays D. P. Mitchell, "Robust ray intersection with interval arithmetic", Graphics Interface

@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/march/function/function_batch.glsl.h"
-// The march asks the batch for its instructions.
+// The march reads its instructions through the batch.
 #include "scarp/march/function/function_marches.glsl.h"
 
 void main() {

@@ -2,7 +2,7 @@
 // `naive`, `fixed-step`, `relaxed` and `lipschitz` over a terrain function, for shaders: the turns of naive.glsl.h and
 // so on, fed by the probe of function_frame.glsl.h.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. The includer has defined scarp_instruction(), see
+// Text of C++ and of GLSL, GLSL ES 3.0 included. The including file must define scarp_instruction(), see
 // function_heights.glsl.h.
 #ifndef SCARP_MARCH_FUNCTION_MARCHES_GLSL_H
 #define SCARP_MARCH_FUNCTION_MARCHES_GLSL_H
@@ -57,7 +57,7 @@ SCARP_FN ScarpFunctionHit scarp_function_march(ScarpProgram program, ScarpFuncti
     hit.status = scarp_sampling_turn(way, settings, true, clearance, kScarpNever, state);
   }
   hit.time = state.s;
-  // Refined beyond the loop: there neighbours in a vector, which stop at other steps, do it together.
+  // Refined after the loop: there neighbours in a vector, which stop at different steps, refine together.
   if (hit.status != kScarpFunctionHit || !scarp_sampling_refines(settings, state)) return hit;
   if (settings.refinement != kScarpRefineBisect) {
     hit.time = scarp_sampling_secant(way, settings, clearance, state);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The probe of terrain functions: a ray over one as naive, fixed-step, relaxed and lipschitz see it. The probe of
-// height fields is height/height_probe.h. A function has no cells and no holes: Hit::cell stays empty. The ray is
-// followed within the height range of the ground and within kFunctionReach.
+// The probe of terrain functions: the interface of a ray over one to naive, fixed-step, relaxed and lipschitz. The
+// probe of height fields is height/height_probe.h. A function has no cells and no holes: Hit::cell stays empty. The ray
+// is followed within the height range of the ground and within kFunctionReach.
 #pragma once
 
 #include <algorithm>
@@ -23,12 +23,12 @@ class FunctionProbe {
 
   const Ray& ray() const { return ray_.ray(); }
   double per_metre() const { return per_metre_; }
-  /// Whether the ray begins where there is no ground: beyond kFunctionReach, or above all of it.
+  /// Whether the ray starts where there is no ground: beyond kFunctionReach, or above all of it.
   bool from_outside() const { return t_enter > ray().t_min; }
 
   struct Sample {
     static constexpr bool valid = true;
-    double clearance;  ///< that the ray is above the ground, vertically, in the unit of t
+    double clearance;  ///< vertical distance of the ray above the ground, in the unit of t
     double metres;     ///< the same
   };
   /// t per unit of Sample::clearance.
@@ -41,11 +41,12 @@ class FunctionProbe {
   Hit hit(double t, const Sample&) const { return ray_.hit(t); }
   Hit hit_before(double t, double, const Sample&) const { return ray_.hit(t); }
 
-  /// The first step off the surface: a share of the way out, as there are no cells. lipschitz_local.h needs none.
+  /// The first step off the surface: a fraction of the exit distance, as there are no cells. lipschitz_local.h needs
+  /// none.
   double blind_step() const { return 0x1p-10 * (t_exit - t_enter); }
   /// Minimum step of a ray below the ground; it may skip shorter stretches above it. At least what t can resolve.
   double least_step_under(double t) const { return std::max(0x1p-12 * blind_step(), 0x1p-50 * std::abs(t)); }
-  /// fixed-step's step, and its least share of the distance travelled.
+  /// fixed-step's step, and its minimum as a fraction of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.function.step * per_metre_; }
   double stride_share(const MarchSettings& settings) const { return settings.function.step_share; }
   static constexpr bool solid() { return false; }
@@ -64,7 +65,7 @@ class FunctionProbe {
   double per_metre_;
 };
 
-/// Calls march(probe, counted) where the ray can meet the ground; follows it for `reach` metres at most.
+/// Calls march(probe, counted) if the ray can hit the ground; follows it for at most `reach` metres.
 template <class March>
 Hit march_over(const HeightFunction& function, const Ray& ray, FunctionUse use, double reach, MarchStats* stats,
                const March& march) {

@@ -16,7 +16,7 @@
 namespace scarp {
 namespace {
 
-// A row whose batch query asks for one ray after the other.
+// A row whose batch query traces one ray after the other.
 template <FunctionMarch march>
 constexpr FunctionMarchEntry function_march(const MarchEntry& common) {
   FunctionMarchEntry entry{common};

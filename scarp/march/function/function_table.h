@@ -14,7 +14,7 @@
 
 namespace scarp {
 
-/// The closest hit of a ray. `stats`, unless null, is overwritten.
+/// Returns the closest hit of a ray. Overwrites `stats` unless null.
 using FunctionMarch = Hit (*)(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
                               MarchStats* stats, FunctionUse use);
 
@@ -27,16 +27,16 @@ using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<co
 using FunctionMarchFiltered = Hit (*)(const HeightFunction& function, const HeightFunction& below, const Ray& ray,
                                       const HitFilter& accept, const MarchSettings& settings, MarchStats* stats);
 
-/// A row. No function but `filtered` is null: a technique without a batch query of its own has one made of `cpu`.
+/// A row. Only `filtered` may be null: a technique without its own batch query gets one based on `cpu`.
 struct FunctionMarchEntry : MarchEntry {
   FunctionMarch cpu = nullptr;         ///< scalar C++
   FunctionMarchBatch batch = nullptr;  ///< in vectors if `simd`
-  /// Null: the march cannot go on behind a rejected hit.
+  /// Null if the march cannot continue behind a rejected hit.
   FunctionMarchFiltered filtered = nullptr;
 };
 
 std::span<const FunctionMarchEntry> function_marches();
-/// Throws Error listing the names when there is no such march.
+/// Throws Error listing the names if the march is unknown.
 const FunctionMarchEntry& find_function_march(std::string_view name);
 
 }  // namespace scarp

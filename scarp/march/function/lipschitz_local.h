@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz-local`: bounds a terrain function anew on every segment of the ray, so that steps grow where the ground is
-// smooth or far below.
+// `lipschitz-local`: bounds a terrain function separately on every segment of the ray, so that steps grow where the
+// ground is smooth or far below.
 //
 //     o-------------------+----------o      the ground is below the line mid + slope s + rest on this segment:
 //      \ segment of the ray                 free as far as the ray is above that line, or above `high`;
@@ -14,12 +14,11 @@
 // Guarantee: conservative, including rounding: it misses no crossing, whatever the function. A hit is a crossing (any
 // of several within the tolerance), or a touch: a point where bounds of a segment of 2^-40 of the ray do not separate
 // it from the ground. Exceeded step limits are exhausted, never a hit: a ray that nearly runs along a crease may exceed
-// them. A ray that starts below the ground, or comes in below it from beyond kFunctionReach, is `below`, and is not
-// followed. A ray that starts on the surface is above
-// it by definition: it is followed as far as it provably gains height, and hits at its start if it provably loses
-// height there. Source: E. Galin, E. Guerin, A. Paris, A. Peytavie, "Segment tracing using local Lipschitz bounds",
-// Computer Graphics Forum 39(2), 2020; here with a line and a remainder instead of a slope. Cost: a bound costs 2 to 5
-// heights.
+// them. A ray that starts below the ground, or enters below it from beyond kFunctionReach, is `below` and is not
+// followed. A ray that starts on the surface is above it by definition: it is followed as far as it provably gains
+// height, and hits at its start if it provably loses height there. Source: E. Galin, E. Guerin, A. Paris, A. Peytavie,
+// "Segment tracing using local Lipschitz bounds", Computer Graphics Forum 39(2), 2020; here with a line and a remainder
+// instead of a slope. Cost: a bound costs 2 to 5 heights.
 #pragma once
 
 #include "scarp/base/ray.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz-local` with a filter: behind a rejected hit the ray goes on under the ground until it comes out.
+// `lipschitz-local` with a filter: behind a rejected hit the ray continues below the ground until it emerges.
 //
 //        \        rejected     __              under the ground the march runs over the same ground upside down, where
 //   ______\____      ^     ___/  \___          coming out is a hit from above; each part starts on the surface by the

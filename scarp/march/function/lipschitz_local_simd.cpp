@@ -95,7 +95,7 @@ class Walks {
 
   void run() {
     while (take() > 0) {
-      // Queries that fill a vector; if there are none, all that there are.
+      // Queries that fill a vector; if there are not enough, all remaining ones.
       bool full = false;
       for (auto& asking : asking_) asking.clear();
       for (std::size_t w = 0; w < count_; ++w) {

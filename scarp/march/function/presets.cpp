@@ -19,7 +19,7 @@ MarchPreset elevated() {
                 "relaxed",
                 {},
                 "t += 0.4 h, stops at |h| < 0.0015 t, 300 steps",
-                "the plane that rays are cut at: here the certified range of heights",
+                "the clipping plane: here the certified range of heights",
                 "I. Quilez, \"Elevated\", 2009; the founding text on height-field ray casting has the same"};
   p.settings.relaxed = {.step_factor = 0.4, .tolerance = 0.0015, .max_steps = 300};
   return p;
@@ -30,7 +30,7 @@ MarchPreset rainforest() {
                 "naive",
                 {},
                 "t += 0.8 h, stops at h < 0.001 t, 400 steps, secant through the last two samples",
-                "steps of 0.2 h at cliffs, which its own terrain tells",
+                "steps of 0.2 h at cliffs, which only its own terrain knows",
                 "I. Quilez, \"Rainforest\", 2016"};
   p.settings.naive = {.step_factor = 0.8, .min_step = kNoLeastStep, .tolerance = 0.001, .max_steps = 400};
   p.settings.sampling.refinement = Refinement::secant;
@@ -55,7 +55,7 @@ MarchPreset snowy() {
                 "naive",
                 {},
                 "t += 0.6 h, stops at h < 0, 64 steps",
-                "used-up steps are sky there, and told apart here",
+                "the step limit: sky there, a separate status here",
                 "A. Alekseev (TDM), \"Snowy\""};
   p.settings.naive = {.step_factor = 0.6, .min_step = kNoLeastStep, .tolerance = 0, .max_steps = 64};
   return p;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where marches of a batch (ray_batch.glsl.h) stand that have been interrupted, one struct per ray. C++, for the
-// structs, and GLSL, which has defined what cell_surface.glsl.h and max_mip.glsl.h ask for before it includes this.
+// States of interrupted marches of a batch (ray_batch.glsl.h), one struct per ray. C++, for the structs, and GLSL,
+// which must define the requirements of cell_surface.glsl.h and max_mip.glsl.h before it includes this.
 #ifndef SCARP_MARCH_BATCH_STATES_GLSL_H
 #define SCARP_MARCH_BATCH_STATES_GLSL_H
 
@@ -13,15 +13,15 @@
 
 SCARP_GLSL_BEGIN
 
-/// Of `max-mip`.
+/// State of `max-mip`.
 struct BatchWalk {
   ScarpHit hit;
   ScarpWalk walk;
-  float z;  ///< of the ray, which a walk from the surface begins with
+  float z;  ///< height of the ray, with which a walk from the surface starts
   float z_low;
 };
 
-/// Of the others.
+/// State of the other marches.
 struct BatchMarch {
   ScarpHit hit;
   ScarpMarchState state;

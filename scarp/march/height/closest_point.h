@@ -26,7 +26,7 @@ struct ClosestPoint {
 };
 
 /// Returns the closest point of the ground within `max_distance` metres of p, from any side; nullopt if there is none.
-/// Requires the field's pyramid. Throws Error without it, and for a field that wraps round.
+/// Requires the field's pyramid. Throws Error without it, and for a wrapped field.
 std::optional<ClosestPoint> closest_point(const HeightTarget& target, const dvec3& p,
                                           double max_distance = std::numeric_limits<double>::infinity());
 

@@ -35,10 +35,10 @@ struct DeviceHeightMarch::Row {
   std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
   std::string_view second_file;
-  std::span<const std::uint32_t> second;  // for rays that `words` leaves
-  bool second_has_any;                    // whether it can be asked for any hit
+  std::span<const std::uint32_t> second;  // for rays that `words` leaves open
+  bool second_has_any;                    // whether it supports any hit
   std::uint32_t choice;                   // ScarpSampling::march
-  std::size_t state_bytes;                // of a march that has been interrupted
+  std::size_t state_bytes;                // of an interrupted march
 
   static constexpr Row sampling(std::string_view name, std::uint32_t choice) {
     return {name,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the library: one march of height fields for rays that are on a Vulkan device already. Nothing passes
-// through the host but whether marches are under way.
+// Private to the library: one march of height fields for rays in the memory of a Vulkan device. The host only learns
+// whether marches are under way.
 //
 //   march.begin(commands, {ground, rays, hits, count}, query);
 //   do commands.run();
@@ -36,22 +36,22 @@ namespace scarp {
 struct DeviceRays {
   std::uint64_t ground = 0;  ///< DeviceGround::address()
   std::uint64_t rays = 0;    ///< glsl::RayBlock, `count` rays in ray_blocks(count) of them
-  std::uint64_t hits = 0;    ///< glsl::HitBlock, room for as many; by any hit only the status is defined
+  std::uint64_t hits = 0;    ///< glsl::HitBlock, room for as many; for any hit only the status is defined
   std::uint32_t count = 0;   ///< 1 to DeviceHeightMarch::kMostRaysAtOnce
 };
 
-/// What is asked of rays.
+/// The query for the rays.
 struct DeviceRayQuery {
   bool any = false;         ///< any hit: only the status is valid
-  bool statistics = false;  ///< whether steps and fetches are counted; otherwise they are 0
-  /// batch_ground_kind() of the ground makes a smaller shader; kBatchAnyGround: as the ground says. kScarpStarts among
-  /// its flags: rays may start on the surface.
+  bool statistics = false;  ///< whether steps and fetches are counted; otherwise 0
+  /// batch_ground_kind() of the ground gives a smaller shader; kBatchAnyGround reads the kind from the ground. With
+  /// kScarpStarts among its flags, rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;
   glsl::ScarpSampling sampling{};  ///< of all marches but max-mip
   bool exact_only = false;         ///< without the first pass, see leaves_first_pass()
 };
 
-/// Whether a field is beyond what first passes compute with (max_mip_lean.glsl.h).
+/// Whether a field exceeds the limits of first passes (max_mip_lean.glsl.h).
 bool leaves_first_pass(const HeightField& field);
 
 /// Not thread-safe.
@@ -63,17 +63,16 @@ class DeviceHeightMarch {
   DeviceHeightMarch(const DeviceHeightMarch&) = delete;
   DeviceHeightMarch& operator=(const DeviceHeightMarch&) = delete;
 
-  /// Makes room for batches of so many rays; begin() does so for a batch that is larger. Throws Error if the device
-  /// lacks memory.
+  /// Allocates room for batches of this many rays; begin() does so for a larger batch. Throws Error if the device lacks
+  /// memory.
   void reserve(std::uint32_t rays);
   /// Records the first run of a batch, one batch at a time. It sees what was written before commands.barrier(). Its
   /// buffers must stay until go_on() returns false.
   void begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query);
-  /// Call after commands.run(). Returns false if all rays of the batch have their answers; otherwise records the next
-  /// run.
+  /// Call after commands.run(). Returns false if all rays of the batch are done; otherwise records the next run.
   bool go_on(Commands& commands);
 
-  /// Returns the memory that a march takes on the device per ray of a batch, besides the ray and its hit.
+  /// Returns the device memory per ray of a batch, besides the ray and its hit.
   static std::size_t state_bytes(std::string_view march);
   /// Returns the shaders of all marches, for float32 fields.
   static std::vector<ShaderProgram> shaders();
@@ -96,7 +95,7 @@ class DeviceHeightMarch {
   std::optional<DeviceBuffer> states_;
   DeviceBuffer under_way_;
   std::map<PipelineKey, ComputePipeline> pipelines_;
-  // Of the batch.
+  // State of the current batch.
   const ComputePipeline* running_ = nullptr;
   glsl::RayBatch batch_{};
   DeviceRayQuery query_{};

@@ -14,12 +14,13 @@
 namespace scarp {
 namespace {
 
-// Who moves by less, in cells, over the whole way is taken to stand still: far below what floats tell apart in a cell.
+// A ray that moves by less than this, in cells, over its whole length counts as not moving: far below the resolution of
+// floats in a cell.
 constexpr double kStandstill = 0x1p-40;
-// Samples per cell beyond which a ray is taken to be upright: floats hold no more.
+// Samples per cell beyond which a ray counts as vertical: floats cannot represent more.
 constexpr double kSteepest = 0x1p80;
 constexpr double kUnit = 0x1p-53;
-// Positions up to which doubles tell a cell from the next well enough.
+// Positions up to which doubles resolve neighbouring cells well enough.
 constexpr double kFarthestCell = 0x1p40;
 
 struct TwoFloats {
@@ -45,7 +46,7 @@ struct AxisTimes {
   }
 };
 
-// A ray as two floats per number. Times beyond kScarpNever are told as that.
+// A ray as two floats per number. Times beyond kScarpNever are stored as kScarpNever.
 void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
   // A ray that does not move along an axis stays in its cell.
   constexpr double kInCell = 1 - 0x1p-24;
@@ -78,7 +79,7 @@ template <bool Wraps>
 DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   DeviceRay result;
   GridRay local = field.grid_from_world(ray);
-  // The longer horizontal component, or that of an upright ray, is brought to 1 to 2 by a power of two: exactly.
+  // The longer horizontal component, or that of a vertical ray, is scaled to 1 to 2 by a power of two, which is exact.
   double speed = std::max(std::abs(local.direction.x), std::abs(local.direction.y));
   if (speed == 0) speed = std::abs(local.direction.z);
   if (!(speed > 0) || !std::isfinite(speed)) return result;
@@ -137,7 +138,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
 
   result.lingers = !strict && field.nodata_count() > 0 && lingers_at_line(field, local, lowest, highest, begin, way, 0);
   const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
-  // What is left of the way: only walls are met above or below all ground.
+  // The remaining part: only walls can be hit above or below all ground.
   const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
   const bool walls = field.settings().solid && field.nodata_count() > 0;
   double low_way = way;
@@ -150,7 +151,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     return std::abs(axis.direction) * (way - begin) < kStandstill;
   };
   dvec3 direction{stands(x) ? 0 : x.direction, stands(y) ? 0 : y.direction, dz};
-  // Who stands still does not come to a border by himself.
+  // A ray that does not move never reaches a border.
   if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, across_x.exit);
   if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, across_y.exit);
   double length = std::max(end - begin, 0.0);

@@ -169,16 +169,16 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // How far below a rim a ray may come to it and touch it: the rounding of its clearance, and the change of the edge's
-  // height between two places that count as one.
+  // How far below a rim a ray may reach it and still touch it: the rounding of its clearance, plus the change of the
+  // edge's height between two positions that count as one.
   double rounding_at_rim(double t) const {
     return seam_step_ + rounding(t) + std::max(off_x_, off_y_) * (field_.max_sample() - field_.min_sample());
   }
-  // Whether fields that are placed apart by rounding meet here: all that comes so near touches.
+  // Whether fields that are separated only by rounding meet here: rays this close touch both.
   bool meets() const { return seam_ > 0 || seam_step_ > 0; }
 
-  // The pieces over the rims of the ground around a cell without: the ground continues level beside them, as far as
-  // rounding may move the ray. Where the ray passes the end of an edge, its clearance has a corner.
+  // The pieces over the rims around a cell without ground: the ground continues level beside them, as far as rounding
+  // may move the ray. The clearance has a kink where the ray passes the end of an edge.
   void add_rims(double col, double row, Span span, std::vector<Piece>& to) const {
     for (double y = row - 1; y <= row + 1; ++y) {
       for (double x = col - 1; x <= col + 1; ++x) {
@@ -209,7 +209,7 @@ class Ground {
     to.push_back(p);
   }
 
-  // Where the ray is over ground, it is not beside it. Pieces are in order of their begin.
+  // Where the ray is over ground, it is not beside it. Pieces are sorted by their start.
   static void take_ground_from_rims(std::vector<Piece>& pieces) {
     std::vector<Piece> rims;
     for (const Piece& p : pieces) {
@@ -238,13 +238,13 @@ class Ground {
   }
 
   // All pieces of the ray, in order of t. The range must be finite in a wrapped field. A ray along a line belongs to
-  // the cells after it, to those before it where the others are no ground, or to those on the side of `start`, if
+  // the cells after it, to those before it where the others have no ground, or to those on the side of `start`, if
   // given.
   std::vector<Piece> pieces(Span range, const Cell* start) const {
     std::vector<Piece> found;
     const int cols = field_.cell_cols(), rows = field_.cell_rows();
     const bool wraps = field_.wraps();
-    // Without holes there is ground on every way past a node.
+    // Without holes there is ground on every side of a node.
     const bool has_holes = field_.nodata_count() > 0;
     const auto touched = [&](double o, double d, Span over, int cells) {
       const double from = d == 0 ? o : o + d * over.begin, to = d == 0 ? o : o + d * over.end;
@@ -266,7 +266,7 @@ class Ground {
         if (!start && dx_ == 0 && col + 1 == ox_ && is_ground(col + 1, row)) continue;
         if (!start && dy_ == 0 && row + 1 == oy_ && is_ground(col, row + 1)) continue;
         Span over_cell = common(over_row, strip(ox_, dx_, col, 1));
-        // Through a node, the ray also touches the two cells beside its way: one may be the only ground there.
+        // Through a node, the ray also touches the two cells beside its path: one may be the only ground there.
         const double missing = over_cell.begin - over_cell.end;
         if (has_holes && missing > 0 && missing <= rounding_of_time(over_cell.begin)) {
           std::swap(over_cell.begin, over_cell.end);
@@ -289,7 +289,7 @@ class Ground {
     return found;
   }
 
-  // When the ray's line is over the field: always, if the field has no border.
+  // Times at which the ray's line is over the field: always, if the field has no border.
   Span inside_border() const {
     if (field_.wraps()) return {};
     return common(strip(ox_, dx_, 0, field_.cell_cols()), strip(oy_, dy_, 0, field_.cell_rows()));
@@ -307,7 +307,7 @@ class Ground {
   }
 
  private:
-  // Hits from below are those from above where all heights are multiplied by -1.
+  // Hits from below are hits from above on heights multiplied by -1.
   std::optional<CellHeights> heights(Cell cell) const {
     const auto h = field_.cell_heights(cell);
     if (!h) return {};
@@ -398,7 +398,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
       if (last <= 0) side = Side::below;
       continue;
     }
-    // An upright ray through a node: one of the cells there is enough.
+    // A vertical ray through a node: one of the cells there is sufficient.
     if (p.length() > 0 && p.span.end <= reached) continue;
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
@@ -408,29 +408,29 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
       hit.wall = true;
       return found(hit);
     };
-    // A wall behind the rim is met by the ray that has come to it below the rim, and stayed there.
+    // A ray that reached the wall behind a rim from below the rim, and stayed there, hits the wall.
     const bool came_below = std::exchange(below_rim, false) && side == Side::below;
     if (came_below && !p.rim && p.c <= rounding && has_walls && !meet_wall()) return without;
     bool outside = p.rim && (came_below || side == Side::unknown), rises_to_rim = false;
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
-      // A ray from so near that has risen to the rim where it comes to the ground touches it there.
+      // A ray from this close that has risen to the rim where it reaches the ground touches it there.
       const double bound = p.rim ? ground.rounding_at_rim(p.span.begin) : 0.0;
       rises_to_rim = p.c < 0 && p.c >= -bound && p.last >= 0;
       const double touched = ground.meets() ? -bound : 0.0;
       side = p.c < touched && !rises_to_rim ? Side::below : Side::above;
       if (side == Side::below && has_walls && came_in && !p.rim && !meet_wall()) return without;
     }
-    // Where it only passes a corner of the ground, into a hole, it does not begin there.
+    // If it only passes a corner of the ground, into a hole, it does not start there.
     const bool begins = !p.rim && p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
     if (side == Side::below && !on_surface && begins) without = HitStatus::below;
-    // A ray from below has risen only beyond rounding: otherwise it could be above at one line and, by rounding, not
-    // above at the next.
+    // A ray from below has emerged only if it is above by more than rounding: otherwise it could be above at one line
+    // and, by rounding, not above at the next.
     if (side == Side::below && p.c > rounding) side = Side::above;
     const auto depth = on_surface ? std::optional(rounding) : std::nullopt;
-    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece. What does not sink
-    // beside the rim reaches the surface behind the rim, if it comes there.
+    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece. A ray that does not
+    // sink beside the rim reaches the surface behind the rim, if it gets there.
     const bool goes_on = i + 1 < pieces.size() && pieces[i + 1].span.begin <= p.span.end;
     const bool waits = p.rim && p.last >= 0;
     if (side == Side::above && !depth && p.c <= 0 && !(waits && goes_on) && !rises_to_rim) {

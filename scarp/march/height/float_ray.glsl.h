@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Rays for hosts without doubles: shaders that make their rays themselves.
+// Rays for hosts without doubles: shaders that generate their own rays.
 //
-// They are as exact as floats are: the ray's begin is off by a unit roundoff of its coordinates, so that a camera
-// should be given in columns and rows near the field, or near the place that is looked at where the field wraps round.
-// What a march then does with the ray is as exact as ever; 1 / direction by a division right to 2.5 units, as in
-// Vulkan, is in the bound of doc/dev/numerics.md.
+// They have float precision: the start of the ray has an error of one unit roundoff of its coordinates, so cameras
+// should be placed in columns and rows near the field or, if it wraps, near the point they look at. The march of that
+// ray is as exact as any other; the bound of doc/dev/numerics.md includes 1 / direction by a division accurate to 2.5
+// units, as in Vulkan.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_FLOAT_RAY_GLSL_H
@@ -15,7 +15,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// A ray from a place over the field. `direction` counts columns, rows and sample units per time and is not zero; the
+/// A ray from a position over the field. `direction` is in columns, rows and sample units per time and is not zero; the
 /// ray's time is in lengths of it divided by the larger of abs x, abs y (upright: abs z), and `end` is the last such
 /// time. `flags` may be kScarpOnSurface, then z is not read, or, from a higher place than the highest sample,
 /// kScarpAbove.
@@ -39,7 +39,7 @@ SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, flo
   ray.z_low = 0.0f;
   ray.end = end;
   ray.end_low = 0.0f;
-  // For the marches that take samples: of cells that are as wide as a sample unit is high.
+  // For the sampling marches, with cells as wide as a sample unit is high.
   float length_of =
       sqrt(ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
   ray.travelled = 0.0f;
@@ -50,8 +50,8 @@ SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, flo
 }
 
 /// A ray from anywhere: `origin` in columns, rows and sample units from sample (0, 0). It is clipped to the border
-/// (unless the field wraps round) and to the highest sample; `travelled` tells the time up to there, counted as `end`
-/// is. False: there is nothing of the field on its way, and the ray means nothing. An upright ray needs an end.
+/// (unless the field wraps round) and to the highest sample; `travelled` is the time up to there, in the unit of `end`.
+/// Returns false if the field is not on its way; the ray is then undefined. An upright ray needs an end.
 SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, float end, SCARP_OUT(ScarpRay) ray) {
   ray = scarp_ray(ivec2(0, 0), vec2(0.0f, 0.0f), origin.z, direction, end, 0u);
   float border = -kScarpNever;  // where the ray enters the field
@@ -93,7 +93,7 @@ SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, floa
   if (wraps) corner = vec2(corner.x - floor(corner.x / size.x) * size.x, corner.y - floor(corner.y / size.y) * size.y);
   ray.cell = ivec2(min(int(corner.x), field.cells.x - 1), min(int(corner.y), field.cells.y - 1));
   ray.z = origin.z + ray.direction.z * begin;
-  // By rounding it could be a little lower than the highest sample, which it is above by definition.
+  // Rounding could place it slightly below the highest sample, which it is above by definition.
   if ((ray.flags & kScarpAbove) != 0u) ray.z = max(ray.z, field.highest);
   ray.travelled = begin;
   ray.exit = exit - begin;

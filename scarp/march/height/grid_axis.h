@@ -52,7 +52,7 @@ class GridAxis {
   double enter_time() const { return line_time(ahead ? 0 : cells); }
   double exit_time() const { return line_time(ahead ? cells : 0); }
   bool inside(int cell) const { return static_cast<unsigned>(cell) < static_cast<unsigned>(cells); }
-  /// The cell of the grid that a cell counted in this copy is; outside, if the grid does not wrap.
+  /// Converts a cell counted in this copy to a cell of the grid; outside, if the grid does not wrap.
   int within(int cell) const { return Wraps ? (cell % cells + cells) % cells : cell; }
   /// Number of a line among all lines of the plane.
   std::int64_t global_line(int line) const { return first() + line; }

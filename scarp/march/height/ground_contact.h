@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Spheres, capsules and boxes against the ground: the first contact of one that moves, and overlaps.
 //
-// Guarantee: exact to rounding for `triangles` (march/sweep.h). A bilinear surface is taken as triangles that are off
-// it by 2^-21 of the shorter side of a cell at most. Both sides of the surface count; the ground below it does not, nor
-// do walls of solid ground. Cost: some blocks per level and cell on the way, found best first in the pyramid.
+// Guarantee: exact to rounding for `triangles` (march/sweep.h). A bilinear surface is approximated by triangles within
+// 2^-21 of the shorter side of a cell. Both sides of the surface count; the ground below it does not, nor do walls of
+// solid ground. Cost: some blocks per level and cell on the way, found best first in the pyramid.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,11 @@ struct GroundContact : Contact {
 };
 
 /// Returns the first contact of a capsule that moves along `motion` in metres. Requires the field's pyramid. Throws
-/// Error without it, for a field that wraps round, and for a capsule or a motion that validate() refuses.
+/// Error without it, for a wrapped field, and for a capsule or a motion that validate() rejects.
 std::optional<GroundContact> sweep(const HeightTarget& target, const Capsule& capsule, const dvec3& motion);
 
-/// Returns whether the surface and the box, both closed, have a point in common. Errors as sweep(), and for a box
-/// that validate() refuses.
+/// Returns whether the surface and the box, both closed, have a point in common. Errors as for sweep(), and for a box
+/// that validate() rejects.
 bool overlaps(const HeightTarget& target, const TurnedBox& box);
 
 }  // namespace scarp

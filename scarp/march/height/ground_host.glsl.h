@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What the marches ask of their host (cell_surface.glsl.h, max_mip.glsl.h), answered from accel/ground_buffers.glsl.h.
-// GLSL. Includers call open_ground() before a march: what is the same for all samples is read once, since drivers do
-// not move loads through an address out of loops (test/march/height/turn_loads_test.cpp counts them). Those that know
-// the type of samples as a constant define SCARP_GROUND_TYPE.
+// The functions that the marches require of their host (cell_surface.glsl.h, max_mip.glsl.h), implemented with
+// accel/ground_buffers.glsl.h. GLSL. Including files call open_ground() before a march. It reads everything that all
+// samples share once, because drivers do not move loads through an address out of loops
+// (test/march/height/turn_loads_test.cpp counts them). Files with a constant sample type define SCARP_GROUND_TYPE.
 #ifndef SCARP_MARCH_GROUND_HOST_GLSL_H
 #define SCARP_MARCH_GROUND_HOST_GLSL_H
 
@@ -18,7 +18,7 @@ float opened_hole;
 #define SCARP_GROUND_TYPE opened_type
 #endif
 
-/// The ground at an address, as the marches want to know it.
+/// Returns the ground at an address, in the form of the marches.
 ScarpField open_ground(Address address) {
   Ground ground = Ground(address);
   opened_ground = address;
@@ -71,7 +71,7 @@ vec4 scarp_corners(int col, int row) {
   return uintBitsToFloat(uvec4(north_pair, south_pair));
 }
 
-// All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
+// All nodata floats are stored as one NaN, recognised by its bits: compilers may optimise comparisons of NaN.
 bool scarp_is_nodata(float value) {
   if (SCARP_GROUND_TYPE == kGroundFloat32) return (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
   return value == opened_hole;

@@ -10,12 +10,12 @@ namespace scarp {
 namespace {
 
 constexpr std::size_t kFewRays = 1 << 12;
-// Samples up to which the caches hold enough: with 4 million, order is worth what it costs (0.9 to 1.4 times the rays
-// per second, by class), with 67 million it pays always (1.2 to 1.5 times).
+// Number of samples up to which caches suffice: with 4 million, sorting breaks even (0.9 to 1.4 times the rays per
+// second, by class); with 67 million it always pays (1.2 to 1.5 times).
 constexpr std::int64_t kSmallField = 1 << 23;
 constexpr int kTilesPerSide = 256;
 constexpr std::int64_t kRaysPerSortedPiece = 1 << 14;
-constexpr int kPairs = 512;  // of successive rays, looked at to tell whether they are in order already
+constexpr int kPairs = 512;  // of successive rays, examined to detect whether they are already in order
 constexpr int kNearTiles = 2;
 
 struct GroundTile {
@@ -29,7 +29,7 @@ class Tiles {
         per_col_(kTilesPerSide / static_cast<double>(field.cell_cols())),
         per_row_(kTilesPerSide / static_cast<double>(field.cell_rows())) {}
 
-  // Where the ray comes to the height of the ground, or begins if it does so there.
+  // Where the ray reaches the height of the ground, or starts below it.
   GroundTile tile(const Ray& ray) const {
     const GridRay local = field_.grid_from_world(ray);
     double t = ray.t_min;

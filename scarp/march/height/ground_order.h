@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The order in which a batch of rays is answered fastest: that of the ground that they begin over.
+// The order in which a batch of rays is traced fastest: by the ground below their origins.
 //
 //   tiles of ground in Morton order    0 1 4 5
 //                                      2 3 6 7     rays over one tile together: the samples and the entries of the
@@ -19,9 +19,9 @@
 
 namespace scarp {
 
-/// Indices of the rays (at most 2^32) in the order of the tiles over which they come to the ground's height; empty
-/// where the order given is as good: for few rays, fields that fit into a cache, and rays of which most begin near the
-/// one before.
+/// Returns the indices of the rays (at most 2^32), sorted by the tile over which they reach the ground's height.
+/// Returns an empty list if sorting would not pay: for few rays, for fields that fit into a cache, and if most rays
+/// start near the previous one.
 std::vector<std::uint32_t> ground_order(const HeightField& field, std::span<const Ray> rays);
 
 }  // namespace scarp

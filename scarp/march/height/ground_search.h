@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Best-first search of the ground: blocks of the pyramid, then cells, then, of bilinear cells, ever smaller parts until
-// two triangles are as good as the part.
+// Best-first search of the ground: blocks of the pyramid, then cells, then ever smaller parts of bilinear cells until
+// two triangles approximate the part.
 //
 //   query.bound(box)          the best that the ground in a box can be: a distance, a time; infinity for nothing
 //   query.bound(part)         the same of a part, by its triangles and how far it may be off them
@@ -28,7 +28,7 @@ struct GroundPart {
   double u, v, side;
   /// The part's two triangles, counter-clockwise from above: north-west, south-east.
   std::array<Triangle, 2> triangles;
-  /// Metres by which the surface of the part is off its triangles at most.
+  /// Maximum distance in metres between the surface of the part and its triangles.
   double off;
 };
 
@@ -98,7 +98,7 @@ class GroundSearch {
     double bound = query_.bound(box);
     if (!(bound < query_.best())) return;
     const GroundPart part = part_at(h, col, row, u, v, side);
-    // Of a curved part the triangles say more than the box: they are off by the square of its size.
+    // For a curved part the triangles give a tighter bound than the box: their error is quadratic in its size.
     if (part.off > 0) bound = std::max(bound, query_.bound(part));
     push({bound, 0, col, row, u, v, side});
   }
@@ -116,7 +116,7 @@ class GroundSearch {
     const double col = cell_col + u, row = cell_row + v;
     const dvec3 nw = world(col, row, z00), ne = world(col + side, row, z10), sw = world(col, row + side, z01),
                 se = world(col + side, row + side, z11);
-    // In the middle of the diagonal two triangles are farthest from a bilinear patch.
+    // Two triangles are farthest from a bilinear patch at the middle of the diagonal.
     const bool bilinear = field_.settings().surface == Surface::bilinear;
     const double off = bilinear ? 0.25 * std::abs(nw.z + se.z - ne.z - sw.z) : 0;
     return {{cell_col, cell_row}, h, u, v, side, {Triangle{nw, sw, ne}, {se, ne, sw}}, off};
@@ -133,7 +133,7 @@ class GroundSearch {
   const MaxPyramid& pyramid_;
   Query& query_;
   double flat_;
-  std::vector<Node> nodes_;  // a heap, the least bound on top
+  std::vector<Node> nodes_;  // a heap with the least bound on top
 };
 
 }  // namespace scarp

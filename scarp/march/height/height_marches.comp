@@ -12,7 +12,7 @@
 #include "scarp/march/height/height_marches_lean.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
 
-// Ray i as shaders for this kind of ground know it.
+// Ray i, for shaders specialised for this kind of ground.
 ScarpRay known_ray(uint i) {
   ScarpRay ray = batch_ray(i);
   if (batch_ground != kBatchAnyGround && (batch_ground & kScarpStarts) == 0u) ray.flags &= ~kScarpOnSurface;
@@ -29,8 +29,8 @@ void main() {
   ScarpHit hit = scarp_no_hit();
   ScarpStretch at = scarp_stretch_begin(field, known_ray(i), settings);
   for (;;) {
-    // The ray is read again for each stretch: in registers it would be in the way of the turns. What is added to i is
-    // 0, which compilers do not know: they would keep the ray.
+    // The ray is read again for each stretch, to free registers for the turns. The term added to i is 0, which
+    // compilers cannot know; otherwise they would keep the ray.
     ScarpRay ray = known_ray(i + (uint(at.stretches) >> 30));
     if (!scarp_stretch_on(field, ray, settings, batch_any, at, hit)) continue;
     // In the loop, for lavapipe: vk/loop_turns.glsl.h.

@@ -2,8 +2,8 @@
 // `naive`, `fixed-step`, `relaxed` and `lipschitz` over height fields, for shaders: the turns of naive.glsl.h and so
 // on, fed by the probe of height_probe.glsl.h.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. The includer has defined what cell_surface.glsl.h asks for, and
-// scarp_minimum of max_mip.glsl.h, which only `lipschitz` over fields with holes calls.
+// Text of C++ and of GLSL, GLSL ES 3.0 included. The including file must define the functions that cell_surface.glsl.h
+// requires, and scarp_minimum of max_mip.glsl.h, which only `lipschitz` over fields with holes calls.
 #ifndef SCARP_MARCH_HEIGHT_MARCHES_GLSL_H
 #define SCARP_MARCH_HEIGHT_MARCHES_GLSL_H
 
@@ -34,7 +34,7 @@ SCARP_FN ScarpMarchState scarp_sampled_begin(ScarpField field, ScarpRay ray, Sca
   return scarp_sampling_begin(scarp_way(field, ray, settings), settings);
 }
 
-/// Sets the answer: a status at a point and its time.
+/// Sets the result: a status at a point and its time.
 SCARP_FN void scarp_tell_point(ScarpPoint point, float s, int status, SCARP_INOUT(ScarpHit) hit) {
   hit.status = status;
   hit.cell = point.cell;
@@ -43,7 +43,7 @@ SCARP_FN void scarp_tell_point(ScarpPoint point, float s, int status, SCARP_INOU
   hit.time_low = 0.0f;
 }
 
-/// Sets the answer to the hit at `last`, the point at state.s, refined.
+/// Sets the result to the hit at `last`, the point at state.s, refined.
 SCARP_FN void scarp_tell_refined(ScarpField field, ScarpRay ray, ScarpWay way, ScarpSampling settings, ScarpPoint last,
                                  ScarpMarchState state, SCARP_INOUT(ScarpHit) hit) {
   float from = state.before;
@@ -71,9 +71,9 @@ SCARP_FN void scarp_tell_refined(ScarpField field, ScarpRay ray, ScarpWay way, S
 }
 
 /// Continues a march for at most `turns` turns of its loop, at least one step. Returns whether it is done; otherwise
-/// call again with the same state and hit. For drivers that limit loops. A step counts twice: compilers make a loop of
-/// one turn of an inlined function that returns early, and drivers count it. Over holes a step of lipschitz counts as
-/// all the levels that it may climb: invocations in a vector wait for one another, whichever climbs.
+/// call again with the same state and hit. For drivers that limit loops. A step counts twice: compilers turn an inlined
+/// function that returns early into a loop of one turn, which drivers count. Over holes a step of lipschitz counts all
+/// levels that it may climb: invocations in a vector wait for one another, whichever climbs.
 SCARP_FN bool scarp_sampled_on(ScarpField field, ScarpRay ray, ScarpSampling settings, int turns,
                                SCARP_INOUT(ScarpMarchState) state, SCARP_INOUT(ScarpHit) hit) {
   ScarpWay way = scarp_way(field, ray, settings);

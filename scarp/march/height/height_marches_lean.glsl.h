@@ -2,17 +2,17 @@
 // The first pass of `naive`, `fixed-step`, `relaxed` and `lipschitz` on devices: the rules of naive.glsl.h and so on in
 // few instructions, for rays that are above the ground.
 //
-//   stretch: the ray begins anew at time s0; up to kScarpStretch later its points are plain floats
+//   stretch: the ray restarts at time s0; up to kScarpStretch later its points are plain floats
 //     turn:  o + d t ──▶ four samples ──▶ clearance ──▶ a hit, or the t of the next point
 //
-// Left to the second pass (height_marches.glsl.h), by the status kScarpDoubtful: rays that start or come in below the
-// ground, and those of very many points. All that a turn needs is computed once per stretch, since drivers do not move
-// it out of loops.
+// Left to the second pass (height_marches.glsl.h), by the status kScarpDoubtful: rays that start or enter below the
+// ground, and rays with very many points. Everything constant in a turn is computed once per stretch, because drivers
+// do not move it out of loops.
 //
 // Guarantee: that of each march; points are displaced by at most the bound that doc/dev/numerics.md derives ("Marches
-// that take samples"). For fields of less than 2^17 cells a side.
+// that take samples"). For fields of fewer than 2^17 cells a side.
 //
-// Compiles as C++ and GLSL. The including file defines what height_marches.glsl.h asks for, and scarp_corners
+// Compiles as C++ and GLSL. The including file must define what height_marches.glsl.h requires, and scarp_corners
 // (max_mip_lean.glsl.h).
 #ifndef SCARP_MARCH_HEIGHT_MARCHES_LEAN_GLSL_H
 #define SCARP_MARCH_HEIGHT_MARCHES_LEAN_GLSL_H
@@ -25,24 +25,24 @@ SCARP_GLSL_BEGIN
 
 /// Longest stretch, as a time: at most twice as many cells.
 const float kScarpStretch = 512.0f;
-/// A stretch begins so long before its first point: `relaxed` also goes back.
+/// A stretch begins this long before its first point, because `relaxed` also steps back.
 const float kScarpStretchRoom = 16.0f;
 /// Turns of a stretch, and stretches of a ray, before the rest is left to the second pass, which can be interrupted.
-/// Invocations of a vector begin their stretches together, so that its loops take no more than the product.
+/// Invocations of a vector start their stretches together, so its loops take at most the product.
 const int kScarpStretchTurns = 1024;
 const int kScarpMostStretches = 48;
 /// Times per sample unit beyond which products could overflow, and below whose inverse they could underflow.
 const float kScarpFlattest = 1.0e15f;
 
-/// By what share of its time, and of its cell's relief, floats lengthen a free distance at most; numerics.md counts 21
-/// and 15 units.
+/// Maximum fractions of its time, and of its cell's relief, by which floats lengthen a free distance; numerics.md
+/// counts 21 and 15 units.
 const float kScarpFreeRounding = 24.0f * kScarpUnit;
 
 /// State of a ray between two stretches.
 struct ScarpStretch {
   float s0;        ///< time at which the next stretch begins
   float t;         ///< of the next point, from s0 on; `before`, too
-  float before;    ///< of the previous point; this and h_before mean something if `known`
+  float before;    ///< of the previous point; this and h_before are defined if `known`
   float h_before;  ///< clearance there
   int steps;       ///< as ScarpMarchState::steps
   int known;       ///< 1: the previous point was over ground
@@ -50,7 +50,7 @@ struct ScarpStretch {
   int stretches;   ///< so far
 };
 
-/// Moves the begin of the next stretch to the next point, less the room before it: a time of 16 significant bits.
+/// Moves the start of the next stretch to the next point, minus the margin before it: a time of 16 significant bits.
 SCARP_FN void scarp_stretch_to(SCARP_INOUT(ScarpStretch) at) {
   float first = max((at.s0 + at.t) - kScarpStretchRoom, 0.0f);
   float s0 = uintBitsToFloat(floatBitsToUint(first) & kScarpFrameBits);
@@ -82,8 +82,8 @@ struct ScarpStretchAxis {
   float o, d;
 };
 
-/// The axis from where the ray is at the frame's begin, up to local time `last`. In between it is within the field,
-/// unless that wraps round: at borders o and d are changed by what rounding takes it beyond them.
+/// The axis from the ray's position at the frame's start, up to local time `last`. In between it is within the field
+/// unless that wraps: at borders o and d are corrected for rounding beyond them.
 SCARP_FN ScarpStretchAxis scarp_stretch_axis(ScarpLeanAxis begin, float direction, float last, int cells, bool wraps) {
   ScarpStretchAxis axis;
   axis.cell = begin.cell;
@@ -98,7 +98,7 @@ SCARP_FN ScarpStretchAxis scarp_stretch_axis(ScarpLeanAxis begin, float directio
   return axis;
 }
 
-/// What does not change in a stretch.
+/// The constants of a stretch.
 struct ScarpStretchFrame {
   ScarpStretchAxis x, y;
   float base;   ///< heights count from it
@@ -124,7 +124,7 @@ SCARP_FN ScarpStretchFrame scarp_stretch_frame(ScarpField field, ScarpRay ray, S
   frame.dz = ray.direction.z;
   float margin = scarp_start_margin(way, settings);
   frame.lowest = margin > 0.0f ? -kScarpNever : settings.height;
-  // Precise, so that compilers do not put back into the turn what is taken out of it here.
+  // Precise, so that compilers do not move these computations back into the turn.
   SCARP_PRECISE float tolerance = settings.tolerance / way.per_clearance;
   SCARP_PRECISE float offset = tolerance * (s0 + way.travelled) - margin / way.per_clearance;
   frame.tolerance = tolerance;
@@ -137,8 +137,8 @@ struct ScarpStretchPoint {
   bool hole;
   float clearance;
   float relief;    ///< of the cell's corners
-  float col, row;  ///< counted from the frame's cell
-  float u, v;      ///< place in the cell, 0..1 but for rounding at the border
+  float col, row;  ///< relative to the frame's cell
+  float u, v;      ///< position in the cell, 0..1 except for rounding at the border
 };
 
 /// Number of a cell in the field.
@@ -153,7 +153,7 @@ SCARP_FN int scarp_stretch_cell(int cell, int cells, bool wraps) {
   return found;
 }
 
-/// The point at local time t; `back`: possibly before the frame's begin.
+/// The point at local time t; `back`: possibly before the frame's start.
 SCARP_FN ScarpStretchPoint scarp_stretch_point(ScarpField field, ScarpStretchFrame frame, bool back, float t) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
   SCARP_PRECISE float x = fma(frame.x.d, t, frame.x.o);
@@ -201,7 +201,7 @@ SCARP_FN ScarpStretchPoint scarp_stretch_point(ScarpField field, ScarpStretchFra
   return point;
 }
 
-/// Its cell, and the place in it.
+/// Its cell, and the position in it.
 SCARP_FN ScarpPoint scarp_stretch_place(ScarpField field, ScarpStretchFrame frame, ScarpStretchPoint of) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
   ScarpPoint point;
@@ -213,7 +213,7 @@ SCARP_FN ScarpPoint scarp_stretch_place(ScarpField field, ScarpStretchFrame fram
   return point;
 }
 
-/// Whether naive, fixed-step or relaxed hit at a point over ground; `strict`: not where they touch it.
+/// Whether naive, fixed-step or relaxed hit at a point over ground; `strict`: excludes touches.
 SCARP_FN bool scarp_stretch_stops(ScarpSampling settings, ScarpStretchFrame frame, bool strict, float t,
                                   float clearance) {
   bool stops;
@@ -280,7 +280,7 @@ SCARP_FN bool scarp_stretch_on(ScarpField field, ScarpRay ray, ScarpSampling set
                   (refines && at.before < -kScarpStretch);
   bool done = doubtful || !(at.t <= end);
   if (!done) {
-    // naive hits at once where it starts below the ground, fixed-step from the surface wherever it comes below.
+    // naive hits at once if it starts below the ground; fixed-step hits from the surface wherever it gets below.
     bool first_opens = true;
     if (is_naive) first_opens = (ray.flags & kScarpFromOutside) != 0u;
     if (is_fixed) first_opens = !strict;
@@ -301,7 +301,7 @@ SCARP_FN bool scarp_stretch_on(ScarpField field, ScarpRay ray, ScarpSampling set
     point.row = 0.0f;
     point.u = 0.0f;
     point.v = 0.0f;
-    // Tested first, so that all that is used after the loop is carried from turn to turn (vk/loop_turns.glsl.h).
+    // Tested first, so that everything used after the loop is carried from turn to turn (vk/loop_turns.glsl.h).
     while (!stops && next <= last && turn < most && (!is_relaxed || next >= 0.0f)) {
       SCARP_COUNT(probe);
       if (turn > 0) {
@@ -313,7 +313,7 @@ SCARP_FN bool scarp_stretch_on(ScarpField field, ScarpRay ray, ScarpSampling set
       t = next;
       point = scarp_stretch_point(field, frame, false, t);
       if (is_lipschitz) {
-        // Less by what floats displace the point and round up, as a time.
+        // Reduced by the displacement of the point in floats and by rounding up, as a time.
         SCARP_PRECISE float free = point.clearance * step_factor;
         SCARP_PRECISE float freed =
             fma(t + free, 1.0f - kScarpFreeRounding, -kScarpFreeRounding * (point.relief * step_factor));
@@ -348,7 +348,7 @@ SCARP_FN bool scarp_stretch_on(ScarpField field, ScarpRay ray, ScarpSampling set
       doubtful = opening && sunk;
       hit.status = is_lipschitz && sunk && settings.proven != 0u ? kScarpExhausted : kScarpHit;
       if (!any) {
-        // fixed-step from the surface: from its start there is no interval to refine.
+        // fixed-step from the surface has no interval to refine at its start.
         if (refines && known && (!is_fixed || h_before > 0.0f)) {
           float refined =
               scarp_stretch_refined(field, settings, frame, strict, before, h_before, t, point.clearance, hit);

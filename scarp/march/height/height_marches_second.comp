@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `naive`, `fixed-step`, `relaxed` or `lipschitz` for the rays of a batch that height_marches.comp has left, one
-// invocation per ray.
+// `naive`, `fixed-step`, `relaxed` or `lipschitz` for the rays of a batch that height_marches.comp left, one invocation
+// per ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -8,7 +8,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/march/height/ray_batch.glsl.h"
-// The march asks the batch for its ground.
+// The march reads its ground through the batch.
 #include "scarp/march/height/batch_states.glsl.h"
 #include "scarp/march/height/height_marches.glsl.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The probe of height fields, in single precision: how far above the ground a point of a ray is, and how far around it
-// there is no hole.
+// The probe of height fields, in single precision: the height of a ray's point above the ground, and the distance to
+// the nearest hole.
 //
-// A point at time s is computed from the ray's own numbers in twice a float's precision: s is the only thing that is
-// rounded on the way from one point to the next.
+// A point at time s is computed from the ray's own numbers in twice float precision: only s is rounded from one point
+// to the next.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. The includer has defined what cell_surface.glsl.h asks for, and
+// Text of C++ and of GLSL, GLSL ES 3.0 included. The including file must define what cell_surface.glsl.h requires, and
 // scarp_minimum of max_mip.glsl.h.
 #ifndef SCARP_MARCH_HEIGHT_PROBE_GLSL_H
 #define SCARP_MARCH_HEIGHT_PROBE_GLSL_H
@@ -19,12 +19,12 @@ SCARP_GLSL_BEGIN
 /// A point of a ray.
 struct ScarpPoint {
   bool valid;       ///< false over holes
-  float clearance;  ///< sample units that the ray is above the ground, vertically
+  float clearance;  ///< vertical distance above the ground, in sample units
   ivec2 cell;
   vec2 place;  ///< in it, 0..1
 };
 
-/// Cells from the begin of one copy of the field, 0 up to `cells`, last one included; and the place in the cell.
+/// Cells from the start of one copy of the field, 0 to `cells` inclusive; and the position in the cell.
 SCARP_FN void scarp_over_field(ScarpTwoFloat way, int cell, int cells, bool wraps, SCARP_OUT(int) found,
                                SCARP_OUT(float) place) {
   float whole = floor(way.high);
@@ -46,8 +46,8 @@ SCARP_FN void scarp_over_field(ScarpTwoFloat way, int cell, int cells, bool wrap
   }
 }
 
-/// The ray's point at time s. Clearance has an error of 16 units of the relief of its cell and of what the ray is above
-/// it.
+/// The ray's point at time s. Clearance has an error of 16 units of the relief of its cell and of the ray's height
+/// above it.
 SCARP_FN ScarpPoint scarp_point(ScarpField field, ScarpRay ray, float s) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
   ScarpTwoFloat x = scarp_two_line(0.0f, ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x, s);
@@ -68,16 +68,16 @@ SCARP_FN ScarpPoint scarp_point(ScarpField field, ScarpRay ray, float s) {
   return point;
 }
 
-/// Time until the ray leaves cell numbers [begin, end) of an axis, from a place in cell number `cell`; places are
-/// rounded, here and there, by half a unit.
+/// Time until the ray leaves cells [begin, end) of an axis, from a position in cell `cell`; positions have rounding
+/// errors of half a unit.
 SCARP_FN float scarp_time_to_border(int begin, int end, int cell, float place, float direction, float per_direction) {
   if (direction == 0.0f) return kScarpNever;
   return (float((direction > 0.0f ? end : begin) - cell) - place) * per_direction + kScarpUnit * abs(per_direction);
 }
 
-/// When the ray, over a point at s, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
-/// it has, by 2^-20 of a cell and what times round by: 3 units of the way ahead, 2.5 more where the device divides, and
-/// 2 of the sum.
+/// Time at which the ray, over a point at s, leaves the block of 2^level x 2^level cells that contains it: later by a
+/// margin of 2^-20 of a cell plus the rounding of times, which is 3 units of the distance ahead, 2.5 more where the
+/// device divides, and 2 of the sum.
 SCARP_FN float scarp_leave_time(ScarpField field, ScarpRay ray, ScarpPoint point, int level, float s) {
   int col = (point.cell.x >> level) << level;
   int row = (point.cell.y >> level) << level;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The probe of height fields: a ray over one as naive, fixed-step, relaxed and lipschitz see it. The probe of functions
-// is function/function_probe.h.
+// The probe of height fields: the interface of a ray over one to naive, fixed-step, relaxed and lipschitz. The probe of
+// functions is function/function_probe.h.
 #pragma once
 
 #include <algorithm>
@@ -35,12 +35,12 @@ class HeightProbe {
     }
     from_outside_ = ray.start == RayStart::free && border >= ray.t_min;
     t_enter = std::max(ray.t_min, border);
-    // Upright rays never leave sideways: they are followed as far as there is ground.
+    // Vertical rays never leave sideways: they are followed down to the lowest ground.
     if (std::isinf(t_exit))
       clip_to_range(field_.min_sample(), field_.max_sample(), local_.origin.z, local_.direction.z, t_enter, t_exit);
   }
 
-  double t_enter, t_exit;  ///< the ray inside the field's bounds; empty when t_enter > t_exit
+  double t_enter, t_exit;  ///< the ray inside the field's bounds; empty if t_enter > t_exit
 
   bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
   const Ray& ray() const { return ray_; }
@@ -50,7 +50,7 @@ class HeightProbe {
 
   struct Sample {
     bool valid = false;    ///< false over holes
-    double clearance = 0;  ///< metres that the ray is above the ground, vertically
+    double clearance = 0;  ///< vertical distance above the ground, in metres
     Cell cell;
     double u = 0, v = 0;
   };
@@ -93,15 +93,14 @@ class HeightProbe {
     return there.valid ? hit(t, there) : hit(t_sample, sample);
   }
 
-  /// The t in which the ray goes as far as the shorter side of a cell: the first step off the surface, and a step over
-  /// a hole.
+  /// The t in which the ray travels the shorter side of a cell: the first step off the surface, and a step over a hole.
   double blind_step() const { return std::min(field_.settings().cell_x, field_.settings().cell_y) / speed_; }
-  /// fixed-step's step, and its least share of the distance travelled.
+  /// fixed-step's step, and its minimum as a fraction of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.fixed_step.step * blind_step(); }
   double stride_share(const MarchSettings&) const { return 0; }
   /// Minimum step of a ray below the ground; it may skip shorter stretches above it. At least what t can resolve.
   double least_step_under(double t) const { return std::max(0x1p-12 * blind_step(), 0x1p-50 * std::abs(t)); }
-  /// Whether there is rock under the sheet: walls at its rims.
+  /// Whether the ground is solid, with walls at its rims.
   bool solid() const { return field_.settings().solid; }
 
   bool under_ground(const Sample& sample) const { return sample.clearance < 0; }
@@ -109,8 +108,8 @@ class HeightProbe {
   double free_time(const Sample& sample, double shrink) const {
     return std::abs(sample.clearance) * shrink * per_metre_;
   }
-  /// Until when that bound holds, which is not across holes: the exit from the largest block of the pyramid around the
-  /// point without holes; over a hole, from its cell.
+  /// The time until which that bound holds, which ends at holes: the exit from the largest hole-free block of the
+  /// pyramid around the point; over a hole, from its cell.
   double bounded_until(const Sample& sample, double t) const {
     if (!sample.valid) return leave_time(sample.cell, 0, t);
     if (!has_holes_) return std::numeric_limits<double>::infinity();
@@ -118,8 +117,8 @@ class HeightProbe {
   }
 
  private:
-  // When the ray, over `cell` at t, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
-  // it has, but by no more than 2^-20 of a cell, which is far beyond rounding and far below any tolerance.
+  // Time at which the ray, over `cell` at t, leaves the block of 2^level x 2^level cells that contains it, plus a
+  // margin of at most 2^-20 of a cell, far above rounding and far below any tolerance.
   double leave_time(Cell cell, int level, double t) const {
     const double x = time_to_border(local_.origin.x, local_.direction.x, cell.col, grid_.cell_cols, level, t);
     const double y = time_to_border(local_.origin.y, local_.direction.y, cell.row, grid_.cell_rows, level, t);
@@ -158,7 +157,7 @@ class HeightProbe {
   bool from_outside_;
 };
 
-/// Calls march(probe, counted) where the ray can meet the ground.
+/// Calls march(probe, counted) if the ray can hit the ground.
 template <class March>
 Hit march_over(const HeightTarget& target, const Ray& ray, MarchStats* stats, const March& march) {
   require(target, HeightPart::none);

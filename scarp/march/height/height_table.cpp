@@ -17,7 +17,7 @@
 namespace scarp {
 namespace {
 
-// A row whose any-hit and batch queries ask for one closest hit after the other.
+// A row whose any-hit and batch queries call the closest-hit query ray by ray.
 template <HeightMarch march>
 constexpr HeightMarchEntry height_march(const MarchEntry& common, bool needs_pyramid, bool needs_slope) {
   HeightMarchEntry entry{common};

@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// The closest hit of a ray in world space. `stats`, unless null, is overwritten.
+/// Returns the closest hit of a ray in world space. Overwrites `stats` unless null.
 using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings,
                             MarchStats* stats);
 /// Whether the closest hit is a hit.
@@ -29,13 +29,12 @@ using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<cons
 using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                                    MarchStats* stats);
 
-/// A row. No function but `by_rules` is null: a technique without an any-hit query or a batch query of its own has one
-/// made of `cpu`.
+/// A row. Only `by_rules` may be null: a technique without its own any-hit or batch query gets one based on `cpu`.
 struct HeightMarchEntry : MarchEntry {
   bool needs_pyramid = false;               ///< HeightTarget::pyramid must be given
   bool needs_slope = false;                 ///< HeightTarget::slope must be given
-  bool own_any_hit = false;                 ///< `occluded` is not made of `cpu`
-  HeightFields fields = HeightFields::all;  ///< others are refused by require_field()
+  bool own_any_hit = false;                 ///< `occluded` is a query of its own, not based on `cpu`
+  HeightFields fields = HeightFields::all;  ///< require_field() rejects others
   /// Whether a ray that starts or enters below the ground is followed to later hits; otherwise it is `below` at once.
   bool follows_below = true;
   HeightMarch cpu = nullptr;  ///< scalar C++
@@ -48,7 +47,7 @@ struct HeightMarchEntry : MarchEntry {
 
 /// The oracle, `exhaustive`, comes first.
 std::span<const HeightMarchEntry> height_marches();
-/// Throws Error listing the names when there is no such march.
+/// Throws Error listing the names if the march is unknown.
 const HeightMarchEntry& find_height_march(std::string_view name);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the marches of height fields take.
+// The argument of the height field marches.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// A height field and what was built for it.
+/// A height field with the structures built for it.
 struct HeightTarget {
   const HeightField* field = nullptr;
   const MaxPyramid* pyramid = nullptr;  ///< null: only for marches that do not need it
@@ -27,13 +27,13 @@ struct HeightTarget {
   double seam_step = 0;
 };
 
-/// What a march needs of a target besides the field.
+/// The parts of a target, besides the field, that a march needs.
 enum class HeightPart { none, pyramid, slope, pyramid_and_slope };
 
 /// Throws Error naming the part of a target that is missing.
 [[noreturn]] void refuse_target(const HeightTarget& target, HeightPart part);
 
-/// Throws Error if the target lacks what a march needs: a null field or pyramid, a slope that is NaN.
+/// Throws Error if the target lacks a required part: a null field or pyramid, or a NaN slope.
 inline void require(const HeightTarget& target, HeightPart part) {
   const bool pyramid = part == HeightPart::pyramid || part == HeightPart::pyramid_and_slope;
   const bool slope = part == HeightPart::slope || part == HeightPart::pyramid_and_slope;

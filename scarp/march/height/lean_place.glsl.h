@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where a ray is at the begin of a frame, for the lean passes of devices (max_mip_lean.glsl.h,
-// height_marches_lean.glsl.h): the ray's own numbers at time s0 in twice a float's precision, in few instructions.
+// Position of a ray at the start of a frame, for the lean passes of devices (max_mip_lean.glsl.h,
+// height_marches_lean.glsl.h): from the ray's own numbers at time s0 in twice float precision, in few instructions.
 // Errors: doc/dev/numerics.md, "The lean pass".
 //
 // Compiles as C++ and GLSL.
@@ -13,10 +13,10 @@
 
 SCARP_GLSL_BEGIN
 
-/// Bits of a frame's time, except over fields that wrap: the high 16. Times are below 2^17, so that the rest is less
+/// Bits of a frame's time, except over fields that wrap: the high 16. Times are below 2^17, so the remainder is less
 /// than 2.
 const uint kScarpFrameBits = 0xffffff00u;
-/// a * s0 as two floats, to 2^-31 of itself: s0 has 16 bits, so that its product with the high 8 bits of `a` is exact.
+/// a * s0 as two floats, to 2^-31 of itself: s0 has 16 bits, so its product with the high 8 bits of `a` is exact.
 SCARP_FN ScarpTwoFloat scarp_lean_product(float a, float s0, bool wraps) {
   if (wraps) return scarp_two_product(a, s0);
   float high = uintBitsToFloat(floatBitsToUint(a) & 0xffff0000u);
@@ -26,13 +26,13 @@ SCARP_FN ScarpTwoFloat scarp_lean_product(float a, float s0, bool wraps) {
   return product;
 }
 
-/// A place along an axis: a cell of the grid, and 0..1 in it.
+/// A position along an axis: a cell of the grid, and 0..1 in it.
 struct ScarpLeanAxis {
   int cell;
   float place;
 };
 
-/// Where the ray is at time s0.
+/// The position of the ray at time s0.
 SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, float direction, float direction_low,
                                        float s0, int cells, bool wraps) {
   ScarpTwoFloat way = scarp_lean_product(direction, s0, wraps);
@@ -46,7 +46,7 @@ SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, f
   found.cell = wraps ? to : clamp(to, 0, cells - 1);
   found.place = clamp(rest - float(found.cell - from), 0.0f, 1.0f);
   if (wraps) {
-    // The border ahead is ahead, so that what lies before it is tested; except for rays that begin on it.
+    // The border ahead stays ahead, so that everything before it is tested, except for rays that start on it.
     if (s0 > 0.0f) found.place = clamp(found.place, kScarpUnit, 1.0f - kScarpUnit);
     found.cell -= int(floor(float(found.cell) / float(cells))) * cells;
     // The quotient is rounded.
@@ -56,7 +56,7 @@ SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, f
   return found;
 }
 
-/// Height of a ray at time s0, from its height at its begin, as two floats.
+/// Height of a ray at time s0, from its height at its start, as two floats.
 SCARP_FN ScarpTwoFloat scarp_lean_height(float z, float z_low, float direction, float direction_low, float s0,
                                          bool wraps) {
   ScarpTwoFloat rise = scarp_lean_product(direction, s0, wraps);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` for a batch of rays, one invocation per ray. Rays that floats are not sure of are left to
-// max_mip_exact.comp.
+// `max-mip` for a batch of rays, one invocation per ray. Rays that floats cannot decide are left to max_mip_exact.comp.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -18,9 +17,9 @@ void main() {
   ScarpLean at = scarp_lean_begin();
   for (;;) {
     ScarpHit hit;
-    // The ray is read again for each frame: in registers it would be in the way of the walk.
+    // The ray is read again for each frame, to free registers for the walk.
     if (!scarp_lean_on(field, batch_ray(i), batch_any, at, hit)) continue;
-    // Answered in here: lavapipe (Mesa 22.3) gives a lane that has left the loop what others make after it.
+    // Written inside the loop: lavapipe (Mesa 22.3) gives a lane that has left the loop the later results of others.
     batch_answer(i, hit);
     if (hit.status == kScarpDoubtful) batch_mark();
     break;

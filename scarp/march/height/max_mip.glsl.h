@@ -298,9 +298,9 @@ SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCAR
   return true;
 }
 
-// Look-ahead parameters of any hit, from a search over the rays of scarp-bench gpu (doc/dev/decisions.md).
+// Look-ahead parameters of any hit, from a search over the rays of scarp-bench gpu (doc/dev/decisions/march.md).
 const uint kScarpPatience = 3u;       // traversal steps before the first look-ahead
-const float kScarpShortWay = 512.0f;  // cells below the field's top; shorter rests of the ray do not repay a look-ahead
+const float kScarpShortWay = 512.0f;  // cells below the field's top; shorter remaining paths do not repay a look-ahead
 const int kScarpProbeLevel = 3;       // blocks of 8 x 8 cells
 const int kScarpProbes = 12;
 const float kScarpFirstProbe = 8.0f;  // steps in cells

@@ -30,9 +30,9 @@ namespace scarp {
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr);
 
-/// Closest of the hits that count. From below the march is the same over the ground upside down (walk_ground.h), with
-/// the same guarantee; solid ground has no walls there. A ray that starts on the surface is on the side that it goes
-/// to if both sides count, and below it by definition if only that one does.
+/// Returns the closest hit that counts. From below, the march runs over the inverted ground (walk_ground.h), with the
+/// same guarantee; solid ground then has no walls. A ray that starts on the surface is on the side that it heads for if
+/// both sides count, and below it by definition if only the lower side does.
 Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                            MarchStats* stats = nullptr);
 

@@ -48,7 +48,7 @@ class AheadWalk {
   AheadWalk(const HeightTarget& target, const SampleGrid<T>& grid)
       : target_(target), field_(*target.field), pyramid_(*target.pyramid), grid_(grid) {}
 
-  // Prepares the ray. Returns false if `answer` is all that is known.
+  // Prepares the ray. Returns false if `answer` is final.
   HWY_INLINE bool prepare(const Ray& ray, Ahead& answer) {
     const HeightCode& code = pyramid_.code();
     // An even number of bits, because levels advance by two: mirroring then reverses whole groups of four children.
@@ -117,7 +117,7 @@ class AheadWalk {
   static constexpr int kMostLevels = 16;
   static constexpr int kFirstOutside = 6;  // level of the first block of rays that start above or outside
 
-  // The ray in all lanes, and where the lanes' children are in their block.
+  // The ray in all lanes, and the positions of the lanes' children in their block.
   struct Fixed {
     VF ox, oy, per_x, per_y, start_x, start_y, z, dz, end, last_x, last_y;
     VI lane_x, lane_y;
@@ -141,7 +141,7 @@ class AheadWalk {
     HWY_INLINE VF height(VF t) const { return hn::MulAdd(dz, t, z); }
   };
 
-  // The ray's way through the children of a vector.
+  // The ray's path through the children of a vector.
   struct Ways {
     VF x, y;  // their first lines, from the ray's start
     VF in, out, low;
@@ -193,7 +193,7 @@ class AheadWalk {
     return hn::ConvertTo(df4, hn::PromoteTo(di4, hn::LoadU(four_whole, from)));
   }
 
-  // Children of a block that the ray may meet the ground in, as bits.
+  // Children of a block in which the ray may hit the ground, as bits.
   HWY_INLINE std::uint32_t blocks(const Fixed& f, int level, std::int32_t nx, std::int32_t ny) const {
     const int child = level - 2;
     const MaxPyramid::Level& at = pyramid_.levels()[static_cast<std::size_t>(child - 1)];
@@ -312,8 +312,8 @@ class AheadWalk {
       const double ends = std::min(f.c, f.at(length)), least = between ? std::min(ends, f.vertex_value()) : ends;
       if (least > rounding + 4 * kSideways * (static_cast<double>(out) + 2) * cell_relief_) return Found::clear;
     }
-    // Whether it is above where it enters the cell, and below after that by more than rounding, so that the scalar
-    // traversal finds it, too. That tests the cell as a whole if the ray leaves it before its end.
+    // Whether it is above where it enters the cell and later below by more than rounding, so that the scalar traversal
+    // also finds the hit. The scalar traversal tests the whole cell if the ray leaves it before its end.
     if (!(std::abs(d.x) > 0x1p-1000 && std::abs(d.y) > 0x1p-1000)) return Found::doubt;
     const double per_x = 1 / d.x, per_y = 1 / d.y;
     const auto line_x = [&](double line) { return (line - o.x) * per_x; };

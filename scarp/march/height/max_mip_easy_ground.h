@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shader text of `max-mip-easy`, compiled as C++: a class that answers from a field and its pyramid what the text
-// asks of textures, with the text's functions as its members.
+// The shader text of `max-mip-easy`, compiled as C++: a class that implements the text's texture lookups with a field
+// and its pyramid, and has the text's functions as members.
 #pragma once
 
 #include <cmath>

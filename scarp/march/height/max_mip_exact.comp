@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` for the rays of a batch that max_mip.comp has left, one invocation per ray.
+// `max-mip` for the rays of a batch that max_mip.comp left, one invocation per ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

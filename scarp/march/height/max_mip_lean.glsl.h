@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The first pass of `max-mip` on devices: the traversal of max_mip.h in plain floats, with a margin for their error.
 //
-//   frame: the ray begins anew at time s0, mirrored so that it goes towards +x and +y
+//   frame: the ray restarts at time s0, mirrored so that it goes towards +x and +y
 //     walk, a block per turn:  one load: the maxima of its 2 x 2 children (GroundQuads)
 //       the ray is above every child on its way by more than the margin   leave the block, go up a level
 //       else                                                              on to the first child that it may meet
@@ -10,12 +10,12 @@
 //                 else                                                    the sign of the clearance decides
 //
 // A frame begins at a point that two floats give exactly, and in its first cells floats are exact to 2^-18 of a cell.
-// So a hit is decided and located there, whatever the ray's length, and the margin only costs a new frame for rays that
+// A hit is decided and located there, whatever the ray's length, and the margin only costs a new frame for rays that
 // graze the ground. A ray that starts below the surface, or enters it from a hole, is left to the exact text
 // (max_mip.glsl.h) in a second pass: the status is then kScarpDoubtful.
 //
 // Guarantee: decisions are those of a surface and a ray displaced by at most the bound that doc/dev/numerics.md
-// derives ("The lean pass"); closest and any hit agree. For fields of less than 2^17 cells a side whose heights differ
+// derives ("The lean pass"); closest and any hit agree. For fields of fewer than 2^17 cells a side whose heights differ
 // by less than 2^100. Source: see max_mip.h.
 //
 // Compiles as C++ and GLSL. The including file defines scarp_sample and scarp_is_nodata (cell_surface.glsl.h), and
@@ -40,12 +40,12 @@ const int kScarpLeanTurns = 16384;
 /// Height of a block's code that floats may be off, in codes (numerics.md counts 0.27).
 const float kScarpCodeRounding = 0.5f;
 
-/// The status of a ray that goes on in a new frame.
+/// The status of a ray that continues in a new frame.
 const int kScarpFrame = -2;
 
 /// State of a ray between two frames.
 struct ScarpLean {
-  float s0;      ///< time at which the next frame begins; 0: it is the ray's first
+  float s0;      ///< time at which the next frame starts; 0: it is the ray's first
   int above;     ///< over fields that wrap, 1: the ray is known to be above the surface at s0
   int turns;     ///< blocks so far
   uint fetches;  ///< so far
@@ -61,16 +61,16 @@ SCARP_FN ScarpLean scarp_lean_begin() {
   return at;
 }
 
-/// The ray in a frame. Mirrored cell numbers are those of the grid or, where the ray goes back, their complements, so
-/// that it always goes forwards, and blocks are the same.
+/// The ray in a frame. Mirrored cell numbers are those of the grid or, along axes on which the ray runs backwards,
+/// their complements, so that it always runs forwards and blocks are the same.
 struct ScarpLeanFrame {
-  int mirror_x, mirror_y;  ///< 0, or -1 where the ray goes back
-  int begin_x, begin_y;    ///< the cell in which the frame begins, mirrored
-  float ox, oy;            ///< where in it, 0..1 in the ray's direction
+  int mirror_x, mirror_y;  ///< 0, or -1 if the ray runs backwards
+  int begin_x, begin_y;    ///< the cell in which the frame starts, mirrored
+  float ox, oy;            ///< position in it, 0..1 in the ray's direction
   float dx, dy;            ///< not negative
   int last_x, last_y;      ///< the last cell of the grid ahead, mirrored
   int col, row;            ///< the first cell in the grid's numbers
-  float place_x, place_y;  ///< where in it, 0..1 in the grid's direction
+  float place_x, place_y;  ///< position in it, 0..1 in the grid's direction
   float per_x, per_y;      ///< 1 / dx, 1 / dy; kScarpNever for 0
   float base;              ///< heights count from it
   float z, dz;             ///< of the ray, from the base
@@ -78,7 +78,7 @@ struct ScarpLeanFrame {
   float start_relief;      ///< height difference in the start cell of a ray from the surface
 };
 
-/// The frame that begins at time s0.
+/// Returns the frame that starts at time s0.
 SCARP_FN ScarpLeanFrame scarp_lean_frame(ScarpField field, ScarpRay ray, float s0, bool strict) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
   ScarpLeanFrame frame;
@@ -121,8 +121,8 @@ SCARP_FN ScarpLeanFrame scarp_lean_frame(ScarpField field, ScarpRay ray, float s
   return frame;
 }
 
-/// When the ray crosses a line, by ONE expression for all blocks; `cells` counts from the frame's first cell, `origin`
-/// is place * per.
+/// Time at which the ray crosses a line, by ONE expression for all blocks; `cells` counts from the frame's first cell,
+/// `origin` is place * per.
 SCARP_FN float scarp_lean_line(float cells, float per, float origin) { return fma(cells, per, -origin); }
 
 /// The clearance of a ray over a piece of a cell: above + (chord - bend) s + bend s^2, s from 0 to 1.
@@ -133,8 +133,8 @@ struct ScarpPiece {
   float bend;
 };
 
-/// The s at which the clearance of a piece falls to 0. A free ray that is at 0 when it begins hits there; one that
-/// starts on the surface hits where it comes down again.
+/// The s at which the clearance of a piece falls to 0. A free ray that starts at 0 hits there; one that starts on the
+/// surface hits where it comes down again.
 SCARP_FN float scarp_fall_of(ScarpPiece piece, bool strict) {
   float slope = piece.chord - piece.bend;
   float root = sqrt(max(0.0f, slope * slope - 4.0f * piece.bend * piece.above));
@@ -272,7 +272,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   bool from_afar = (ray.flags & (kScarpAbove | kScarpFromOutside)) != 0u && at.s0 == 0.0f;
   int level = from_afar ? max(field.top_level - 3, 1) : 1;
   float t = 0.0f;
-  // Only the border of a copy ends a frame in which the ray is not known to be above.
+  // A frame in which the ray is not known to be above ends only at the border of a copy.
   bool above = at.s0 > 0.0f ? !wraps || at.above != 0 : (ray.flags & (kScarpAbove | kScarpOnSurface)) != 0u;
   int turn = at.turns;
   int hit_col = 0;
@@ -379,11 +379,11 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   if (turn >= kScarpLeanTurns) status = kScarpDoubtful;
   float s0 = at.s0;
   if (wraps && status == kScarpMiss && border < end) {
-    // On into the next copy, by more than times are rounded.
+    // Continues into the next copy, by more than the rounding of times.
     at.s0 = (s0 + border) * (1.0f + 4.0f * kScarpUnit);
     status = at.s0 < float(kScarpFarthestCell) ? kScarpFrame : kScarpDoubtful;
   } else if (status == kScarpFrame) {
-    // What it may meet is decided in a frame that begins there.
+    // Hits there are decided in a frame that starts there.
     at.s0 = s0 + t;
     // Rounded down, to no later than the sum.
     if (!wraps) at.s0 = uintBitsToFloat((floatBitsToUint(at.s0) - 1u) & kScarpFrameBits);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The way from a query to the traversal of `max-mip`: directions of any length, fields of any sample type, and rays
+// From a query to the traversal of `max-mip`: handles directions of any length, fields of any sample type, and rays
 // along lines.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace scarp::max_mip {
 namespace {
 
 // A ray along a grid line belongs to the cells on both sides, where either may be a hole. Their blocks differ, so the
-// pyramid is of no use.
+// pyramid is useless.
 bool runs_along_line(const GridRay& ray) {
   const auto along = [&](int axis) {
     return ray.direction[axis] == 0 && ray.origin[axis] == std::floor(ray.origin[axis]);

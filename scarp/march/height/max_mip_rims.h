@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray of `max-mip` beside the ground: outside the field or over a hole, no farther from the rim than its allowance.
+// A ray of `max-mip` beside the ground: outside the field or over a hole, within the allowance of the rim.
 //
 //          ground      | allowance |   hole or outside
 //   ___________________|___________|
@@ -7,9 +7,9 @@
 //                             \           hits there, at its own t, whether it comes or goes.
 //                              \.
 //
-// The allowance is that of rounding_of_line(): rounding moves the ray and the line by as much. A ray that is nearly
-// vertical stays within it for a long time, in which it passes all heights; what counts is the time at which it is as
-// high as the rim. The clearance above one edge is linear, because the position is clamped to it.
+// The allowance is that of rounding_of_line(): rounding moves the ray and the line by as much. A nearly vertical ray
+// stays within it for a long time and passes all heights; what counts is the time at which it is as high as the rim.
+// The clearance above one edge is linear, because the position is clamped to it.
 #pragma once
 
 #include <algorithm>
@@ -42,8 +42,8 @@ inline double relief(const CellHeights& h) {
   return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
 }
 
-// A ray beside the ground: its side, and whether it came there from outside or over a hole. What has come below the
-// rim so is not in the ground: walls are ahead, and where it rises through the rim nothing is hit.
+// A ray beside the ground: its side, and whether it came from outside or over a hole. A ray that has sunk below the rim
+// is not in the ground: walls are ahead, and rising through the rim is not a hit.
 struct RimSide {
   Side side = Side::unknown;
   bool came = true;
@@ -72,7 +72,8 @@ struct Rim {
   double late_x() const { return x.moves() ? off(0) * std::abs(x.per_direction) : 0.0; }
   double late_y() const { return y.moves() ? off(1) * std::abs(y.per_direction) : 0.0; }
 
-  // The time up to which a ray may touch the rim of the field that it leaves at t, and that from which, coming.
+  // The time until which a ray may touch the rim of the field that it leaves at t, and the time from which it may when
+  // it enters.
   double last_time() const { return std::min(x.exit_time() + late_x(), y.exit_time() + late_y()); }
   double first_time() const { return std::max(x.enter_time() - late_x(), y.enter_time() - late_y()); }
 
@@ -90,31 +91,32 @@ struct Rim {
     const double above = std::min(height(begin), height(end)) - ground.highest();
     return above <= 0 || above <= 2 * rounding_of_clearance(field, ray, std::max(std::abs(begin), std::abs(end)));
   }
-  // The cells that it may touch from outside the field.
+  // The cells that the ray may touch from outside the field.
   RimBox cells_under(double begin, double end) const {
     const auto first = [&](const Axis& axis) { return axis.near(std::min(axis.at(begin), axis.at(end)) - 0.5); };
     const auto last = [&](const Axis& axis) { return axis.near(std::max(axis.at(begin), axis.at(end)) + 0.5); };
     return {first(x), last(x), first(y), last(y)};
   }
 
-  // Whether the height of a hit at t is between the lowest and the highest ground, but for rounding; of a wall, not
+  // Whether the height of a hit at t is between the lowest and the highest ground, up to rounding; for a wall, not
   // above.
   bool is_height_of_ground(double t, bool wall) const {
     const double relief = ground.highest() - ground.lowest();
     const double beside = (field.nodata_count() > 0 ? 1 + kQuickRim : 1) * (off(0) + off(1)) * relief;
     const double subnormal = 4 * std::numeric_limits<double>::denorm_min();
     const double room = 2 * rounding_of_clearance(field, ray, t) + seam_step + beside + subnormal;
-    // Also where coordinates are so large that their rounding is no number.
+    // Also true if coordinates are so large that their rounding is not finite.
     return !(height(t) > ground.highest() + room) && (wall || !(height(t) < ground.lowest() - room));
   }
 
-  // Whether the ray, in this time, has to be followed along rims, cell by cell.
+  // Whether the ray must be followed along rims, cell by cell, in this time.
   bool slow(double begin, double end) const {
     return lingers_at_line(field, ray, ground.lowest(), ground.highest(), begin, end, seam);
   }
 
-  // The height by which the ray may be below the ground at t and touch it: where it crosses a line of an axis (-1: no
-  // line) into a cell of this relief, from outside or from a hole, within whose allowance it has been followed or not.
+  // The height by which the ray may be below the ground at t and still touch it, where it crosses a line of an axis
+  // (-1: no line) into a cell of this relief, from outside or from a hole, whether or not it was followed within the
+  // allowance.
   double rounding_at(double t, double of_cell, int axis, bool from_hole, bool followed) const {
     if (axis < 0) return rounding_of_clearance(field, ray, t, of_cell);
     if (from_hole && !followed) return rounding_at_hole(field, ray, t, of_cell, axis, seam);
@@ -122,7 +124,7 @@ struct Rim {
   }
 
   // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's place on a line,
-  // until it returns true, as does the function then: since rims are closed, any of them will do.
+  // until f returns true, and then returns true. Rims are closed, so any of these cells is valid.
   template <class F>
   bool any_beside(double t, const F& f) const {
     const CellsBeside cols(x, t, off(0)), rows(y, t, off(1));
@@ -137,13 +139,13 @@ struct Rim {
     return false;
   }
 
-  // Calls touch(col, row, place) where the ray touches ground at its place on a line. Returns true if touch() does;
-  // otherwise after the first, unless `all`.
+  // Calls touch(col, row, place) where the ray touches ground at its position on a line. Stops and returns true if
+  // touch() does; stops after the first touch unless `all`.
   template <class Touch>
   bool touched_at(double t, bool all, const Touch& touch) const {
     bool answered = false;
     any_beside(t, [&](int col, int row, const dvec2& place, double above, double of_cell) {
-      // Of the cell: less than what a ray from below has to rise.
+      // Rounding of the cell: less than the height that a ray from below must rise.
       if (!(std::abs(above) <= rounding_of_clearance(field, ray, t, of_cell))) return false;
       answered = touch(col, row, place);
       return answered || !all;
@@ -201,7 +203,7 @@ struct Rim {
       }
       bool touches = false;
       if (side == Side::above) {
-        // What does not sink before the ray is over the field is met there.
+        // If the ray does not sink before it is over the field, it hits there.
         touches = s.above_end < 0 || (!goes_in && s.above_begin <= 0);
       } else if (s.above_end > rounding_of_clearance(field, ray, s.end)) {
         side = Side::above;
@@ -218,7 +220,7 @@ struct Rim {
   }
 
  private:
-  // When the ray is at most `allowance` beside a cell.
+  // The time in which the ray is at most `allowance` beside a cell.
   static bool clip_to_cell(const Axis& axis, int cell, double allowance, double& begin, double& end) {
     const auto low = static_cast<double>(axis.global_line(cell)) - allowance;
     const auto high = static_cast<double>(axis.global_line(cell + 1)) + allowance;
@@ -228,7 +230,7 @@ struct Rim {
     return begin <= end;
   }
 
-  // In order of their begin. Where the ray passes the end of an edge, its clearance has a corner.
+  // Sorted by start. The clearance has a kink where the ray passes the end of an edge.
   std::vector<RimStretch> stretches(double begin, double end, const RimBox& box) const {
     std::vector<RimStretch> found;
     for (int row = box.north; row <= box.south; ++row) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` with rules on which hits count, and the other questions that share that walk: all hits, and the closest one
-// by bisection. The hits from above and those from below are found on their own, each as if there were no others, and
-// the earlier one is the answer.
+// `max-mip` with rules on which hits count, and the other queries that share that walk: all hits, and the closest one
+// by bisection. Hits from above and hits from below are found separately, and the earlier one is the result.
 #include <cmath>
 
 #include "scarp/march/height/max_mip.h"
@@ -37,14 +36,14 @@ Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const Hit
   HitFilter leaves_start;
   const HitFilter* accept = rules.accept;
   if (rules.sides == Sides::both && ray.start == RayStart::on_surface) {
-    // On whichever side the ray goes, its start is a crossing for the other.
+    // Whichever side the ray heads for, its start is a crossing for the other side.
     leaves_start = [&rules, started = ray.t_min + rounding_of_start(target, ray)](const Hit& hit) {
       return hit.t > started && (!rules.accept || (*rules.accept)(hit));
     };
     accept = &leaves_start;
   }
   Hit below = march<Ask::as_wanted, true>(target, ray, {.accept = accept}, stats);
-  // The ray was above the ground, which is no news.
+  // The ray was above the ground, which adds nothing.
   if (below.status == HitStatus::below) below.status = HitStatus::miss;
   if (rules.sides == Sides::below) return below;
   MarchStats of_above;

@@ -61,7 +61,7 @@ struct Candidates {
   }
 };
 
-// A ray that is to cross a copy of a wrapped ground.
+// A ray that has to cross a copy of a wrapped ground.
 struct CopyRay {
   std::size_t ray;
   std::int32_t x, y;
@@ -152,7 +152,7 @@ class VectorWalk {
            std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
   }
 
-  // Answers finished rays and puts new ones in their lanes. Returns false if no lane has a ray.
+  // Stores the results of finished rays and puts new ones in their lanes. Returns false if no lane has a ray.
   HWY_NOINLINE bool refill(Packet& p, Lanes& a) {
     const std::uint64_t walking = bits_of(p.walking());
     std::uint64_t idle = ~walking & kAllLanes;
@@ -187,7 +187,7 @@ class VectorWalk {
     }
   }
 
-  // Prepares the next rays in fresh_. Answers those that need no traversal.
+  // Prepares the next rays in fresh_. Finishes those that need no traversal.
   HWY_NOINLINE void take_rays() {
     fresh_at_ = 0;
     for (std::size_t k = 0; k < kFresh; ++k) take_rays(fresh_[k], r_[k]);
@@ -202,7 +202,7 @@ class VectorWalk {
     }
   }
 
-  // Coherent rays: through the pyramid, or as a beam to where its rays part.
+  // Coherent rays: through the pyramid together, or as a beam to where its rays diverge.
   void go_together() {
     const std::size_t rays = options_.together ? walk_together(g_, fresh_, kFresh) : 0;
     const std::size_t beam_rays = rays > 0 ? 0 : follow_beam(g_, fresh_, kFresh, beam_length_);
@@ -416,7 +416,7 @@ class VectorWalk {
     is_near(copy.x * f_.cols, copy.y * f_.rows) ? copies_.push_back(copy) : answer_alone(copy.ray);
   }
 
-  // Answers the rays of some lanes of p, which are also in memory.
+  // Stores the results of some lanes of p, which are also in memory.
   HWY_INLINE void answer(const Packet& p, const Lanes& a, std::uint64_t lanes) {
     if constexpr (any) {
       const MI hits = hn::Eq(p.status, hn::Set(di, kHit)), misses = hn::Eq(p.status, hn::Set(di, kMiss));
@@ -463,7 +463,7 @@ class VectorWalk {
     }
   }
 
-  // The hits of rays that went together, most of which are at cells: without gathering them first.
+  // The hits of rays traced together, most of which are at cells: without gathering them first.
   HWY_INLINE void find_hits_in_place(std::size_t k) {
     Lanes& a = fresh_[k];
     const MI taken = hn::Gt(hn::LoadU(di, a.ray), hn::Set(di, -1));
@@ -485,7 +485,7 @@ class VectorWalk {
   // The hits of candidates_.
   HWY_NOINLINE void find_hits() {
     Candidates& c = candidates_;
-    // Fills the vector with copies that are not answered.
+    // Fills the vector with copies whose results are discarded.
     for (std::size_t i = c.count; i < N; ++i) c.copy(i, 0);
     GridRays rays;
     rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[i])]; });
@@ -558,7 +558,8 @@ class VectorWalk {
     }
   }
 
-  // From a search over the rays of scarp-bench (decisions.md): number of waiting lanes that triggers their processing.
+  // From a search over the rays of scarp-bench (doc/dev/decisions/march.md): number of waiting lanes that triggers
+  // their processing.
   static constexpr std::size_t kQuorum = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
   static constexpr int kPackets = any ? 3 : 2;   // vectors in turn: while one waits for memory, others compute

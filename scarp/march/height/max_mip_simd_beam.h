@@ -31,8 +31,9 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr std::int32_t kMostCells = std::numeric_limits<std::int32_t>::max();
-// Found with scarp-bench (decisions.md): minimum ratio of length to width of a beam; first step as a fraction of the
-// previous beam's length; factor of steps after it. The shortest step is the width of the beam, within limits in cells.
+// Found with scarp-bench (doc/dev/decisions/march.md): minimum ratio of length to width of a beam; first step as a
+// fraction of the previous beam's length; factor of steps after it. The shortest step is the width of the beam, within
+// limits in cells.
 constexpr float kSlender = 8, kShareOfBefore = 0.9f, kShorter = 0.25f;
 constexpr std::int32_t kLeastShortest = 1, kMostShortest = 4;
 // Level at which its rays continue.

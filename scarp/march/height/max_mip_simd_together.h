@@ -28,7 +28,7 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Greatest spread, in cells, of the start cells of rays that go together, and cells up to which floats count exactly.
+// Maximum spread, in cells, of the start cells of rays traced together, and cells up to which floats count exactly.
 constexpr std::int32_t kWidestStart = 2, kFarthestCell = 1 << 22;
 
 using MF = hn::Mask<decltype(df)>;
@@ -39,7 +39,7 @@ class Together {
   HWY_INLINE Together(const VectorGround<T>& g, Lanes* lanes, std::size_t count)
       : g_(g), lanes_(lanes), count_(count) {}
 
-  /// Returns the number of rays. Each then ends without a hit, or is unsure in a cell up to which it is above.
+  /// Returns the number of rays. Each then ends without a hit, or is undecided in a cell, up to which it is above.
   HWY_INLINE std::size_t walk() {
     VI x0 = hn::Set(di, kMostCells), y0 = x0;
     std::size_t rays = 0;
@@ -88,11 +88,11 @@ class Together {
     std::int32_t x, y, level;
     std::uint64_t vectors;
   };
-  // Of the rays of a vector; `end` is kDone for those that take no part any more.
+  // State of the rays of a vector; `end` is kDone for rays that are finished.
   struct Numbers {
     alignas(64) float begin_x[N], begin_y[N], o_per_x[N], o_per_y[N], end[N];
   };
-  // From the top down to where the rays begin, past blocks that are behind all of them.
+  // From the top down to the start of the rays, past blocks that are behind all of them.
   HWY_INLINE void descend() {
     Block b{0, 0, g_.top, live_};
     while (b.level > kFirstLevel) {

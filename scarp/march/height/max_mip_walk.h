@@ -477,13 +477,13 @@ class Walk {
     return rim(grid_ray()).touched_at(t, accepts(), record);
   }
 
-  // Whether a ray that comes from over the ground may sink through its rim behind the line that it crosses at t.
+  // Whether a ray from over the ground may sink through its rim behind the line that it crosses at t.
   [[gnu::noinline]] bool sinks_over_rim(double t) const {
     return !strict_ && side_ == Side::above && rim(grid_ray()).may_sink(t, through_ == Through::x_line ? 0 : 1);
   }
 
-  // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
-  // neighbours that share the place are one. Returns true if the query is answered.
+  // Records a touch at t, at a given place of a cell, which need not be on the ray's way. In lists of all hits, those
+  // of neighbours that share the place count as one. Returns true if the query is answered.
   bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;
     if (lists() && !wanted_.all->empty() &&
@@ -496,8 +496,8 @@ class Walk {
     return answered;
   }
 
-  // Follows the ray beside the ground, in a time in which it is over none; its side is then that at the end, unless it
-  // is to stay. Returns true if the query is answered.
+  // Follows the ray beside the ground, during a time in which it is over none; its side is then that at the end, unless
+  // it must stay. Returns true if the query is answered.
   [[gnu::noinline]] bool follow_rim(double begin, double end, const RimBox& box, bool stay = false,
                                     bool goes_in = false) {
     RimSide at{below_rim_ ? Side::below : side_, below_rim_ || side_ == Side::unknown};
@@ -539,7 +539,7 @@ class Walk {
       side_ = Side::below;
       return answer(0.0);
     }
-    // What has come below the rim has risen only beyond rounding.
+    // A ray that has sunk below the rim has emerged only if it is above by more than rounding.
     const double risen = std::exchange(below_rim_, false) ? rounding_of_clearance(t_in_) : 0.0;
     side_ = (risen > 0 ? in > risen : in >= 0) || on_rim ? Side::above : Side::below;
     if (side_ == Side::above) return false;
@@ -610,7 +610,7 @@ class Walk {
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
   }
 
-  // What is asked, known to the compiler but for Ask::as_wanted.
+  // The query, a compile-time constant except for Ask::as_wanted.
   bool lists() const { return ask == Ask::as_wanted && wanted_.all; }
   bool bisects() const { return ask == Ask::as_wanted && wanted_.bisects; }
   bool accepts() const { return ask == Ask::as_wanted && !lists() && !bisects(); }
@@ -623,7 +623,7 @@ class Walk {
   // node could be above at one line and, by rounding, not above at the next: a hit from below), a ray from the surface
   // is strictly below only beyond it, and so is a ray under a block.
   double rounding_of_clearance(double t) const { return scarp::rounding_of_clearance(field_, grid_ray(), t); }
-  // That of the whole way, from t_in_ on.
+  // The bound for the whole ray, from t_in_ on.
   void bound_rounding() { rounding_ = rounding_of_clearance(std::max(std::abs(t_in_), std::abs(t_end_))); }
   GridRay grid_ray() const { return {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}; }
 
@@ -692,7 +692,7 @@ class Walk {
   bool from_outside_ = false;                                  // whether the ray entered through the border
   bool begun_ = false;      // with holes: whether a cell has been left; only in the first one can the ray start below
   bool slow_ = false;       // with holes: whether rims are followed
-  bool below_rim_ = false;  // whether it has come below the rim that it is beside, from outside or over a hole
+  bool below_rim_ = false;  // whether it has sunk below the adjacent rim, from outside or over a hole
   Hit& answer_;
 };
 

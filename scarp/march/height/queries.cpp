@@ -16,9 +16,9 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerScalarPiece = 256;
-constexpr std::int64_t kRaysPerVectorPiece = 2048;  // at the end of a piece vectors have lanes without rays
+constexpr std::int64_t kRaysPerVectorPiece = 2048;  // at the end of a piece, vectors have idle lanes
 constexpr std::size_t kFewForVectors = 32;
-constexpr std::size_t kRaysAtOnce = 1 << 22;  // what is put in order together
+constexpr std::size_t kRaysAtOnce = 1 << 22;  // size of the groups that are sorted
 constexpr std::size_t kAhead = 6;
 
 void require_same_length(std::size_t rays, std::size_t answers) {
@@ -32,8 +32,8 @@ void prefetch_ray(const Ray& ray) {
   prefetch(reinterpret_cast<const char*>(&ray) + 64);  // the next cache line
 }
 
-// Calls body(first, order) for pieces of the rays on all threads: answer those from `first` on, or, where `order` is
-// not empty, those at its indices counted from `first`. Rays over one tile of ground come together where that pays.
+// Calls body(first, order) for pieces of the rays on all threads: traces those from `first` on or, if `order` is not
+// empty, those at its indices relative to `first`. Groups rays over the same tile of ground where that pays.
 template <class Body>
 void for_each_piece(const HeightField& field, std::span<const Ray> rays, std::int64_t rays_per_piece,
                     const Body& body) {
@@ -57,7 +57,7 @@ void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Ans
   for_each_piece(field, rays, kRaysPerScalarPiece,
                  [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {
                    for (std::size_t i = 0; i < count; ++i) {
-                     // In another order than they lie, rays have to be sent for early.
+                     // Rays that are not traced in memory order must be prefetched.
                      if (i + kAhead < order.size()) prefetch_ray(rays[first + order[i + kAhead]]);
                      answer(first + (order.empty() ? i : order[i]));
                    }
@@ -67,7 +67,7 @@ void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Ans
 // Many rays at once, by answer(rays, answers).
 template <class Result, class Answer>
 void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<Result> results, const Answer& answer) {
-  // A thousand rays are work for several threads, too.
+  // A thousand rays are also worth several threads.
   const auto some = static_cast<std::int64_t>(rays.size() / 8);
   const std::int64_t piece = std::clamp(some, kRaysPerScalarPiece, kRaysPerVectorPiece);
   for_each_piece(field, rays, piece, [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {

@@ -24,7 +24,7 @@ struct HeightRays {
   static Hit none() { return {}; }
 };
 
-// Rays and answers lie in blocks, and the states of interrupted marches stay on the device.
+// Rays and results are stored in blocks, and the states of interrupted marches stay on the device.
 class HeightRuns : public RaySlices<HeightRays> {
  public:
   HeightRuns(const Device& device, std::uint32_t rays_at_once)
@@ -55,7 +55,7 @@ class HeightRuns : public RaySlices<HeightRays> {
     });
   }
 
-  // The rays of the last slice once more, which are still there.
+  // Marches the rays of the last slice again, which are still in device memory.
   template <class Begin, class GoOn>
   void ask_again(const Begin& begin, const GoOn& go_on) {
     passes_.clear();
@@ -85,7 +85,7 @@ glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& set
   return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
 }
 
-// What a shader for the target is made for.
+// The kind of ground that a shader for the target is specialised for.
 std::uint32_t ground_kind(const DeviceTarget& target, bool starts) {
   return glsl::batch_ground_kind(device_field(*target.field, nullptr).flags | (starts ? glsl::kScarpStarts : 0),
                                  target.ground->layout().sample_type);
@@ -141,7 +141,7 @@ struct DeviceQueries::Impl {
         },
         [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& hit) {
           answer(i, prepared, hit);
-          // The shader counts a step for a ray that does not march, too.
+          // The shader also counts a step for a ray that does not march.
           if (!costs.empty()) costs[i] = prepared.marches ? DeviceRayCost{hit.steps, hit.fetches} : DeviceRayCost{};
         });
   }

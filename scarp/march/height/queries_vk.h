@@ -33,7 +33,7 @@ struct DeviceQuerySettings {
   std::uint32_t rays_at_once = 1 << 18;  ///< size of a slice: rays on the device at once, 1 to 4,000,000
   int turns_at_once =
       60'000;  ///< maximum loop iterations per ray in one run, 1 to 60,000; longer marches continue in the next run
-  bool exact_only = false;  ///< without the lean first pass: as shaders that have no buffers march, and slower
+  bool exact_only = false;  ///< skips the lean first pass: slower; marches as shaders without buffers do
   /// Whether naive, fixed-step, relaxed and lipschitz over height fields end where a ray rises above the highest
   /// sample, as max-mip does. Points before that are the same. Hits beyond, above all ground but within a march's
   /// tolerance, are then lost.
@@ -71,7 +71,7 @@ class DeviceQueries {
                 std::span<DeviceRayCost> costs = {});
 
   /// Marches the rays of the last call once more, or its last slice; their answers stay on the device. For benchmarks:
-  /// cards lower their clocks while the host prepares rays, so times mean something after many runs in a row.
+  /// cards lower their clocks while the host prepares rays, so times are meaningful only after many runs in a row.
   void march_again();
 
   /// Returns the times of the last call's runs. A slice takes one run, or more if marches exceed turns_at_once.

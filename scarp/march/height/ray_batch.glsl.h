@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A batch of rays on a device: what the compute shaders of the marches and the C++ that calls them (queries_vk.h) agree
-// upon, and the ground as the marches ask for it (cell_surface.glsl.h, max_mip.glsl.h), from
+// A batch of rays on a device: the interface between the compute shaders of the marches and the C++ that calls them
+// (queries_vk.h), and the functions that the marches require (cell_surface.glsl.h, max_mip.glsl.h), from
 // accel/ground_buffers.glsl.h.
 //
 //   RayBatch ──rays──▶ RayBlock RayBlock ...     one invocation for each ray (ray_blocks.glsl.h)
@@ -9,9 +9,9 @@
 //       │  └──under_way─▶ a word                 1 if there are such; who begins a run clears it
 //       └────ground──▶ GroundBuffers
 //
-// A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and goes on in the next run, which is the
-// same with `resume`. `max-mip` has two shaders: max_mip.comp answers nearly all rays, and max_mip_exact.comp those
-// that it leaves under way.
+// A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and continues in the next run, which has
+// `resume` set. `max-mip` has two shaders: max_mip.comp traces nearly all rays, and max_mip_exact.comp those that it
+// leaves under way.
 #ifndef SCARP_MARCH_RAY_BATCH_GLSL_H
 #define SCARP_MARCH_RAY_BATCH_GLSL_H
 
@@ -24,21 +24,21 @@ SCARP_GLSL_BEGIN
 
 // Specialisation constants of all marches.
 const uint kBatchThreads = 0u;     // of a workgroup
-const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
-const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
+const uint kBatchAny = 1u;         // whether anything is hit, instead of the closest hit: max-mip only
+const uint kBatchStatistics = 2u;  // whether steps and fetches are counted; otherwise zeros
 const uint kBatchMarch = 3u;       // ScarpSampling::march
 const uint kBatchGround = 4u;      // batch_ground_kind(), or kBatchAnyGround: read from the ground
 const uint kBatchRefinement = 5u;  // ScarpSampling::refinement, for the first pass
 
 const uint kBatchAnyGround = 0xffffffffu;
 const uint kBatchSamplesShift = 16u;
-/// What a shader can be made for: ScarpField::flags and GroundBuffers::sample_type.
+/// The ground that a shader is specialised for: ScarpField::flags and GroundBuffers::sample_type.
 SCARP_FN uint batch_ground_kind(uint flags, uint sample_type) { return flags | (sample_type << kBatchSamplesShift); }
 
 // Values of RayBatch::resume.
 const uint kBatchBegin = 0u;   // march all rays
-const uint kBatchResume = 1u;  // go on with those that have been interrupted
-const uint kBatchSecond = 2u;  // march those that the first pass has left
+const uint kBatchResume = 1u;  // continue those that were interrupted
+const uint kBatchSecond = 2u;  // march those that the first pass left
 
 /// The push constants of all marches.
 struct RayBatch {
@@ -53,7 +53,7 @@ struct RayBatch {
   Address under_way;
 };
 
-/// The status of a march that goes on in the next run.
+/// The status of a march that continues in the next run.
 const int kBatchUnderWay = kScarpDoubtful;
 
 #ifndef __cplusplus
@@ -71,19 +71,19 @@ layout(push_constant, scalar) uniform Push { RayBatch batch; };
 #define SCARP_GROUND_TYPE (batch_ground == kBatchAnyGround ? opened_type : batch_ground >> kBatchSamplesShift)
 #include "scarp/march/height/ground_host.glsl.h"
 
-// The ray of an invocation, and the block of its answer.
+// The ray of an invocation, and the block of its result.
 ScarpRay batch_ray(uint i) {
   return ray_of_block(RayBlockAt(ray_block_address(batch.rays, i, kRayBlockBytes)), i % kRayBlock);
 }
 HitBlockAt batch_hits(uint i) { return HitBlockAt(ray_block_address(batch.hits, i, kHitBlockBytes)); }
 
-// Whether this run is to march ray i.
+// Whether this run marches ray i.
 bool batch_asks(uint i) {
   if (i >= batch.count) return false;
   return batch.resume == kBatchBegin || batch_hits(i).is.status[i % kRayBlock] == kBatchUnderWay;
 }
 
-// The ground as a ray has it.
+// The ground for a ray.
 ScarpField batch_field(ScarpRay ray) {
   ScarpField field = open_ground(batch.ground);
   field.flags = batch_ground == kBatchAnyGround ? field.flags | kScarpStarts : batch_ground & 0xffffu;
@@ -91,15 +91,15 @@ ScarpField batch_field(ScarpRay ray) {
   return field;
 }
 
-// Some march has not come to its end.
+// Marks that some march has not finished.
 void batch_mark() { BatchWord(batch.under_way).word = 1u; }
-// That of ray i has not.
+// Marks that the march of ray i has not finished.
 void batch_interrupt(uint i) {
   batch_hits(i).is.status[i % kRayBlock] = kBatchUnderWay;
   batch_mark();
 }
 
-// Writes the answer to ray i.
+// Writes the result of ray i.
 void batch_answer(uint i, ScarpHit hit) {
   if (!batch_statistics) {
     hit.steps = 0u;

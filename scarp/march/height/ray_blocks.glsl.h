@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Rays and their answers in a device's memory: by blocks of 64, in a block number by number.
+// Rays and their results in device memory: in blocks of 64, and component by component within a block.
 //
 //   block 0                                        block 1
 //   | cell_x of 64 rays | cell_y of 64 | ...       | cell_x of the next 64 | ...
 //
-// The invocations of a subgroup read the same number of successive rays at once: in this order those are words side by
-// side, one transaction of the memory. One ray after the other, 92 bytes apart, they would be one transaction each.
+// The invocations of a subgroup read the same component of successive rays at once: in this order these are adjacent
+// words, a single memory transaction. Stored ray by ray, 92 bytes apart, they would be one transaction each.
 //
 // Text of C++ and GLSL.
 #ifndef SCARP_MARCH_RAY_BLOCKS_GLSL_H
@@ -46,7 +46,7 @@ struct RayBlock {
   float cell_time[kRayBlock];
 };
 
-/// Their answers: members of ScarpHit.
+/// Their results: members of ScarpHit.
 struct HitBlock {
   int status[kRayBlock];
   int cell_x[kRayBlock];
@@ -67,10 +67,10 @@ const uint kHitBlockBytes = 2304u;
 static_assert(sizeof(RayBlock) == kRayBlockBytes && sizeof(RayBlock) == kRayBlock * sizeof(ScarpRay));
 static_assert(sizeof(HitBlock) == kHitBlockBytes && sizeof(HitBlock) == kRayBlock * sizeof(ScarpHit));
 
-/// Blocks that so many rays take.
+/// Number of blocks for this many rays.
 constexpr std::uint64_t ray_blocks(std::uint64_t rays) { return (rays + kRayBlock - 1) / kRayBlock; }
 
-// What a buffer reference is in GLSL.
+// Counterpart of a buffer reference in GLSL.
 struct RayBlockAt {
   const RayBlock& is;
 };
@@ -143,7 +143,7 @@ SCARP_FN void put_ray(RayBlockTo block, uint i, ScarpRay ray) {
   block.is.cell_time[i] = ray.cell_time;
 }
 
-/// Answer i of a block.
+/// Result i of a block.
 SCARP_FN ScarpHit hit_of_block(HitBlockAt block, uint i) {
   ScarpHit hit;
   hit.status = block.is.status[i];
@@ -156,7 +156,7 @@ SCARP_FN ScarpHit hit_of_block(HitBlockAt block, uint i) {
   return hit;
 }
 
-/// Writes answer i of a block.
+/// Writes result i of a block.
 SCARP_FN void put_hit(HitBlockAt block, uint i, ScarpHit hit) {
   block.is.status[i] = hit.status;
   block.is.cell_x[i] = hit.cell.x;

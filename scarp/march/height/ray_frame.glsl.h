@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A ray over a height field in single precision: the field and the ray as a shader is given them, and the frame of
+// A ray over a height field in single precision: the field and the ray in the form of shaders, and the frame of
 // reference in which floats are exact enough.
 //
-//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray begins anew:
+//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray restarts:
 //   at |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o comes
 //   from |        __-+-          |     the ray's own numbers in twice a float's precision, never from the frame before,
 //   so |    _--    |           |     nothing accumulates; and s0 is a float, whatever it was computed from: it has no
 //   error.
 //   +-----------+-----------+
 //
-// Units: x in columns, y in rows (southwards), z in sample units. Time s counts from the ray's begin, in lengths of its
-// direction, whose longer horizontal component is 1 to 2 cells. Derivation of what rounding does: doc/dev/numerics.md.
+// Units: x in columns, y in rows (southwards), z in sample units. Time s counts from the ray's start, in lengths of its
+// direction, whose longer horizontal component is 1 to 2 cells. Derivation of the rounding errors: doc/dev/numerics.md.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_RAY_FRAME_GLSL_H
@@ -24,18 +24,18 @@ SCARP_GLSL_BEGIN
 
 const uint kScarpTriangles = 1u;  ///< two triangles per cell instead of a bilinear patch
 const uint kScarpHoles = 2u;      ///< some samples are nodata
-const uint kScarpWraps = 4u;      ///< the field goes on with itself
-const uint kScarpSolid = 8u;      ///< there is rock under the sheet
-const uint kScarpStarts = 16u;    ///< some rays may begin on the surface (max_mip_lean.glsl.h)
+const uint kScarpWraps = 4u;      ///< the field wraps
+const uint kScarpSolid = 8u;      ///< the ground is solid
+const uint kScarpStarts = 16u;    ///< some rays may start on the surface (max_mip_lean.glsl.h)
 
-/// What a march has to know of a height field besides its samples and bounds. All in sample units.
+/// Properties of a height field, besides its samples and bounds, that a march needs. All in sample units.
 struct ScarpField {
   ivec2 cells;          ///< columns and rows of cells, at least 1
-  ivec2 samples;        ///< columns and rows of samples; as many as cells where the last is followed by the first
-  int top_level;        ///< of the pyramid, at least 1; 0: there is none
+  ivec2 samples;        ///< columns and rows of samples; as many as cells if the last is followed by the first
+  int top_level;        ///< of the pyramid, at least 1; 0: no pyramid
   uint flags;           ///< kScarpTriangles and so on
   float code_base;      ///< height of a pyramid entry: code_base + code_base_low + code_step * code
-  float code_base_low;  ///< what a float of the base leaves
+  float code_base_low;  ///< remainder of the base
   float code_step;      ///< height of one code
   float code_per_step;  ///< 1 / code_step
   float code_over;      ///< higher than the highest sample
@@ -44,67 +44,67 @@ struct ScarpField {
   float highest;        ///< sample
 };
 
-const uint kScarpOnSurface = 1u;      ///< begins on the surface of its cell: above it by definition, z is not read
-const uint kScarpFromOutside = 2u;    ///< comes in through the border
-const uint kScarpAbove = 4u;          ///< begins no lower than the highest sample
+const uint kScarpOnSurface = 1u;      ///< starts on the surface of its cell: above it by definition, z is not read
+const uint kScarpFromOutside = 2u;    ///< enters through the border
+const uint kScarpAbove = 4u;          ///< starts no lower than the highest sample
 const uint kScarpUpright = 8u;        ///< straight up or down: direction.x and .y are 0
-const uint kScarpThroughWalls = 16u;  ///< meets no walls of solid ground; read by batches (ray_batch.glsl.h)
+const uint kScarpThroughWalls = 16u;  ///< ignores walls of solid ground; read by batches (ray_batch.glsl.h)
 
-/// A ray that begins over the field. Whoever has doubles gives all numbers as two floats (march/height/device_ray.h);
+/// A ray that starts over the field. Callers with doubles pass all numbers as two floats (march/height/device_ray.h);
 /// the low parts may be zero.
 struct ScarpRay {
-  ivec2 cell;          ///< over which it begins
-  vec2 place;          ///< where in it, 0..1, both ends included
-  vec2 place_low;      ///< what floats of it leave, here and below
+  ivec2 cell;          ///< over which it starts
+  vec2 place;          ///< position in it, 0..1, both ends included
+  vec2 place_low;      ///< remainder in float, here and below
   vec3 direction;      ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
   vec3 direction_low;  ///< likewise
-  vec2 per_direction;  ///< 1 / direction; kScarpNever where that is 0
-  float z;             ///< at its begin
+  vec2 per_direction;  ///< 1 / direction; kScarpNever where the direction is 0
+  float z;             ///< at its start
   float z_low;         ///< likewise
   float end;           ///< the last time, included; at most kScarpNever
   float end_low;       ///< likewise
   uint flags;          ///< kScarpOnSurface and so on
-  // For the marches that take samples along the ray (height_probe.glsl.h).
-  float travelled;   ///< time from the begin of the ray's range to this ray's
+  // For the sampling marches (height_probe.glsl.h).
+  float travelled;   ///< time from the start of the ray's range to this ray's start
   float exit;        ///< when it leaves the field or its range ends; `end` may be before
-  float per_height;  ///< time in which the ray goes as far as one sample unit is high
-  float cell_time;   ///< time in which it goes as far as a cell is long, its shorter side
+  float per_height;  ///< time in which the ray travels the height of one sample unit
+  float cell_time;   ///< time in which it travels the shorter side of a cell
 };
 
-/// The answer. Cell, place and time mean something for hits (the time for exhausted, too).
+/// The result. Cell, place and time are defined for hits (time also for exhausted).
 struct ScarpHit {
   int status;      ///< kScarpMiss and so on
   ivec2 cell;      ///< column and row, counted from the field's first
   vec2 place;      ///< in the cell, 0..1
   float time;      ///< time + time_low is the ray's time there
-  float time_low;  ///< may be as large as `time`: it counts from the tile's begin
-  uint steps;      ///< blocks, cells or points looked at
+  float time_low;  ///< may be as large as `time`: it counts from the tile's start
+  uint steps;      ///< blocks, cells or points visited
   uint fetches;    ///< samples and entries of the pyramid read
 };
 
-/// More turns of a loop than any march takes; half of the whole numbers, so that counting past it is no overflow.
+/// More loop iterations than any march takes; half of the integer range, so that counting past it does not overflow.
 const int kScarpAllTurns = 1073741824;
 /// Unit roundoff of a float, 2^-24.
 const float kScarpUnit = 5.9604644775390625e-8f;
-/// Tiles are 2^kScarpTileLevel cells wide, and no block that is looked at is wider.
+/// Tiles are 2^kScarpTileLevel cells wide, and no visited block is wider.
 const int kScarpTileLevel = 10;
-/// Cells up to which a ray is followed over a field that wraps round: floats count whole numbers up to 2^24.
+/// Cells up to which a ray is followed over a wrapped field: floats represent integers up to 2^24.
 const int kScarpFarthestCell = 8388608;
 
 /// The ray in a tile.
 struct ScarpFrame {
   ivec2 begin;  ///< the tile's first column and row
   ivec2 end;    ///< its last ones + 1
-  ivec2 lap;    ///< the first column and row of this copy of the field; 0 but where it wraps round
-  vec2 o;       ///< where the ray is at local time 0, counted from `begin`
+  ivec2 lap;    ///< the first column and row of this copy of the field; 0 unless it wraps
+  vec2 o;       ///< position of the ray at local time 0, relative to `begin`
   vec2 o_low;
   float s0;     ///< the ray's time at local time 0
   float base;   ///< heights count from it
-  float z;      ///< the ray's height at local time 0, counted from `base`
+  float z;      ///< the ray's height at local time 0, relative to `base`
   float t_end;  ///< the ray's end, in local time
 };
 
-/// A miss at no cost: what marches begin with.
+/// A miss without cost: the initial state of marches.
 SCARP_FN ScarpHit scarp_no_hit() {
   ScarpHit hit;
   hit.status = kScarpMiss;
@@ -117,8 +117,8 @@ SCARP_FN ScarpHit scarp_no_hit() {
   return hit;
 }
 
-/// The frame of the tile that holds `cell` of the copy of the field that begins at `lap`; local time 0 is the ray's
-/// time s0. Error of o: 2^-45 of the cells from the ray's begin.
+/// The frame of the tile that contains `cell` of the copy of the field that starts at `lap`; local time 0 is the ray's
+/// time s0. Error of o: 2^-45 of the cells from the ray's start.
 SCARP_FN ScarpFrame scarp_frame(ScarpField field, ScarpRay ray, ivec2 cell, ivec2 lap, float s0) {
   ScarpFrame frame;
   frame.begin = ivec2((cell.x >> kScarpTileLevel) << kScarpTileLevel, (cell.y >> kScarpTileLevel) << kScarpTileLevel);
@@ -140,41 +140,41 @@ SCARP_FN ScarpFrame scarp_frame(ScarpField field, ScarpRay ray, ivec2 cell, ivec
   return frame;
 }
 
-/// When the ray crosses line k of the columns, in local time: by ONE expression, whoever asks. Each operation rounds
-/// monotonically, so lines are crossed in their order.
+/// Local time at which the ray crosses line k of the columns, by ONE expression for all callers. Each operation rounds
+/// monotonically, so lines are crossed in order.
 SCARP_FN float scarp_line_x(ScarpFrame frame, ScarpRay ray, int k) {
-  // A ray along a line belongs to the cell that it begins in.
+  // A ray along a line belongs to the cell that it starts in.
   if (ray.direction.x == 0.0f) return k + frame.lap.x > ray.cell.x ? kScarpNever : -kScarpNever;
   SCARP_PRECISE float t = ((float(k - frame.begin.x) - frame.o.x) - frame.o_low.x) * ray.per_direction.x;
   return t;
 }
-/// And line k of the rows.
+/// The same for line k of the rows.
 SCARP_FN float scarp_line_y(ScarpFrame frame, ScarpRay ray, int k) {
   if (ray.direction.y == 0.0f) return k + frame.lap.y > ray.cell.y ? kScarpNever : -kScarpNever;
   SCARP_PRECISE float t = ((float(k - frame.begin.y) - frame.o.y) - frame.o_low.y) * ray.per_direction.y;
   return t;
 }
 
-/// Place in a column of cells at local time t, 0..1.
+/// Position in a column of cells at local time t, 0..1.
 SCARP_FN float scarp_place_x(ScarpFrame frame, ScarpRay ray, float t, int col) {
   SCARP_PRECISE float u = ((frame.o.x - float(col - frame.begin.x)) + frame.o_low.x) + ray.direction.x * t;
   return clamp(u, 0.0f, 1.0f);
 }
-/// And in a row of cells.
+/// The same in a row of cells.
 SCARP_FN float scarp_place_y(ScarpFrame frame, ScarpRay ray, float t, int row) {
   SCARP_PRECISE float v = ((frame.o.y - float(row - frame.begin.y)) + frame.o_low.y) + ray.direction.y * t;
   return clamp(v, 0.0f, 1.0f);
 }
 
-/// The ray's height at local time t, counted from the frame's base.
+/// The ray's height at local time t, relative to the frame's base.
 SCARP_FN float scarp_ray_height(ScarpFrame frame, ScarpRay ray, float t) {
   SCARP_PRECISE float z = frame.z + ray.direction.z * t;
   return z;
 }
 
-/// The most that rounding adds to ray height - surface height at local time t, in sample units, where surface heights,
-/// counted from the base, are up to `height` and differ by `relief` from one corner of a cell to another: 16 units of
-/// the quantities that go into it, of which numerics.md counts 12.
+/// Maximum rounding error of ray height - surface height at local time t, in sample units, for surface heights up to
+/// `height` relative to the base that differ by `relief` between corners of a cell: 16 units of the operands, of which
+/// numerics.md counts 12.
 SCARP_FN float scarp_rounding(ScarpFrame frame, ScarpRay ray, float t, float height, float relief) {
   float sideways = abs(ray.direction.x * t) + abs(ray.direction.y * t) + 1.0f;
   return 16.0f * kScarpUnit * (abs(frame.z) + abs(ray.direction.z * t) + height + sideways * relief);

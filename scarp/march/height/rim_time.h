@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How long a ray stays beside the lines of a field, at heights of its ground: whether rims of holes may be crossed at
-// the time of a line, or have to be followed (max_mip_rims.h).
+// How long a ray stays beside grid lines at heights of the ground: determines whether rims of holes may be crossed at
+// the time of a line, or must be followed (max_mip_rims.h).
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace scarp {
 
-/// Limits a time range to that in which the ray is between two heights, in sample units, and a margin that is far
-/// beyond rounding. Returns whether any is left.
+/// Limits a time range to the part in which the ray is between two heights, in sample units, with a margin far beyond
+/// rounding. Returns whether any is left.
 inline bool clip_to_heights(const GridRay& ray, double low, double high, double& begin, double& end) {
   const double room = (high - low) + 0x1p-40 * (std::abs(ray.origin.z) + std::abs(low) + std::abs(high));
   const double z = ray.origin.z, dz = ray.direction.z;
@@ -21,8 +21,8 @@ inline bool clip_to_heights(const GridRay& ray, double low, double high, double&
   return begin <= end;
 }
 
-/// Returns whether the ray, in this time and between these heights, stays so long within the allowance of a line that
-/// its height there is not known to kQuickRim.
+/// Returns whether the ray, in this time and between these heights, stays within the allowance of a line for so long
+/// that its height there is not known to kQuickRim.
 inline bool lingers_at_line(const HeightField& field, const GridRay& ray, double low, double high, double begin,
                             double end, double seam) {
   if (!clip_to_heights(ray, low, high, begin, end)) return false;

@@ -27,30 +27,30 @@ inline double rounding_of_clearance(const HeightField& field, const GridRay& ray
   return rounding_of_clearance(field, ray, t, field.max_sample() - field.min_sample());
 }
 
-/// Cells by which a line of the field may seem to be off where a ray crosses it: by rounding, and by `seam`, that of
-/// HeightTarget. `axis`: 0 for lines of constant column, 1 for those of constant row.
+/// Returns the distance in cells by which a grid line may appear displaced where a ray crosses it: by rounding, and by
+/// HeightTarget's `seam`. `axis`: 0 for lines of constant column, 1 for those of constant row.
 inline double rounding_of_line(const HeightField& field, const GridRay& ray, int axis, double seam) {
   return seam + HeightField::rounding_of_line(ray.origin[axis], axis == 0 ? field.cell_cols() : field.cell_rows());
 }
 
-/// The larger of the two: how far apart the places are that two fields, or ray and line, take for one.
+/// The larger of the two: the maximum distance between positions that two fields, or a ray and a line, treat as one.
 inline double widest_rounding_of_line(const HeightField& field, const GridRay& ray, double seam) {
   return std::max(rounding_of_line(field, ray, 0, seam), rounding_of_line(field, ray, 1, seam));
 }
 
-/// Allowances by which the height of a ray may change, per relief of the field, while it crosses the rim of a hole.
-/// With an allowance of at most 2^-26 of a cell that is 2^-16 of the relief. Rays that change more are followed within
-/// the allowance (max_mip_rims.h).
+/// Change of a ray's height over the allowance, relative to the relief of the field, up to which a crossing of a hole's
+/// rim counts as one point. With an allowance of at most 2^-26 of a cell that is 2^-16 of the relief. Steeper rays are
+/// followed within the allowance (max_mip_rims.h).
 constexpr double kQuickRim = 0x1p10;
 
-/// Returns the height, in sample units, by which a ray may be below the surface where it comes to a rim, the border of
-/// the field or of a hole, and touch it: the rounding of its clearance, and the difference of heights along the edge
-/// between two places that are as far apart as the allowance of a line.
+/// Returns the maximum height, in sample units, by which a ray may be below the surface at a rim (the border of the
+/// field or of a hole) and still touch it: the rounding of its clearance, plus the height difference along the edge
+/// over the allowance of a line.
 inline double rounding_at_rim(const HeightField& field, const GridRay& ray, double t, double relief, double seam) {
   return rounding_of_clearance(field, ray, t, relief) + widest_rounding_of_line(field, ray, seam) * relief;
 }
 
-/// The same where a ray comes out of a hole over a line of an axis: with the change of its clearance in the time of the
+/// The same for a ray that leaves a hole across a line of an axis: includes the change of its clearance during the
 /// crossing, at most kQuickRim.
 inline double rounding_at_hole(const HeightField& field, const GridRay& ray, double t, double relief, int axis,
                                double seam) {
@@ -60,7 +60,7 @@ inline double rounding_at_hole(const HeightField& field, const GridRay& ray, dou
   return rounding_at_rim(field, ray, t, relief, seam) + std::min(off * rate / std::abs(ray.direction[axis]), most);
 }
 
-/// The axis whose lines the ray crosses faster: that of the time at which it passes a node.
+/// The axis whose lines the ray crosses faster; it determines the time at which the ray passes a node.
 inline int faster_axis(const GridRay& ray) { return std::abs(ray.direction.x) >= std::abs(ray.direction.y) ? 0 : 1; }
 
 /// Longest time between the two lines of a node that count as crossed at once.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Slopes of a height field for shading, in single precision: HeightField::gradient() and shading_normal() for shaders.
-// In sample units per column (x) and per row (y). Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it has
-// defined what cell_surface.glsl.h asks for.
+// In sample units per column (x) and per row (y). Compiles as C++ and GLSL, including GLSL ES 3.0. The including file
+// must define what cell_surface.glsl.h requires.
 #ifndef SCARP_MARCH_SURFACE_NORMAL_GLSL_H
 #define SCARP_MARCH_SURFACE_NORMAL_GLSL_H
 
@@ -10,7 +10,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Of the surface itself, at a place in a cell that is no hole.
+/// Slope of the surface itself, at a position in a cell that is not a hole.
 SCARP_FN vec2 scarp_slope(ScarpField field, ivec2 cell, vec2 place) {
   ScarpCell h = scarp_cell(field, cell.x, cell.y, 0.0f);
   if ((field.flags & kScarpTriangles) != 0u) {
@@ -23,18 +23,18 @@ SCARP_FN vec2 scarp_slope(ScarpField field, ivec2 cell, vec2 place) {
   return vec2(hu + twist * place.y, hv + twist * place.x);
 }
 
-/// The sample at a node, or nothing beyond a border and over a hole.
+/// The sample at a node; false beyond a border and over a hole.
 struct ScarpNode {
   bool valid;
   float value;
 };
-/// The one at (col, row), which may be beyond the border: there a field that wraps goes on with itself.
+/// The sample at (col, row), which may be beyond the border: a wrapped field continues there.
 SCARP_FN ScarpNode scarp_node(ScarpField field, int col, int row) {
   ScarpNode node;
   node.valid = false;
   node.value = 0.0f;
   if ((field.flags & kScarpWraps) != 0u) {
-    // A shared border is one node: the one beyond it is the second of the other side.
+    // A shared border is one node: the node beyond it is the second on the other side.
     if (col < 0 || col >= field.samples.x) col = (col + field.cells.x) % field.cells.x;
     if (row < 0 || row >= field.samples.y) row = (row + field.cells.y) % field.cells.y;
   }

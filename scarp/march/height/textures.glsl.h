@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ground in two textures, for hosts that have neither buffers nor addresses, such as WebGL 2. What the marches ask
-// of their host (cell_surface.glsl.h, max_mip.glsl.h), answered by texelFetch.
+// The ground in two textures, for hosts without buffers and addresses, such as WebGL 2. Implements the functions that
+// the marches require of their host (cell_surface.glsl.h, max_mip.glsl.h) with texelFetch.
 //
 //   scarp_heights   32-bit float, one channel: texel (col, row) is the sample there
 //   scarp_bounds    32-bit float, two channels, with mip levels: texel (col, row) of mip level l - 1 holds the maximum
@@ -8,12 +8,11 @@
 //                   are powers of two no less than those of level 1, so that every level has room; what lies beyond
 //                   means nothing
 //
-// Both with the filters NEAREST, but for the minification of scarp_bounds: NEAREST_MIPMAP_NEAREST, for without a filter
-// that knows of mip levels all but the first mean nothing to texelFetch. A host that lets nobody fill mip levels
-// (Shadertoy's buffers have none of one's own) puts them beside one another into one level, and writes scarp_maximum
-// and scarp_minimum itself.
+// Both use NEAREST filters, except for the minification of scarp_bounds: NEAREST_MIPMAP_NEAREST, because without a
+// mipmap filter texelFetch reads only the first level. Hosts that cannot fill mip levels (Shadertoy) place them side by
+// side in one level, and implement scarp_maximum and scarp_minimum themselves.
 //
-// GLSL, GLSL ES 3.0 included. Who includes it has declared, before,
+// GLSL, including GLSL ES 3.0. The including file must declare before:
 //   uniform highp sampler2D scarp_heights, scarp_bounds;
 //   uniform highp float scarp_nodata;                      value of a hole; NaN is one anyway
 #ifndef SCARP_MARCH_TEXTURES_GLSL_H
@@ -26,7 +25,7 @@ SCARP_GLSL_BEGIN
 /// The sample at a node.
 SCARP_FN float scarp_sample(int col, int row) { return texelFetch(scarp_heights, ivec2(col, row), 0).x; }
 
-/// Whether a sample is a hole. NaN is known by its bits: comparisons of NaN are the compiler's.
+/// Whether a sample is a hole. NaN is recognised by its bits: compilers may optimise comparisons of NaN.
 SCARP_FN bool scarp_is_nodata(float value) {
   return value == scarp_nodata || (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
 }
@@ -35,7 +34,7 @@ SCARP_FN bool scarp_is_nodata(float value) {
 SCARP_FN float scarp_maximum(int level, int col, int row) {
   return texelFetch(scarp_bounds, ivec2(col, row), level - 1).x;
 }
-/// The minimum code; 0 where there is none.
+/// The minimum code; 0 if there is none.
 SCARP_FN float scarp_minimum(int level, int col, int row) {
   return texelFetch(scarp_bounds, ivec2(col, row), level - 1).y;
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Rays that a shader makes itself, as exact as those of a host with doubles (march/height/device_ray.h): every number
-// is two floats. For frames whose rays nobody uploads.
+// Rays that a shader generates itself, as exact as those of a host with doubles (march/height/device_ray.h): every
+// number is two floats. For frames whose rays are not uploaded.
 //
 //   line in grid units ──▶ clipped to border, highest sample and end ──▶ ScarpRay of a march ──▶ time on the line
 //
-// Times are found by a quotient and one correction by what is left there, right to 2^-44 of the coordinates that the
-// line has from sample (0, 0) on; so places are where a ray of doubles has them but for 2^-24 of a cell 2^20 cells
-// away.
+// Times are a quotient plus one correction by its remainder, accurate to 2^-44 of the line's coordinates relative to
+// sample (0, 0). Positions thus agree with those of a ray in doubles to 2^-24 of a cell at 2^20 cells.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_TWO_FLOAT_RAY_GLSL_H
@@ -25,10 +24,10 @@ struct ScarpLine {
   vec3 direction_low;
 };
 
-/// A ray of a march, and how its times lie on the line: t = begin + time * per_time.
+/// A ray of a march, and the mapping of its times to the line: t = begin + time * per_time.
 struct ScarpSent {
-  int marches;          ///< 0: there is nothing of the field on the way
-  ScarpRay ray;         ///< means something where it marches
+  int marches;          ///< 0: the field is not on its way
+  ScarpRay ray;         ///< defined if it marches
   ScarpTwoFloat begin;  ///< on the line
   float per_time;       ///< a power of two
 };
@@ -40,7 +39,7 @@ SCARP_FN ScarpTwoFloat scarp_along(float origin, float origin_low, float directi
   SCARP_PRECISE float low = at.low + direction * t.low;
   return scarp_two_sum(at.high, low);
 }
-/// Where a line is at time t: the column, from column 0.
+/// Position of a line at time t: the column, from column 0.
 SCARP_FN ScarpTwoFloat scarp_line_col(ScarpLine line, ScarpTwoFloat t) {
   return scarp_along(line.origin.x, line.origin_low.x, line.direction.x, line.direction_low.x, t);
 }
@@ -53,7 +52,7 @@ SCARP_FN ScarpTwoFloat scarp_line_height(ScarpLine line, ScarpTwoFloat t) {
   return scarp_along(line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z, t);
 }
 
-/// When a coordinate is `at`; its direction is not 0. kScarpNever or its negative where that is far away.
+/// Time at which a coordinate is `at`; its direction is not 0. kScarpNever or its negative if that is far away.
 SCARP_FN ScarpTwoFloat scarp_time_at(ScarpTwoFloat at, float origin, float origin_low, float direction,
                                      float direction_low) {
   float quotient = ((at.high - origin) + (at.low - origin_low)) / direction;
@@ -63,22 +62,22 @@ SCARP_FN ScarpTwoFloat scarp_time_at(ScarpTwoFloat at, float origin, float origi
   return scarp_two_sum(quotient, -left / direction);
 }
 
-/// The larger of two times; a where they are the same.
+/// The larger of two times; a if they are equal.
 SCARP_FN ScarpTwoFloat scarp_two_later(ScarpTwoFloat a, ScarpTwoFloat b) {
   if (scarp_two_less(a, b)) return b;
   return a;
 }
-/// The smaller one; b where they are the same.
+/// The smaller of two times; b if they are equal.
 SCARP_FN ScarpTwoFloat scarp_two_earlier(ScarpTwoFloat a, ScarpTwoFloat b) {
   if (scarp_two_less(a, b)) return a;
   return b;
 }
 
-/// The times between which a line is over a field's columns (or rows), 0 up to `cells`; begin after end: never.
+/// The time range in which a line is over a field's columns (or rows), 0 to `cells`; empty if begin is after end.
 struct ScarpSpan {
   ScarpTwoFloat begin, end;
 };
-/// Along one axis, of which the line's numbers are given; `cells` is its last line.
+/// Along one axis, given the line's numbers along it; `cells` is its last line.
 SCARP_FN ScarpSpan scarp_span(float origin, float origin_low, float direction, float direction_low, float cells) {
   ScarpSpan span;
   if (direction == 0.0f) {
@@ -103,12 +102,13 @@ SCARP_FN ScarpSpan scarp_span_y(ScarpField field, ScarpLine line) {
   return scarp_span(line.origin.y, line.origin_low.y, line.direction.y, line.direction_low.y, float(field.cells.y));
 }
 
-/// A place along an axis: its cell, and where in it, 0..1, as two floats.
+/// A position along an axis: its cell, and the position in it, 0..1, as two floats.
 struct ScarpAxisPlace {
   int cell;
   float place, place_low;
 };
-/// Of a coordinate, counted from sample 0. Beyond the border it is the border, or the next copy of a field that wraps.
+/// The position of a coordinate relative to sample 0. Beyond the border it is the border, or the next copy of a wrapped
+/// field.
 SCARP_FN ScarpAxisPlace scarp_axis_place(ScarpTwoFloat at, int cells, bool wraps) {
   float whole = floor(at.high);
   ScarpTwoFloat rest = scarp_two_sum(at.high - whole, at.low);
@@ -142,12 +142,12 @@ SCARP_FN float scarp_per_power_below(float a) {
   return uintBitsToFloat(0x7f000000u - (floatBitsToUint(a) & 0x7f800000u));
 }
 
-/// How a line is to be marched.
-const uint kScarpSendSampled = 1u;      ///< by a march that takes samples: not clipped to the highest one
-const uint kScarpSendFromSurface = 2u;  ///< from the surface of a cell, whose place is given; z is read by samplers
+/// Options for the march of a line.
+const uint kScarpSendSampled = 1u;      ///< by a sampling march: not clipped to the highest sample
+const uint kScarpSendFromSurface = 2u;  ///< from the surface of the given cell; z is read by sampling marches
 
-/// The ray of a line from time `begin`, which is 0 from the surface, to `end`, which may be kScarpNever unless the
-/// field wraps round. `cell` and `place` are read from the surface only.
+/// Returns the ray of a line from time `begin`, which is 0 from the surface, to `end`, which may be kScarpNever unless
+/// the field wraps. `cell` and `place` are read from the surface only.
 SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat begin, ScarpTwoFloat end, uint how,
                               ivec2 cell, vec2 place) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
@@ -189,7 +189,7 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
   float dz = line.direction.z;
   if (sampled) {
     if (way.high >= kScarpNever) {
-      // Upright: as far as there is ground.
+      // Upright: down to the lowest ground.
       float ground = dz > 0.0f ? field.highest : field.lowest;
       way = scarp_time_at(scarp_two(ground), line.origin.z, line.origin_low.z, dz, line.direction_low.z);
     }
@@ -228,7 +228,7 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
   // max-mip finds the border by its lines; samples must not lie beyond it.
   ScarpTwoFloat rest = sampled ? over : scarp_two_add(end, scarp_two_negate(sent.begin));
   if (!sampled) {
-    // What is left of the way: only walls are met above or below all ground.
+    // The remaining part: only walls can be hit above or below all ground.
     float relief = max(field.highest - field.lowest, 1.0f);
     bool walls = (field.flags & (kScarpHoles | kScarpSolid)) == (kScarpHoles | kScarpSolid);
     bool endless = over.high >= 0.5f * kScarpNever;
@@ -237,7 +237,7 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
     if (dz > 0.0f) low_way = (max(field.highest - height.high, 0.0f) + relief) / dz;
     if (endless) rest = scarp_two(low_way);
     float moving = min(over.high, low_way);
-    // Who moves by less than 2^-40 of a cell stands still, and does not come to a border by himself.
+    // A ray that moves by less than 2^-40 of a cell counts as not moving, and never reaches a border.
     if (abs(d.x) * moving < 9.0949470177292824e-13f) {
       d.x = 0.0f;
       d_low.x = 0.0f;
@@ -270,7 +270,7 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
   ray.end_low = ray.end > 0.0f && ray.end < kScarpNever ? rest.low * power : 0.0f;
   ray.travelled = sent.begin.high * power;
   ray.exit = ray.end;
-  // Of a line that counts metres: for marches whose steps count cells, the host says how many a cell has.
+  // For a line in metres: the host gives the size of a cell, for marches whose steps count cells.
   ray.per_height = power;
   ray.cell_time = power;
   sent.per_time = per;
@@ -279,7 +279,7 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
   return sent;
 }
 
-/// When, on the line, a march has found something.
+/// Time on the line of a march's result.
 SCARP_FN ScarpTwoFloat scarp_sent_time(ScarpSent sent, ScarpHit hit) {
   ScarpTwoFloat time = scarp_two_sum(hit.time * sent.per_time, hit.time_low * sent.per_time);
   return scarp_two_add(sent.begin, time);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The ground as the traversal of `max-mip` meets it: as it is or, for hits from below, upside down. Upside down all
-// heights are multiplied by -1, and maxima become minima: a ray that hits from below hits that ground from above, at
-// the same t, so that what holds for hits from above holds for those from below. A block with a hole has no minimum:
-// upside down its maximum is that of the highest code.
+// The ground that `max-mip` traverses: as it is or, for hits from below, inverted. Inverted heights are multiplied by
+// -1, and maxima become minima: a ray that hits from below hits the inverted ground from above, at the same t, so
+// everything proven for hits from above holds for hits from below. A block with a hole has no minimum: its inverted
+// maximum is that of the highest code.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ class WalkGround {
   /// Height of code 0, to two roundings, and codes per sample unit.
   double base() const { return base_; }
   double per_step() const { return code_.per_step; }
-  /// Rounding of a height on its way to a code: 6 times 2^-53, upside down 2 more to the base of codes; see
+  /// Rounding of a height when converted to a code: 6 times 2^-53, inverted 2 more for the base of codes; see
   /// numerics.md.
   static constexpr double kRoundingOfCode = (UpsideDown ? 12 : 8) * 0x1p-53;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a traversal of `max-mip` is asked for.
+// The query of a traversal of `max-mip`.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,20 @@
 
 namespace scarp::max_mip {
 
-/// The query: the closest hit, any hit, or what Wanted says: all hits, the closest one that a filter accepts, or the
-/// closest one by bisection. Those share their walks, since compiling more of them takes longer than a test at each
-/// hit.
+/// The query: the closest hit, any hit, or as Wanted specifies: all hits, the closest one that a filter accepts, or the
+/// closest one by bisection. These share one walk: compiling more of them costs more than a test at each hit.
 enum class Ask { closest, any, as_wanted };
 
-/// What a query needs besides the ray.
+/// Parameters of a query besides the ray.
 struct Wanted {
-  bool bisects = false;               ///< as_wanted: the closest hit, by so many
+  bool bisects = false;               ///< as_wanted: the closest hit, by this many
   int halvings = 0;                   ///< halvings
   double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
   std::vector<Hit>* all = nullptr;    ///< as_wanted: receives all hits, unless null
   const HitFilter* accept = nullptr;  ///< as_wanted: null: the first hit is accepted
 };
 
-// Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
+// Look-ahead parameters of any hit, from a search over the rays of scarp-bench (doc/dev/decisions/march.md).
 constexpr std::uint32_t kPatience = 3;  // traversal steps before the first look-ahead: half of the rays need no more
 constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
 constexpr int kProbes = 24;

@@ -3,7 +3,7 @@
 
 namespace scarp {
 
-// A wall stands on the side of its cell through which the ray came in: the one that the hit lies on.
+// A wall is on the side of its cell through which the ray entered: the one that contains the hit.
 dvec3 wall_normal(const Ray& ray, const Hit& hit) {
   const dvec3& d = ray.direction;
   const double from_x = d.x > 0 ? hit.u : 1 - hit.u, from_y = d.y > 0 ? 1 - hit.v : hit.v;

@@ -188,7 +188,7 @@ class Evaluation {
                   hull(range, (one - a) * ((one - b) * h->h00 + b * h->h01) + a * ((one - b) * h->h10 + b * h->h11));
               continue;
             }
-            // Each of the two planes where the box overlaps its triangle.
+            // Each of the two planes whose triangle the box overlaps.
             if (u.lower() + v.lower() <= 1)
               range = hull(range, h->h00 + a * (Interval(h->h10) - h->h00) + b * (Interval(h->h01) - h->h00));
             if (u.upper() + v.upper() >= 1)

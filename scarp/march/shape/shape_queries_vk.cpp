@@ -20,7 +20,7 @@ constexpr std::uint32_t kSphereTraceWords[] = {
 #include "scarp/march/shape/sphere_trace.comp.inc"
 };
 
-// Values that may follow the last step of a run, and the one that it starts with.
+// Values that may follow the last step of a run, and its first one.
 constexpr int kLastValues = 8;
 
 int run_steps(std::size_t turns) {

@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// The closest hit of a ray in world space. `stats`, unless null, is overwritten.
+/// Returns the closest hit of a ray in world space. Overwrites `stats` unless null.
 using ShapeMarch = Hit (*)(const DistanceField& shape, const Ray& ray, const MarchSettings& settings,
                            MarchStats* stats);
 /// Whether the closest hit is a hit.
@@ -31,7 +31,7 @@ struct ShapeMarchEntry : MarchEntry {
 };
 
 std::span<const ShapeMarchEntry> shape_marches();
-/// Throws Error listing the names when there is no such march.
+/// Throws Error listing the names if the march is unknown.
 const ShapeMarchEntry& find_shape_march(std::string_view name);
 
 }  // namespace scarp

@@ -152,7 +152,7 @@ class Trace {
       t = std::max(walk.beyond, walk.t + least_at(walk.t));
       if (t >= t_exit_) return false;
       // Emerging is like starting on the surface: if the ray turns back into it at once, as at the seam of two touching
-      // solids, it never was outside, and continues inside.
+      // solids, it was never outside and continues inside.
       if (leave(t, hit)) return true;
       if (!hit) return false;
     }

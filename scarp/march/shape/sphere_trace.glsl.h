@@ -111,7 +111,7 @@ SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, S
     float free = (f + (phase == kScarpTraceLeaves ? 4.0f * r : 0.0f) - r) / ray.speed;
     float least = max(max(least_step, settings.tolerance * (s + ray.travelled)), 1.1920928955078125e-7f * s);
     if (phase == kScarpTraceLeaves ? free <= least_step : free <= least) {
-      // Out of the solid and back at once: it never was outside.
+      // Out of the solid and back in at once: it was never outside.
       if (phase == kScarpTraceLeaves && began_inside) {
         phase = kScarpTraceInside;
         s += 2.0f * least_step;
@@ -125,7 +125,7 @@ SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, S
       s += max(f, 0.0f) / ray.speed;
       continue;
     }
-    // Minus what the sum may round up.
+    // Reduced by the rounding of the sum.
     s += max(free - 1.1920928955078125e-7f * (s + free), 0.5f * free);
   }
   if (hit.status == kScarpFunctionHit) hit.time = closest;

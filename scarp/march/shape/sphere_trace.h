@@ -31,8 +31,9 @@ namespace scarp {
 /// cell_tests bounds of segments; both count towards the step limit.
 Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings = {},
                        MarchStats* stats = nullptr);
-/// Closest hit that the filter accepts. Behind a rejected one the ray goes on through the solid until it comes out, as
-/// one that starts inside. Two hits within the tolerance may be one for the filter, or one may be passed to it twice.
+/// Closest hit that the filter accepts. Behind a rejected hit the ray continues through the solid until it emerges,
+/// like a ray that starts inside. Two hits within the tolerance may be one for the filter, or one may be passed to it
+/// twice.
 Hit march_sphere_trace_filtered(const DistanceField& field, const Ray& ray, const HitFilter& accept,
                                 const MarchSettings& settings = {}, MarchStats* stats = nullptr);
 /// Any hit; does not refine the crossing.

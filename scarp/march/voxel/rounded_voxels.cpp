@@ -118,7 +118,7 @@ std::optional<double> enter(const Shape& shape, const VoxelRay& ray, double begi
   return {};
 }
 
-// Where a ray leaves a voxel, and the neighbour that it enters.
+// Exit of a ray from a voxel, and the neighbour that it enters.
 struct Leaving {
   double t = kInfinity;
   int axis = 0;

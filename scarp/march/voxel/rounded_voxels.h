@@ -11,7 +11,7 @@
 // Guarantee: the traversal from voxel to voxel is that of the march, exact. In a voxel the squared distance to the
 // inner box is a parabola between the planes of that box, and its first root is taken: t is accurate to some roundings
 // of double, and a ray that grazes an edge by less may pass or hit. A ray that passes a voxel's edge continues in the
-// neighbour behind the face by which it leaves (decided in double; ties in the order x, y, z), quantised anew from the
+// neighbour behind the face by which it leaves (decided in double; ties in the order x, y, z), quantised again from the
 // original ray: nothing accumulates. Source: rounded boxes as in I. Quilez, "Distance functions".
 #pragma once
 

@@ -19,12 +19,12 @@ SCARP_GLSL_BEGIN
 
 /// Numbers of a ray that stay in memory during marches.
 struct ScarpVoxelScratch {
-  dvec3 given;    ///< its direction in the grid of the object at hand
+  dvec3 given;    ///< its direction in the grid of the current object
   dvec3 inverse;  ///< 1 / given
   dvec3 origin;   ///< in that grid
   double t_per_s;
-  double t;     ///< where it comes into the object's box
-  double t_in;  ///< where it comes into the box around everything
+  double t;     ///< where it enters the object's box
+  double t_in;  ///< where it enters the outer box
   uvec3 speed;
   uint back;
   uint entered;  ///< face of the object's box

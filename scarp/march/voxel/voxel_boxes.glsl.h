@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Rays through the hierarchy over voxel objects, which is that of BoxTree, in single precision: boxes are padded by
-// more than what is rounded on the way. GLSL with float64, in which the ray is brought to the box around everything.
+// more than the rounding errors. GLSL with float64, which is used to clip the ray to the outer box.
 //
-// Instead of all children that are still to be visited, the stack holds one word per level: a node, and which of its
-// children are left. The nearest of them is found again on the way back.
+// The stack holds one word per level, a node and a mask of its remaining children, instead of all children yet to
+// visit. The nearest of them is found again on the way back.
 #ifndef SCARP_MARCH_VOXEL_BOXES_GLSL_H
 #define SCARP_MARCH_VOXEL_BOXES_GLSL_H
 
 #include "scarp/march/voxel/voxel_batch.glsl.h"
 
-// The largest inverse of a direction, and the factor of BoxTree, doubled: quotients of devices are off by 2.5 units
+// The largest inverse of a direction, and the factor of BoxTree, doubled: quotients of devices have errors of 2.5 units
 // instead of one half.
 const float kSteepest = 1152921504606846976.0;
 const float kRounding = 1.0 + 1.0 / 524288.0;
@@ -17,8 +17,8 @@ const float kRounding = 1.0 + 1.0 / 524288.0;
 // Numbers of rays in memory, which are read again instead of kept in registers.
 layout(buffer_reference, scalar, buffer_reference_align = 8) volatile buffer VoxelScratch { ScarpVoxelScratch of[]; };
 
-// In shared memory per invocation, so that marches have the registers: nodes with children yet to visit, 4 bits each,
-// one per level; and the ray relative to the middle of the hierarchy, in units of its longest component.
+// In shared memory per invocation, which leaves the registers to the marches: nodes with children yet to visit, 4 bits
+// each, one per level; and the ray relative to the middle of the hierarchy, in units of its longest component.
 shared uint waiting[batch_levels * gl_WorkGroupSize.x];
 shared vec3 box_origin[gl_WorkGroupSize.x];
 shared vec3 box_inwards[gl_WorkGroupSize.x];
@@ -29,7 +29,7 @@ float box_end(uint i, double t) {
   return float((t - scratch.of[i].t_in) * double(scratch.of[i].longest)) * kRounding;
 }
 
-// Returns false for a ray that passes the box around everything.
+// Returns false for a ray that misses the outer box.
 bool enter_boxes(uint i, VoxelObjects scene, out float end) {
   VoxelRays rays = VoxelRays(batch.rays);
   double t_in = rays.rays[i].t_min, t_out = rays.rays[i].t_max, longest = 0.0lf;

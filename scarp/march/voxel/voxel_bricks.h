@@ -6,7 +6,7 @@
 //   and in both, 2 x 2 x 2 bits that are all 0 form one block of twice the size. Grids with a side above 512 have
 //   levels of 64, 256, ... voxels, too. There rays descend from the largest cell that they have just entered
 //
-// In a brick only voxels ahead count: a brick whose solid voxels are all behind the ray's octant is left at once.
+// In a brick only voxels ahead count: rays leave a brick at once if all its solid voxels are behind the ray's octant.
 //
 // Guarantee: exact. Requires BrickMasks, 1/64 of the grid's own. Sources: the 64-trees of dubiousconst282, "A guide to
 // fast voxel ray tracing using sparse 64-trees"; brick maps after J. van Wingerden, 2015. Cost: a step per block.

@@ -11,15 +11,15 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// A cube of blocks or voxels that may hold what is looked for.
+// A cube of blocks or voxels that may contain the result.
 struct Block {
   double bound;
   ivec3 low;
   int side;
 };
 
-// Best-first over the blocks that have solid voxels: bound(low, high) is the best that a box can hold, solid(voxel)
-// looks at a solid voxel, best() is what was found.
+// Best-first search over the blocks with solid voxels: bound(low, high) is the best possible result in a box,
+// solid(voxel) examines a solid voxel, best() is the best result so far.
 template <class Bound, class Solid, class Best>
 void search(const VoxelGrid& grid, const Bound& bound, const Solid& solid, const Best& best) {
   const VoxelBox& within = grid.bounds();
@@ -57,7 +57,7 @@ bool is_solid(const VoxelGrid& grid, const ivec3& voxel) { return grid.box().con
 std::optional<VoxelContact> starts_inside(const VoxelGrid& grid, const Capsule& capsule) {
   const dvec3 size(grid.size());
   for (const dvec3& end : {capsule.a, capsule.b}) {
-    // Compared as they are: too far away for whole numbers.
+    // Compared as doubles: too far away for integers.
     if (!(end.x >= 0 && end.y >= 0 && end.z >= 0 && end.x < size.x && end.y < size.y && end.z < size.z)) continue;
     const ivec3 voxel(floor(end));
     if (grid.solid(voxel)) return VoxelContact{{0, end, dvec3(0.0)}, voxel};
@@ -82,7 +82,7 @@ std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule,
       for (int side = 0; side < 2; ++side) {
         ivec3 beside = voxel;
         beside[axis] += side ? 1 : -1;
-        // Faces that the motion does not go towards are touched where it starts, or after others.
+        // Faces that the motion does not approach are touched at its start, or after others.
         if (is_solid(grid, beside) || (least > 0 && (side ? motion[axis] >= 0 : motion[axis] <= 0))) continue;
         dvec3 corner(voxel), u(0.0), v(0.0);
         corner[axis] += side;

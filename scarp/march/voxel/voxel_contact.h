@@ -3,8 +3,7 @@
 // contact of one that moves, overlaps, and closest points. Voxels are cubes, never rounded. Exact to rounding
 // (march/sweep.h): the faces between solid and empty voxels are swept as two triangles each.
 //
-// Cost: blocks of 2^n voxels on the way, the first to be reached first; those without a solid voxel below 4 x 4 x 4 are
-// left out.
+// Cost: blocks of 2^n voxels along the way, nearest first; empty blocks of 4 x 4 x 4 voxels and larger are skipped.
 #pragma once
 
 #include <limits>
@@ -22,7 +21,7 @@ struct VoxelContact : Contact {
 };
 
 /// Returns the first contact of a capsule that moves along `motion`. Throws Error for a capsule or a motion that
-/// validate() refuses.
+/// validate() rejects.
 std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule, const dvec3& motion);
 
 struct VoxelPoint {

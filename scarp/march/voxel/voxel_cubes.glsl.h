@@ -13,7 +13,7 @@ SCARP_GLSL_BEGIN
 uint scarp_voxel_byte(const ivec3& voxel, uint octant);
 #endif
 
-/// Both cubes end that many planes ahead of the voxel along every axis, whichever way the ray goes.
+/// Both cubes end that many planes ahead of the voxel along every axis, in the ray's direction.
 SCARP_FN bool scarp_cubes_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool) solid) {
   int side = int(scarp_voxel_byte(walk.voxel, walk.back & 7u));
   solid = side == 0;

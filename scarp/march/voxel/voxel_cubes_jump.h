@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `voxel-cubes-jump`: the cube march as its author has it, the baseline for voxel-cubes.
+// `voxel-cubes-jump`: the cube march as published by its author, the baseline for voxel-cubes.
 //
 //   +---+---+---+---+---+
 //   |   |   |   |   |###|     D = 2: the ray leaves the voxel and travels D - 1 along its own direction; where it is

@@ -12,7 +12,7 @@
 #include "scarp/march/voxel/voxel_quantise.glsl.h"
 #include "scarp/march/voxel/voxel_walk.glsl.h"
 
-// A loop that is run as such takes fewer registers and instructions. Shaders enable GL_EXT_control_flow_attributes.
+// A loop that is not unrolled takes fewer registers and instructions. Shaders enable GL_EXT_control_flow_attributes.
 #ifdef __cplusplus
 #define SCARP_DONT_UNROLL
 #else
@@ -52,8 +52,7 @@ SCARP_FN double scarp_corrected_ratio(double ratio, uint a, uint b) {
   return ratio;
 }
 
-/// Returns 1 / x for x whose exponent is far from those where doubles end, given an inverse that is off by at most 3
-/// units.
+/// Returns 1 / x for x far from overflow and underflow, given an inverse accurate to 3 units.
 SCARP_FN double scarp_corrected_inverse(double inverse, double x) {
   uvec2 of = unpackDouble2x32(x);
   uint divisor_high = (of.y & 0xfffffu) | 0x100000u;

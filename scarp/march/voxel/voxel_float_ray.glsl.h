@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxel marches for hosts without doubles: shaders that make their rays themselves, such as in WebGL 2.
+// Voxel marches for hosts without doubles: shaders that generate their own rays, such as in WebGL 2.
 //
 //   ScarpVoxelAnswer hit = scarp_march_voxels(kScarpVoxelOctants, ivec3(0), size, eye, direction, 0.0, 1.0e30, 4096);
 //   if (hit.face != kScarpNoFace) ... hit.voxel, hit.t
@@ -31,20 +31,20 @@ struct ScarpVoxelAnswer {
   int steps;    ///< of the march
 };
 
-/// Where a ray comes into a box.
+/// Entry of a ray into a box.
 struct ScarpVoxelEntry {
   float t;        ///< in lengths of the direction
   float t_per_s;  ///< t per unit of distance / speed
   uint face;      ///< of the box; kScarpInside: it starts there
 };
 
-/// Quantises a ray of finite numbers in the box [low, high). With `has_start`, `start` is the voxel in which it begins,
+/// Quantises a ray of finite numbers in the box [low, high). With `has_start`, `start` is the voxel in which it starts,
 /// which may be outside. Returns false if the ray misses the box between t_min and t_max.
 SCARP_FN bool scarp_voxel_ray(ivec3 low, ivec3 high, vec3 origin, vec3 direction, float t_min, float t_max,
                               bool has_start, ivec3 start, SCARP_OUT(ScarpVoxelWalk) walk,
                               SCARP_OUT(ScarpVoxelEntry) entry) {
   float longest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
-  // Quotients of devices are off by 2.5 units; no component may seem longer than the longest one.
+  // Quotients of devices have errors of 2.5 units; no component may appear longer than the longest one.
   float per_longest = (1.0f - 1.0f / 2097152.0f) / longest;
   ScarpVoxelClip clip = ScarpVoxelClip(t_min, t_max, -1, false);
   walk.back = 0u;
@@ -115,8 +115,8 @@ SCARP_FN ScarpVoxelAnswer scarp_march_voxels(uint march, ivec3 low, ivec3 high, 
   return hit;
 }
 
-/// Returns whether a ray from the face of a voxel that was hit, such as to the sun, meets another one before t_max. It
-/// starts in the voxel on the other side of the face, so it needs no offset.
+/// Returns whether a ray from the face of a voxel that was hit, for example to the sun, hits another one before t_max.
+/// It starts in the voxel on the other side of the face, so it needs no offset.
 SCARP_FN bool scarp_voxels_block(uint march, ivec3 low, ivec3 high, ScarpVoxelAnswer from, vec3 origin, vec3 direction,
                                  float t_max, int turns) {
   ivec3 start = from.voxel;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How far the marches of voxel_packet_simd.cpp advance at once: a structure per technique, all lanes at a time.
-// Read once for each instruction set.
+// Compiled once per instruction set.
 #if defined(SCARP_MARCH_VOXEL_LOOKS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_VOXEL_LOOKS_SIMD_H
 #undef SCARP_MARCH_VOXEL_LOOKS_SIMD_H

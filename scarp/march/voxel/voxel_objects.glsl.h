@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Rays through voxel objects: VoxelObjects::closest_hit() and occluded() in a shader. GLSL with float64.
 //
-// Objects are answered in double and integers as on the CPU, so the order in which they are met does not matter: of
-// hits at the same t that of the first object counts.
+// Objects are traced in double and integers as on the CPU, so the order in which they are visited does not matter: of
+// hits at the same t, the one on the first object counts.
 //
-// Registers are for the march. Numbers that are used between objects only, and the best hit, stay in memory and are
+// Registers are reserved for the march. Numbers used only between objects, and the best hit, stay in memory and are
 // read again. Functions have one return, at their end: otherwise compilers keep their variables from one object to the
 // next.
 #ifndef SCARP_MARCH_VOXEL_OBJECTS_GLSL_H
@@ -88,7 +88,7 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
   return met;
 }
 
-// Looks for a hit in an object that is better than the one so far. Returns whether there is one, which is written.
+// Looks for a hit in an object that is better than the current one. If there is one, writes it and returns true.
 bool scarp_ask_object(VoxelObjects scene, uint index, inout VoxelQuery query) {
   VoxelObjectList objects = VoxelObjectList(scene.is.objects);
   VoxelTurns turns = VoxelTurns(scene.is.turns);
@@ -122,7 +122,7 @@ bool scarp_ask_object(VoxelObjects scene, uint index, inout VoxelQuery query) {
   return better;
 }
 
-// Answers a ray; writes the answer to the hits.
+// Traces a ray and writes its hit.
 void scarp_ask_voxels(uint i) {
   VoxelObjects scene = VoxelObjects(batch.objects);
   VoxelHits hits = VoxelHits(batch.hits);

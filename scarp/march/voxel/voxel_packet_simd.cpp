@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kVectors = VoxelPacket::kRays / N;
 constexpr std::size_t kSaved = 4;  // vectors: below that, compaction costs more than it saves
-// 2^52 as a double: its last bits count ones.
+// 2^52 as a double: its last bits count units.
 constexpr double kOnes = 0x1p52;
 
 // A distance times a speed, in boxes with a side above 2,048: 34 by 29 bits.
@@ -76,7 +76,7 @@ struct LaneWalk {
   alignas(64) Numbers crossed, ray;
   // For looks that descend: bits of the voxel that the last step changed, on any axis; at first all.
   alignas(64) Numbers moved;
-  // 1 / speed, or for looks that travel: in [0], the travel per voxel, as voxel_travel.h has it.
+  // 1 / speed, or for looks that travel: in [0], the travel per voxel, see voxel_travel.h.
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   VoxelTies ties;                      // of the grid
   std::size_t lanes = 0;               // in use
@@ -124,7 +124,7 @@ HWY_INLINE VD travel_per_voxel(const VI (&speed)[3]) {
   VD square = hn::Zero(dd);
   for (int i = 0; i < 3; ++i) square = hn::Add(square, hn::Mul(as_double(speed[i]), as_double(speed[i])));
   const VD length = hn::Add(hn::Trunc(hn::Sqrt(square)), hn::Set(dd, 2.0));
-  // No quotient is so near to an integer that it would be rounded to it.
+  // No quotient is close enough to an integer to be rounded to it.
   return hn::Trunc(hn::Div(hn::Set(dd, 0x1p48), length));
 }
 
@@ -138,7 +138,7 @@ HWY_INLINE MI entered_by(VI entered, VoxelTies ties, int axis, bool first) {
   return any;
 }
 
-// Of quantise(): rays go back to the voxels before planes that are not crossed yet.
+// As in quantise(): rays step back to the voxels before planes that are not crossed yet.
 HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPacket& packet, std::size_t o, VD t,
                              VD touch, VI entered, const MD (&down)[3], const VD (&distance)[3], VD (&voxel)[3],
                              VI (&next)[3]) {
@@ -187,7 +187,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
       const VD plane = hn::Floor(hn::Add(origin[i], hn::Set(dd, 0.5))), room = hn::Set(dd, stand.room);
       const MD on_plane = hn::And(level, hn::Le(hn::Abs(hn::Sub(origin[i], plane)), room));
       origin[i] = hn::IfThenElse(on_plane, plane, origin[i]);
-      // The voxel's upper side is the one that a level ray counts with.
+      // A level ray belongs to the voxel's upper side.
       const MD between = ties.up(i) > 0 ? hn::And(hn::Ge(origin[i], low), hn::Lt(origin[i], high))
                                         : hn::And(hn::Gt(origin[i], low), hn::Le(origin[i], high));
       alive = hn::And(alive, hn::Or(hn::Not(level), between));
@@ -202,7 +202,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     const VD far = hn::Mul(hn::Sub(last, origin[i]), inverse);
     const MD later = hn::AndNot(level, hn::Ge(near, t));
     MI enters = hn::RebindMask(di, later);
-    // Of planes at the same t the last one; in the order x, y, z that is the one at hand.
+    // If planes are crossed at the same t, the last one counts: in the order x, y, z the current one.
     if (ties.bits >> 3 != 0) {
       enters = hn::AndNot(hn::And(hn::RebindMask(di, hn::Not(hn::Gt(near, t))), entered_by(entered, ties, i, false)),
                           enters);

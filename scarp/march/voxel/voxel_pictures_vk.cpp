@@ -68,7 +68,7 @@ glsl::ScarpVoxelView view_of(const VoxelPicture& picture) {
   return view;
 }
 
-// What the pixels of a picture have on the device.
+// Device memory of a picture's pixels.
 struct PictureMemory {
   PictureMemory(const Device& device, std::uint32_t width, std::uint32_t height)
       : target(device, width, height, 2, RasterColours::words),
@@ -166,7 +166,7 @@ struct DeviceVoxelPictures::Impl {
   std::map<std::vector<std::uint32_t>, RasterPipeline> box_pipelines;  // by specialisation
   std::map<std::uint32_t, ComputePipeline> hit_pipelines;              // by levels
   std::optional<PictureMemory> memory;
-  Commands commands{device};  // after what its runs use: it waits for them
+  Commands commands{device};  // declared after what its runs use: it waits for them
   std::vector<glsl::ScarpVoxelRay> rays;
   std::vector<glsl::ScarpVoxelHit> found;
   std::vector<PassTime> passes;
@@ -194,7 +194,7 @@ std::vector<std::size_t> DeviceVoxelPictures::draw(const DeviceVoxelObjects& obj
       const PreparedVoxelRay prepared = prepared_voxel_ray(rays[i], nullptr);
       all.rays[i] = prepared.ray;
       if (prepared.marches && prepared.exponent == 0) continue;
-      // No t: it meets nothing.
+      // An empty range: hits nothing.
       left[i] = 1;
       all.rays[i] = {dvec3(0.0), dvec3(1.0), 1, 0, glsl::kScarpNoPart, {}, 0, 0};
     }

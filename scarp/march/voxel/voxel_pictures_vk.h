@@ -5,7 +5,7 @@
 //   proxies   each object's box is drawn as triangles, and its fragments march (C. Leak, "Raymarching voxel
 //             rendering", 2017)
 //
-// Hits are the same to the bit, those of the CPU. What makes proxies exact:
+// Both return the hits of the CPU, bit for bit. Proxies are exact because:
 //
 //   the ray of a pixel is the one of compute, not an interpolated one   voxel_proxies_march.glsl.h
 //   boxes are drawn a little larger; a camera in a box draws all sides of it   voxel_proxies.vert
@@ -32,13 +32,13 @@ struct VoxelDrawingName {
   VoxelDrawing drawing;
   std::string_view what;
 };
-/// Both ways, the default first.
+/// Both methods, the default first.
 inline constexpr std::array<VoxelDrawingName, 2> kVoxelDrawings = {{
     {"compute", VoxelDrawing::compute, "a hierarchy of boxes in a compute shader"},
     {"proxies", VoxelDrawing::proxies, "boxes drawn as triangles whose fragments march"},
 }};
 
-/// Where the pixels of a picture look. The position (x, y), in pixels from the upper left corner, has the rays
+/// The rays of a picture's pixels. The position (x, y), in pixels from the upper left corner, has the rays
 ///
 ///   origin + x origin_right + y origin_down + t (direction + x right + y down)
 ///
@@ -54,8 +54,8 @@ struct VoxelPicture {
 /// Draws voxel objects of a device. Not thread-safe.
 class DeviceVoxelPictures {
  public:
-  /// `queries` answer compute. Throws Error if the device does not support graphics, or lacks memory or 64-bit floating
-  /// point numbers.
+  /// `queries` computes the pixels that drawing leaves open. Throws Error if the device does not support graphics, or
+  /// lacks memory or 64-bit floating point numbers.
   DeviceVoxelPictures(const Device& device, std::shared_ptr<DeviceVoxelQueries> queries, bool words = false);
   DeviceVoxelPictures(DeviceVoxelPictures&&) noexcept;
   DeviceVoxelPictures& operator=(DeviceVoxelPictures&&) noexcept;

@@ -24,7 +24,7 @@ VoxelHit march_voxel_planes_accepted(const VoxelTarget& target, const QuantisedR
   return first_voxel(target, ray, stats, [&](VoxelWalk& walk, const ivec3& voxel, bool& solid) {
     if (target.grid->solid(voxel)) {
       const VoxelHit hit = walk.hit(*target.grid);
-      solid = !hit || accept(hit);  // beyond the ray's end the walk is over, too
+      solid = !hit || accept(hit);  // the walk also ends beyond the ray's end
     }
     return !solid && walk.step();
   });

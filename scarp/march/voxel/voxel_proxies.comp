@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The pixels of a picture of boxes as hits, one invocation per pixel; and whether another object may be as near as the
-// one that is seen. For that it looks for other boxes along the part of the ray that has the depth seen: within
-// 2^-23 of t.
+// Converts the pixels of a picture of boxes to hits, one invocation per pixel, and detects whether another object may
+// be as near as the visible one: searches other boxes along the part of the ray at the visible depth, within 2^-23 of
+// t.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -4,11 +4,11 @@
 //
 //   .vert   a box per object, a little larger; its depth is one that all hits in it are behind
 //   .frag   the ray of the pixel through the object ──▶ depth, object, t, voxel, face
-//   .comp   what is left in each pixel ──▶ ScarpVoxelHit; kScarpVoxelTied where another object may be as near
+//   .comp   the winner of each pixel ──▶ ScarpVoxelHit; kScarpVoxelTied where another object may be as near
 //
-// The depth of a hit has 24 bits, its t 53. Two objects may therefore have hits of one depth, of which the first that
-// is drawn stays and the nearer one may be lost. The last shader finds all pixels where that is possible: those whose
-// ray, in the part that has this depth, comes to another box. Compute answers these.
+// The depth of a hit has 24 bits, its t 53. Two objects may therefore have hits at the same depth, of which the first
+// one drawn stays and the nearer one may be lost. The last shader finds all pixels where this is possible: those whose
+// ray enters another box within the part at this depth. Compute traces these.
 #ifndef SCARP_MARCH_VOXEL_PROXIES_GLSL_H
 #define SCARP_MARCH_VOXEL_PROXIES_GLSL_H
 
@@ -17,7 +17,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Where the rays of a picture are. A point p has (x, y, w) = rows (p - origin) + (parallel: (-1, -1, 1)), x / w and y
+/// Layout of the rays of a picture. A point p has (x, y, w) = rows (p - origin) + (parallel: (-1, -1, 1)), x / w and y
 /// / w from -1 to 1 from left to right and from top to bottom of the picture, and hits at p have t >= depth (p -
 /// origin).
 struct ScarpVoxelView {
@@ -27,7 +27,7 @@ struct ScarpVoxelView {
   dvec3 w;
   dvec3 depth;
   dvec3 direction;  ///< of parallel rays
-  double margin;    ///< by which boxes are larger, per w
+  double margin;    ///< enlargement of boxes, per w
   uint parallel;
   uint none;
 };
@@ -46,12 +46,12 @@ struct VoxelProxies {
   float room;  ///< hits are no farther from their object's box, in metres
 };
 
-// Binades of t with depths of their own; nearer and farther t share one.
+// Binades of t with distinct depths; nearer and farther t share one.
 const int kScarpLeastBinade = -63;
 const uint kScarpBinades = 126u;
 const uint kScarpDepthsPerBinade = 1u << 23;
 
-/// Bits of a depth of which larger ones are nearer: below 1, normal numbers, and as many per binade as a float has.
+/// Bits of a depth, larger ones nearer: normal numbers below 1, with as many values per binade as floats have.
 SCARP_FN uint scarp_depth_bits(double t) {
   uvec2 words = unpackDouble2x32(t);
   int binade = int(words.y >> 20 & 0x7ffu) - 1023 - kScarpLeastBinade;
@@ -63,7 +63,7 @@ SCARP_FN uint scarp_depth_bits(double t) {
   return 0x3f7fffffu - distance;
 }
 
-/// Whether other t have the same depth that are not within 2^-23 of this one.
+/// Whether t that differ by more than 2^-23 share this depth.
 SCARP_FN bool scarp_depth_is_coarse(double t) {
   uint distance = 0x3f7fffffu - scarp_depth_bits(t);
   return distance == 0u || distance == kScarpBinades * kScarpDepthsPerBinade - 1u;

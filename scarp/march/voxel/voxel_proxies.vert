@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The box of a voxel object: an instance of 36 vertices, six faces of two triangles. Those that look at the eye are
-// drawn, or all six where the eye is inside; the others shrink to a point.
+// The box of a voxel object: an instance of 36 vertices, six faces of two triangles. Faces towards the eye are drawn,
+// or all six if the eye is inside; the others collapse to a point.
 //
 // Rays of pixels through the box must find a fragment. Rasterisers move corners by up to 2^-5 pixel, corners are
-// rounded to float, and the ray of a pixel may be up to half a pixel beside its middle. So boxes are larger by `margin`
-// at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of that end: clip
-// coordinates are off by a few units of 2^-24 of it.
+// rounded to float, and the ray of a pixel may be up to half a pixel beside its middle. Boxes are therefore enlarged by
+// `margin` at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of that end:
+// clip coordinates have errors of a few units of 2^-24 of it.
 //
-// All corners of an object have one depth, which no hit in it is before: so depths are right however near the eye is,
-// and nothing is cut off near it.
+// All corners of an object have one depth, which is in front of all hits in it: depths are thus correct however close
+// the eye is, and nothing near it is clipped.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -21,13 +21,13 @@
 layout(location = 0) flat out uint proxy_object;
 
 const double kRoomPerDistance = 1.0lf / 262144.0lf;
-// Of a voxel: how far a quantised ray may be from itself (voxel_ray.h) for 2^12 voxels a side, and the matrix's own
-// rounding.
+// Fraction of a voxel: the displacement of a quantised ray (voxel_ray.h) for 2^12 voxels a side, plus the rounding of
+// the matrix.
 const double kRoomOfVoxel = 1.0lf / 16384.0lf;
 // Rasterisers may round the depth by some units of 2^-24.
 const double kNearer = 1.0lf - 1.0lf / 1024.0lf;
 
-// Of a box with this middle and half size along axes.
+// A box with this centre and half size along the axes.
 double least_along(dvec3 row, dvec3 middle, dvec3 axes[3], dvec3 reach) {
   double sum = dot(row, middle);
   for (int i = 0; i < 3; ++i) sum -= abs(dot(row, axes[i])) * reach[i];
@@ -48,7 +48,7 @@ void main() {
   gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
   if (any(greaterThanEqual(low, high))) return;
 
-  // World from grid: a turn and a scale.
+  // World from grid: a rotation and a scale.
   dvec3 axes[3];
   for (int i = 0; i < 3; ++i) axes[i] = turn.rows[i] / dot(turn.rows[i], turn.rows[i]);
   dvec3 middle_in_grid = 0.5lf * dvec3(low + high), half_size = 0.5lf * dvec3(high - low);
@@ -62,7 +62,7 @@ void main() {
   double room = (view.margin * far + kRoomPerDistance * distance) / side + kRoomOfVoxel;
   half_size += room;
 
-  // Which faces look at the eye, or against the direction.
+  // Selects the faces towards the eye, or against the direction.
   int face = gl_VertexIndex / 6, axis = face >> 1;
   bool upper = (face & 1) != 0;
   bool inside = view.parallel == 0u, shown = false;

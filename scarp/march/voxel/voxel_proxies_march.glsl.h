@@ -2,8 +2,7 @@
 // The fragments of voxel_proxies.frag: the ray of a pixel through one object, as voxel_objects.glsl.h asks it. GLSL
 // with float64.
 //
-// The ray is read where compute reads it, by the pixel: nothing of it is interpolated, so it is the same to the bit and
-// finds the same voxel.
+// The ray is read by pixel, as compute does: nothing is interpolated, so it is bit-identical and finds the same voxel.
 #ifndef SCARP_MARCH_VOXEL_PROXIES_MARCH_GLSL_H
 #define SCARP_MARCH_VOXEL_PROXIES_MARCH_GLSL_H
 
@@ -35,16 +34,16 @@ layout(location = 0) flat in uint proxy_object;
 layout(location = 0) out uvec4 first_words;
 layout(location = 1) out uvec4 second_words;
 
-// A ray where it comes into the box of an object.
+// A ray at its entry into the box of an object.
 struct ProxyEntry {
   double t;
   double t_per_s;
   uint face;
 };
 
-// The ray in the grid of the object, one axis of it.
+// One axis of the ray in the grid of the object.
 void scarp_proxy_axis(uint pixel, VoxelObjects scene, uint object, int axis, out double origin, out double given) {
-  // Read again rather than kept: there is one axis at a time in registers.
+  // Read again rather than kept, so that only one axis at a time is in registers.
   VoxelRaysAgain rays = VoxelRaysAgain(push.rays);
   VoxelObjectList objects = VoxelObjectList(scene.is.objects);
   dvec3 row = VoxelTurns(scene.is.turns).of[objects.of[object].turn].rows[axis];
@@ -112,7 +111,7 @@ void scarp_march_proxy() {
   if (!scarp_enter_proxy(pixel, scene, proxy_object, walk, entry)) discard;
   int turns = push.turns;
   bool solid = scarp_first_voxel(proxy_march == kScarpVoxelMarches ? voxel_grid.march : proxy_march, walk, turns);
-  // A march that takes too long may hit as soon as where it begins.
+  // A march that takes too long counts as a hit at its start.
   bool over = solid || turns > 0;
   double t = solid ? scarp_voxel_time(walk, entry.t, entry.t_per_s) : entry.t;
   if ((over && !solid) || t > rays.rays[pixel].t_max) discard;

@@ -3,13 +3,13 @@
 // order, one axis at a time. Text of C++ and of GLSL. `scarp_real` is double, as on the CPU (voxel_double.glsl.h), or
 // float where a shader has no float64 (voxel_float_ray.glsl.h); these include this text.
 //
-// Hosts keep what a ray has for each axis in memory and call these functions for the axes x, y, z in turn: doubles take
-// two registers each, and a shader has few.
+// Hosts keep a ray's numbers of each axis in memory and call these functions for x, y and z in turn: doubles take two
+// registers each, and a shader has few.
 //
 //   direction of the grid   scarp_exact_inverse(), the least magnitude of all three, scarp_voxel_speed()
 //   each object's box       scarp_voxel_clip(), then scarp_voxel_place()
 //
-// Numbers whose products would be too small for normal doubles do not come here: drivers may take them for zero.
+// Numbers whose products would be subnormal are excluded: drivers may flush them to zero.
 #ifndef SCARP_MARCH_VOXEL_QUANTISE_GLSL_H
 #define SCARP_MARCH_VOXEL_QUANTISE_GLSL_H
 
@@ -43,15 +43,15 @@ SCARP_FN uint scarp_voxel_back(int axis, scarp_real given, uint ties) {
 /// t per unit of distance / speed.
 SCARP_FN scarp_real scarp_voxel_t_per_s(scarp_real per_longest) { return scarp_real(256.0f) * per_longest; }
 
-/// A ray that is clipped to a box, from t to t_out; begin with its range, entered = -1 and comes_in = false.
+/// A ray that is clipped to a box, from t to t_out; initialise with its range, entered = -1 and comes_in = false.
 struct ScarpVoxelClip {
   scarp_real t;
   scarp_real t_out;
-  int entered;    ///< the axis along which it comes in; -1: it starts inside
-  bool comes_in;  ///< later than it starts
+  int entered;    ///< the axis along which it enters; -1: it starts inside
+  bool comes_in;  ///< whether it enters after its start
 };
 
-/// The origin of a level ray: on the plane that it is near to; `room` as VoxelRay::room.
+/// The origin of a level ray: on the adjacent plane; `room` as VoxelRay::room.
 SCARP_FN scarp_real scarp_voxel_level(scarp_real origin, scarp_real room) {
   SCARP_PRECISE scarp_real moved = origin + scarp_real(0.5f);
   scarp_real plane = floor(moved);
@@ -92,12 +92,12 @@ SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, sc
   return met;
 }
 
-/// The face by which it comes in.
+/// The face through which it enters.
 SCARP_FN uint scarp_voxel_entered(ScarpVoxelClip clip, uint back) {
   return clip.entered < 0 ? 6u : 2u * uint(clip.entered) + (back >> uint(clip.entered) & 1u);
 }
 
-/// Where a walk begins, along one axis.
+/// Start of a walk along one axis.
 struct ScarpVoxelPlace {
   int voxel;
   int left;
@@ -127,7 +127,7 @@ SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, u
   SCARP_PRECISE scarp_real units = distance * scarp_real(1048576.0f);
   SCARP_PRECISE scarp_real nearest = units + scarp_real(0.5f);
   units = speed < kScarpVoxelSlow ? ceil(units) : nearest;
-  // A start voxel may be far from the place.
+  // A start voxel may be far from the position.
   units = units > scarp_real(0.0f) ? units : scarp_real(0.0f);
   units = units < scarp_real(1048576.0f) ? units : scarp_real(1048576.0f);
   at.next = uint(units);

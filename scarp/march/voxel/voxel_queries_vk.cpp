@@ -77,8 +77,7 @@ constexpr std::size_t kMaxNodes = std::size_t{1} << 28;  // a word of the stack 
 
 constexpr glsl::ScarpVoxelTurn kNoTurn{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0, {}};
 
-// One box around a grid. Its sides are whole numbers, which are exact in float; half a voxel is more than what is
-// rounded on the way.
+// One box around a grid. Its sides are integers, which are exact in float; half a voxel exceeds the rounding errors.
 glsl::ScarpBoxNode node_around(const glsl::ScarpVoxelGrid& grid) {
   constexpr float kRoom = 0.5f;
   glsl::ScarpBoxNode node;
@@ -148,7 +147,7 @@ struct DeviceVoxelQueries::Impl {
     return pipelines.try_emplace(program.constants, device, program, program.variant).first->second;
   }
 
-  // Calls answer(i, hit, t) for each ray that has one. Returns the others.
+  // Calls answer(i, hit, t) for each finished ray. Returns the others.
   template <class Answer>
   std::vector<std::size_t> ask(const DeviceVoxelObjects& objects, bool any, bool entries, std::span<const Ray> asked,
                                std::span<const Hit* const> from, const Answer& answer) {

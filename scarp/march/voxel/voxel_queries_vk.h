@@ -3,9 +3,9 @@
 //
 //   rays, double ──▶ device: hierarchy over tight bounds ──▶ quantised per object ──▶ integers ──▶ hits, double
 //
-// Answers are those of the CPU, bit for bit: voxel, face, t, object, entry. The device has to have 64-bit floating
-// point numbers, in which rays are quantised. Rays that it cannot answer so are left to the caller: those with numbers
-// beyond 2^-200 or 2^200, and those that meet more than 60,000 boxes and steps.
+// Answers are those of the CPU, bit for bit: voxel, face, t, object, entry. The device must support 64-bit floating
+// point numbers, in which rays are quantised. Rays that it cannot trace exactly are left to the caller: those with
+// numbers beyond 2^-200 or 2^200, and those that exceed 60,000 boxes and steps.
 #pragma once
 
 #include <cstddef>

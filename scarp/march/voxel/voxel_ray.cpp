@@ -15,14 +15,14 @@ int voxel_at(double place, int step) {
   return step < 0 && voxel == place ? voxel - 1 : voxel;
 }
 
-// Functions of the library would be calls, for which the loops of quantise() save all their numbers.
+// Library functions would be calls, around which the loops of quantise() would save all their numbers.
 
 std::int64_t rounded_up(double units) {
   const auto down = static_cast<std::int64_t>(units);
   return down + (static_cast<double>(down) < units ? 1 : 0);
 }
 
-// The origin of a level ray: the plane that it is near to. Others are not in the box.
+// The origin of a level ray: the adjacent plane. Others are not in the box.
 constexpr double kFarthest = 1 << 20;  // beyond all boxes
 double on_plane(double origin, double room) {
   if (!(origin > -1 && origin < kFarthest)) return origin;
@@ -40,10 +40,10 @@ ivec3 normal_of(VoxelFace face) {
   return normal;
 }
 
-// Objects on one lattice have the same planes, and normals of theirs that are equal or opposite. The sign of a normal's
-// part along a fixed vector tells both ways apart, its size the three normals: for axes of the world they are the signs
-// and the order of x, y, z. 1 and the roots have no linear relation in integers, so no normal with rational slopes is
-// across the vector.
+// Objects on one lattice share planes, with equal or opposite normals. The sign of a normal's component along a fixed
+// vector distinguishes the two directions, its magnitude the three normals: for world axes these are the signs and the
+// order of x, y, z. 1 and the roots are linearly independent over the integers, so no normal with rational slopes is
+// perpendicular to the vector.
 VoxelTies::VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame) {
   static const std::array<double, 3> by_rank{1.0, std::cbrt(0.5), std::cbrt(0.25)};
   dvec3 upwards;
@@ -57,7 +57,7 @@ VoxelTies::VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame) {
 }
 
 VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(direction), inverse(1.0 / direction) {
-  // Divisions dominate the cost here: that by the longest component has been done.
+  // Divisions dominate the cost here; the one by the longest component is already done.
   const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
   auto& [speed, slowness, step, own_ties, after, exact, plain, t_per_s] = quantised;
   own_ties = ties;
@@ -90,7 +90,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
   const bool has_start = !kPlain && ray.start_voxel;
   const VoxelTies ties = direction.ties;
   const double late = direction.exact ? ray.room : std::max(ray.room, kTouch * 0x1p-20);
-  // Clip to the box. Of planes crossed at the same t the last one is the entry face.
+  // Clip to the box. If planes are crossed at the same t, the last one is the entry face.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
   dvec3 from = ray.origin;
@@ -129,7 +129,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
   const bool comes_in = t > ray.t_min;  // along its way, not where it starts
   for (int axis = 0; axis < 3; ++axis) {
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
-    // Not beyond the box, where only rounding can take it.
+    // Not beyond the box, where only rounding could place it.
     double place = from[axis] + t * ray_direction.given[axis];
     place = place > low ? place : low;
     place = place < high ? place : high;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays against voxel grids, and the one place where they are quantised.
+// Rays against voxel grids, and their quantisation.
 //
 // A ray that hits a box of voxels is quantised there, once: its entry point to multiples of 2^-20 voxel, its direction
 // to multiples of 2^-28 of its longest component. From then on the ray crosses planes between voxels at
@@ -46,7 +46,7 @@ struct VoxelRay {
   /// The ray's voxel at t_min, if known more exactly than by its coordinates: a shadow ray starts in the empty
   /// neighbour of the voxel that was hit, and cannot hit that voxel again.
   std::optional<ivec3> start_voxel{};
-  /// Bound of what was rounded in `origin` and in the grid's place, in voxels. A ray along a plane counts as on it
+  /// Bound of the rounding in `origin` and in the grid's placement, in voxels. A ray along a plane counts as on it
   /// within this distance, and a slow ray (kSlow) enters the box this much earlier.
   double room = 0.0;
 };
@@ -84,7 +84,7 @@ struct VoxelTies {
 
   /// 1 or -1: the upper side of planes across this axis.
   int up(int axis) const { return bits >> axis & 1 ? -1 : 1; }
-  /// Whether planes across axis a are crossed before those across b at the same place; a and b differ.
+  /// Whether planes across axis a are crossed before those across b at the same t; a and b differ.
   bool before(int a, int b) const { return a > b ? (bits >> (a + b + 2) & 1) != 0 : (bits >> (a + b + 2) & 1) == 0; }
   /// Number of axes that are crossed before this one.
   int rank(int axis) const {
@@ -93,8 +93,8 @@ struct VoxelTies {
   }
 };
 
-/// A component below 2^-14 of the longest one crosses one plane at most. It is rounded down, and the place up, so that
-/// the ray does not leave its box before the given ray does and no neighbour sees it.
+/// A component below 2^-14 of the longest one crosses at most one plane. It is rounded down, and the position up, so
+/// that the quantised ray does not leave its box before the given ray, and neighbours lose nothing.
 constexpr std::int64_t kSlow = std::int64_t{1} << (kDirectionBits - 14);
 
 /// Rays whose direction is not exact in 2^-28 may be displaced where they leave one box and enter the next. Planes that

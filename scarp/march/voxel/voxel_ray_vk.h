@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: rays as devices take them, and the hits that they give.
+// Private to the station: rays and hits in the form of devices.
 #pragma once
 
 #include <array>
@@ -19,12 +19,12 @@ constexpr std::string_view voxel_march_name(std::uint32_t march) {
   return kNames[march];
 }
 
-// Drivers may take numbers for zero that are too small for normal doubles. Those of quantised rays are products of a
-// few of these, and of differences 2^-53 of them.
+// Drivers may flush subnormal doubles to zero. The numbers of quantised rays are products of a few of these, and of
+// differences 2^-53 as large.
 inline bool is_number_of_devices(double x) { return x == 0 || (std::abs(x) > 0x1p-200 && std::abs(x) < 0x1p200); }
 // The end of a range is compared alone.
 inline bool is_end_of_devices(double t) { return t >= 0x1p200 || is_number_of_devices(t); }
-// Directions whose lengths are those of floats, too, for the hierarchy.
+// Directions whose lengths also fit in floats, for the hierarchy.
 inline bool is_length_of_devices(double longest) { return longest > 0x1p-60 && longest < 0x1p60; }
 inline bool are_numbers_of_devices(const dvec3& v) {
   return is_number_of_devices(v.x) && is_number_of_devices(v.y) && is_number_of_devices(v.z);
@@ -36,13 +36,13 @@ struct PreparedVoxelRay {
   bool marches = false, left = false;
 };
 
-/// `from`: the hit beside whose voxel it begins, or null.
+/// `from`: the hit beside whose voxel it starts, or null.
 inline PreparedVoxelRay prepared_voxel_ray(const Ray& given, const Hit* from) {
   PreparedVoxelRay prepared;
   Ray ray = given;
   const double longest = longest_of(ray.direction);
   if (!is_direction(longest)) return prepared;
-  // By a power of two, which changes no answer.
+  // By a power of two, which is exact.
   if (!is_length_of_devices(longest)) {
     prepared.exponent = std::ilogb(longest);
     ray = scaled_down(ray, prepared.exponent);

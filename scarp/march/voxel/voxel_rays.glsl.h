@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays and hits of voxel objects as shaders and the C++ code have them (voxel_queries_vk.h, voxel_pictures_vk.h).
+// Rays and hits of voxel objects, shared by shaders and C++ (voxel_queries_vk.h, voxel_pictures_vk.h).
 #ifndef SCARP_MARCH_VOXEL_RAYS_GLSL_H
 #define SCARP_MARCH_VOXEL_RAYS_GLSL_H
 
@@ -8,13 +8,13 @@
 
 SCARP_GLSL_BEGIN
 
-/// A ray in world space, whose numbers are usual (voxel_queries_vk.cpp).
+/// A ray in world space, with numbers in the usual range (voxel_queries_vk.cpp).
 struct ScarpVoxelRay {
   dvec3 origin;
   dvec3 direction;
   double t_min;
   double t_max;
-  uint part;    ///< the object whose voxel it begins beside; kScarpNoPart: none
+  uint part;    ///< the object whose voxel it starts beside; kScarpNoPart: none
   ivec3 start;  ///< that voxel
   uint frame;   ///< Ray::frame
   uint none;
@@ -23,10 +23,10 @@ const uint kScarpNoPart = 0xffffffffu;
 
 const uint kScarpVoxelMiss = 0u;
 const uint kScarpVoxelHit = 1u;
-const uint kScarpVoxelUnfinished = 2u;  ///< it took more turns than there are
+const uint kScarpVoxelUnfinished = 2u;  ///< it exceeded the limit of turns
 const uint kScarpVoxelTied = 3u;        ///< only when drawn (voxel_proxies.glsl.h): another object may be as near
 
-/// The answer; for misses only status and steps mean something.
+/// The result; for misses only status and steps are defined.
 struct ScarpVoxelHit {
   double t;
   ivec3 voxel;

@@ -14,7 +14,7 @@ namespace scarp {
 /// The member of VoxelTarget that a voxel march requires besides the grid.
 enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
 
-/// A row. `cpu` and `occluded` are not null: a technique without an any-hit query of its own has one made of `cpu`.
+/// A row. `cpu` and `occluded` are not null: a technique without its own any-hit query gets one based on `cpu`.
 struct VoxelMarchEntry : MarchEntry {
   VoxelAccelerator accelerator = VoxelAccelerator::none;
   VoxelMarch cpu = nullptr;  ///< scalar C++
@@ -24,7 +24,7 @@ struct VoxelMarchEntry : MarchEntry {
 
 /// The oracle, `voxel-exhaustive`, comes first.
 std::span<const VoxelMarchEntry> voxel_marches();
-/// Throws Error listing the names when there is no such march.
+/// Throws Error listing the names if the march is unknown.
 const VoxelMarchEntry& find_voxel_march(std::string_view name);
 
 }  // namespace scarp

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A voxel grid in integer textures, for hosts that have neither buffers nor addresses, such as WebGL 2: defines the
-// functions that the marches ask of their host (voxel_planes.glsl.h, voxel_cubes.glsl.h, voxel_bricks.glsl.h).
+// A voxel grid in integer textures, for hosts without buffers and addresses, such as WebGL 2: defines the functions
+// that the marches require of their host (voxel_planes.glsl.h, voxel_cubes.glsl.h, voxel_bricks.glsl.h).
 //
 //   scarp_masks    RG32UI: texel (x, y, z) is the mask of brick (x, y, z), which is 4 x 4 x 4 voxels: bit
 //                  x + 4 y + 16 z, the low word first. For voxel-planes and voxel-bricks
@@ -12,7 +12,7 @@
 //   scarp_octants  RG32UI: the eight bytes of each voxel, of OctantCubes; that of octant 0 is the lowest of the first
 //                  word. For voxel-octants
 //
-// All with the filter NEAREST and one mip level. Textures of marches that are not used need not be bound.
+// All with the filter NEAREST and one mip level. Textures of unused marches need not be bound.
 //
 // Text of GLSL, GLSL ES 3.0 included. Its host has declared before
 //   uniform highp usampler3D scarp_masks, scarp_sectors, scarp_bytes, scarp_octants;

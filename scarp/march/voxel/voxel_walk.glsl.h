@@ -31,7 +31,7 @@ const uint kScarpTieBits = 56u;  ///< those of `back` that are bits of VoxelTies
 /// Returns 1 or -1: the ray's step along an axis.
 SCARP_FN int scarp_voxel_step(uint back, int axis) { return (back >> uint(axis) & 1u) != 0u ? -1 : 1; }
 
-/// Returns whether planes across axis a are crossed before those across b at the same place; a and b differ.
+/// Returns whether planes across axis a are crossed before those across b at the same t; a and b differ.
 SCARP_FN bool scarp_axis_before(uint back, int a, int b) { return ((back >> uint(a + b + 2) & 1u) != 0u) == (a > b); }
 
 /// Returns the axis of the first of three planes.
@@ -87,8 +87,8 @@ SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
   return walk.left[axis] > 0;
 }
 
-/// Travel along the ray's longest axis, in 2^-20 voxel, per voxel of distance: no more than it is, by 16 units of
-/// single precision, of which its computation takes less than half.
+/// Travel along the ray's longest axis, in 2^-20 voxel, per voxel of distance: reduced by 16 units of single precision,
+/// more than twice its rounding error.
 SCARP_FN uint scarp_travel_per_voxel(uvec3 speed) {
   float x = float(speed.x) * 3.7252902984619140625e-9f, y = float(speed.y) * 3.7252902984619140625e-9f,
         z = float(speed.z) * 3.7252902984619140625e-9f;

@@ -15,7 +15,8 @@ namespace {
 
 // Share of the picture that automatic framing leaves free on each side.
 constexpr double kMargin = 0.03;
-// Least distance from the box, as a share of its diagonal: a level view of flat ground would fit from its very border.
+// Minimum distance from the box, as a fraction of its diagonal: a level view of flat ground would otherwise fit from
+// its very border.
 constexpr double kLeastDistance = 0.05;
 
 void require_fov(double fov_deg) {
@@ -24,8 +25,8 @@ void require_fov(double fov_deg) {
 
 bool finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// The eye's places across one axis of the picture at which all points are between its two edges: `low` + tangent * z to
-// `high` - tangent * z, for an eye at depth z.
+// The eye's positions across one axis of the picture at which all points are between its two edges: `low` + tangent * z
+// to `high` - tangent * z, for an eye at depth z.
 struct Across {
   double tangent;
   double low = -std::numeric_limits<double>::infinity();
@@ -77,7 +78,7 @@ Camera Camera::framed(const WorldBox& box, const ViewSettings& settings, double 
   const double azimuth = glm::radians(settings.azimuth_deg), elevation = glm::radians(settings.elevation_deg);
   Camera camera;
   camera.forward_ = -towards(azimuth, elevation, grid_north_azimuth);
-  // A quarter turn anticlockwise from where the camera stands: also defined when it looks straight down.
+  // A quarter turn anticlockwise from the camera's position: also defined if it looks straight down.
   camera.right_ = towards(azimuth - glm::radians(90.0), 0, grid_north_azimuth);
   camera.up_ = cross(camera.right_, camera.forward_);
   camera.half_height_ = std::tan(glm::radians(settings.fov_deg) / 2);
@@ -100,7 +101,7 @@ Camera Camera::framed(const WorldBox& box, const ViewSettings& settings, double 
   camera.eye_ = middle + sideways.middle() * camera.right_ + upwards.middle() * camera.up_ +
                 std::max(1.0, settings.distance) * depth * camera.forward_;
   if (settings.distance < 1) {
-    // Its place beside the box's middle, too, is that of an eye with the whole box before it.
+    // Its position beside the box's centre is also that of an eye with the whole box in front of it.
     const dvec3 near = focus.value_or(middle);
     camera.eye_ = near + settings.distance * (camera.eye_ - near);
   }

@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// Of two stations with one eye, the way from one to the other is the target's alone; it takes this long.
+// Between two stations with the same eye, only the target moves; it takes this long.
 constexpr double kLeastKnot = 1e-3;
 
 struct Knots {
@@ -48,7 +48,7 @@ CameraStation CameraPath::at(double share) const {
   const double t = std::clamp(share, 0.0, 1.0) * knots_.back();
   const auto above = std::upper_bound(knots_.begin(), knots_.end() - 1, t);
   const std::size_t i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, above - knots_.begin())) - 1;
-  // Beyond the ends the path goes on as it came.
+  // Beyond its ends the path is extrapolated.
   dvec3 eyes[4], targets[4];
   Knots knots{};
   for (int j = 0; j < 4; ++j) {

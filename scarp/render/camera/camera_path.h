@@ -3,7 +3,7 @@
 //
 // Eye and target each run along a Catmull-Rom spline in its centripetal form (C. Yuksel et al., "Parameterization and
 // applications of Catmull-Rom curves", 2011), which has neither loops nor cusps between its points. Both share the
-// eye's parameter: at every point of the table the camera looks where the table says.
+// eye's parameter: at every point of the table the camera looks at the target of that point.
 #pragma once
 
 #include <vector>
@@ -19,10 +19,10 @@ struct CameraStation {
 
 class CameraPath {
  public:
-  /// Throws Error when there is no station.
+  /// Throws Error if there are no stations.
   explicit CameraPath(std::vector<CameraStation> stations);
 
-  /// The station at a share of the way, 0 (the first) to 1 (the last).
+  /// Returns the station at a fraction of the path, 0 (the first) to 1 (the last).
   CameraStation at(double share) const;
 
  private:

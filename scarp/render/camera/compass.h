@@ -7,7 +7,7 @@
 
 namespace scarp {
 
-/// Unit vector of the world that points to a compass azimuth and an altitude above the horizon, in radians.
+/// Returns the world unit vector towards a compass azimuth and an altitude above the horizon, in radians.
 /// `grid_north_azimuth` is the compass azimuth of the world's y axis.
 dvec3 towards(double azimuth, double altitude, double grid_north_azimuth);
 

@@ -23,7 +23,7 @@ double device_depth(double z, const DepthRange& range) {
   const double n = range.near_m, f = range.far_m;
   if (range.reversed) {
     if (std::isinf(z)) return 0;
-    // 1 - f (z - n) / ((f - n) z), without taking nearly equal numbers from one another.
+    // 1 - f (z - n) / ((f - n) z), without cancellation.
     return std::isinf(f) ? n / z : n * (f - z) / ((f - n) * z);
   }
   if (std::isinf(z)) return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Depths for other renderers: what a z-buffer holds for a point that a ray has met.
+// Depths for other renderers: the z-buffer value of a point that a ray hit.
 //
 //              near                      far            z   metres along the camera's view axis (linear view depth)
 //   eye *-------|----------*---------------|-->  z      r   metres along the ray: r = z / cos of the angle to the axis
@@ -10,10 +10,10 @@
 //                                    z_clip = (f z - f n) / (f - n) (Vulkan, [0, 1]); OpenGL's clip depth,
 //   z_ndc = (f + n) / (f - n) - 2 f n / ((f - n) z) in [-1, 1], becomes (z_ndc + 1) / 2 in the window: the same number.
 //
-// The founding text on the semi-voxel caster has this formula with r, "the distance along the ray -- the same as the
-// vertex - eye distance". That is right on the view axis alone: in the corner of a picture of 60 degrees by 4:3 r
-// is 1.39 times z, and terrain written so lies behind meshes that it should hide. With `reversed`, 1 - that: floats
-// keep their precision at the far end then (n / z for an infinite far plane).
+// The founding text on the semi-voxel caster uses r in this formula, "the distance along the ray -- the same as the
+// vertex - eye distance". That holds on the view axis only: in the corner of a 4:3 picture with a field of view of 60
+// degrees, r is 1.39 times z, and terrain written this way lies behind meshes that it should hide. With `reversed`, 1 -
+// that: floats keep their precision at the far end then (n / z for an infinite far plane).
 #pragma once
 
 #include <limits>
@@ -28,16 +28,17 @@ struct DepthRange {
   bool reversed = false;                                   ///< 1 at the near plane, 0 at the far one
 };
 
-/// Throws Error when a plane is out of its range.
+/// Throws Error if a plane is out of range.
 void validate(const DepthRange& range);
 
-/// Metres along the view axis of what lies t lengths of `direction` from the eye; `forward` is the axis, a unit vector.
+/// Returns the distance along the view axis, in metres, of the point t lengths of `direction` from the eye; `forward`
+/// is the axis, a unit vector.
 inline double view_depth(const dvec3& direction, double t, const dvec3& forward) { return t * dot(direction, forward); }
 
-/// What OpenGL (window depth, default glDepthRange) and Vulkan have in a depth buffer for a view depth in metres; 0..1
-/// between the planes, beyond outside. z may be infinite: nothing there.
+/// Returns the depth buffer value of OpenGL (window depth, default glDepthRange) and Vulkan for a view depth in metres:
+/// 0..1 between the planes, outside this range beyond them. An infinite z means no surface.
 double device_depth(double z, const DepthRange& range);
-/// And back. Infinite for what lies on an infinite far plane.
+/// The inverse. Infinite on an infinite far plane.
 double view_depth_from_device(double depth, const DepthRange& range);
 
 }  // namespace scarp

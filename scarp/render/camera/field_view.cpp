@@ -4,7 +4,8 @@
 namespace scarp {
 namespace {
 
-// Of the way to the focus: ground that near is a share of the picture that does not depend on the scale.
+// Fraction of the distance to the focus: ground this close covers a part of the picture that does not depend on the
+// scale.
 constexpr double kClear = 0.01;
 
 }  // namespace

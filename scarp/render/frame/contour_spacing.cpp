@@ -13,7 +13,7 @@ namespace {
 
 // The lattice of rays: its meshes are 20 pixels wide in a picture of the default size.
 constexpr int kAcross = 64, kDown = 36;
-// Lines on less of the sloping ground than this are overlooked.
+// Lines on less of the sloping ground than this are easily missed.
 constexpr double kSeen = 0.01;
 
 // The smallest of 1, 2 and 5 times a power of ten that is not below x > 0.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether the contour lines of a picture can be told apart: lines closer than a few pixels are left out
-// (surface/ground_paint.h), and a picture with too small an interval has none.
+// Checks whether the contour lines of a picture are distinguishable: lines closer than a few pixels are omitted
+// (surface/ground_paint.h), so a picture with too small an interval has none.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace scarp {
 
 /// Returns an interval at which half of the ground has all lines and nearly all of it the heavy ones, 1, 2 or 5 times a
 /// power of ten in metres, not exaggerated, if the interval of the settings is too small for nearly all of the ground
-/// in the picture. Returns nullopt if lines are seen, or there is no sloping ground. Follows some thousand rays.
+/// in the picture. Returns nullopt if lines are visible, or there is no sloping ground. Follows some thousand rays.
 std::optional<double> better_contours(const Scene& scene, const Camera& camera, const PictureSettings& settings);
 
 }  // namespace scarp

@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-// Pixels along a tile's side: neighbouring rays meet the same cells, and a tile is some milliseconds of work.
+// Pixels along a tile's side: neighbouring rays visit the same cells, and a tile takes a few milliseconds.
 constexpr int kTile = 32;
 constexpr int kMostPointsPerSide = 32;
 static_assert(kMostPointsPerSide * kMostPointsPerSide == kMostPointsOfTile);

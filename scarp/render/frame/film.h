@@ -27,7 +27,7 @@ struct Image {
   std::uint8_t& opacity(int x, int y) { return alpha[static_cast<std::size_t>(std::int64_t{y} * width + x)]; }
 };
 
-/// The byte for a share of a pixel's points.
+/// The byte for a fraction of a pixel's points.
 std::uint8_t opacity_byte(std::size_t shown, std::size_t points);
 
 /// Sets a pixel from linear light.
@@ -58,17 +58,17 @@ class PixelTiles {
   std::int64_t across_, down_;
 };
 
-/// Of a tile's points at most.
+/// Maximum number of points in a tile.
 constexpr std::size_t kMostPointsOfTile = 1024;
 
-/// A place in a picture whose colour is asked for; pixel (i, j) covers [i, i+1) x [j, j+1).
+/// A sample position in a picture; pixel (i, j) covers [i, i+1) x [j, j+1).
 struct PicturePoint {
   double x, y;
   int pixel_x, pixel_y;
   int index;  ///< of the point in its pixel, from 0
 };
 
-/// aa x aa evenly spaced points for each pixel, the pixels row by row, the points of one pixel together.
+/// Returns aa x aa evenly spaced points per pixel: pixels row by row, the points of one pixel together.
 std::vector<PicturePoint> points_of(const PixelTile& tile, int aa);
 
 /// The mean colour of the points of one pixel, in linear light.

@@ -32,8 +32,8 @@ constexpr std::uint32_t kResolveWords[] = {
 #include "scarp/render/frame/terrain_frame_resolve.comp.inc"
 };
 
-// Pixels with water have three rays, of which the mirrored one and the one to the bottom are under way together. What
-// these see is lit together as well; where there is water the camera sees no ground.
+// Pixels with water have three rays, of which the mirrored one and the one to the bottom are under way together. Their
+// hits are also lit together; where there is water, the camera sees no ground.
 std::uint64_t seens_per_pixel(bool water) { return water ? glsl::kFrameSeens : 1; }
 std::uint64_t rays_per_pixel(bool water) { return water ? 2 : 1; }
 
@@ -47,13 +47,13 @@ std::uint64_t bytes_per_pixel(bool water, std::string_view march) {
 
 std::string_view march_name(bool stepped) { return stepped ? "fixed-step" : "max-mip"; }
 
-// How many rays to sun and sky a ground has.
+// Number of rays to sun and sky per ground.
 int lights(const glsl::FrameSettings& s, std::uint32_t parts) {
   if ((parts & glsl::kFrameHasSamples) != 0) return s.sun_rays + s.sky_rays;
   return (parts & glsl::kFrameHasShadows) != 0 ? 1 : 0;
 }
 
-// Of rays whose cell_time is the time between two samples.
+// For rays whose cell_time is the time between two samples.
 glsl::ScarpSampling samples(int interpolate, int max_steps) {
   return glsl::scarp_fixed_step(1, interpolate != 0 ? glsl::kScarpRefineSecant : glsl::kScarpRefineNone, max_steps);
 }
@@ -65,7 +65,7 @@ struct FrameStages::Stage {
   std::string_view name;
   std::string_view file;
   std::span<const std::uint32_t> words;
-  std::uint32_t parts;  // that it reads: pictures that differ in others share its shader
+  std::uint32_t parts;  // flags that it reads: pictures that differ in others share its shader
   bool reads_field;
 
   static const Stage kRays, kTake, kWater, kLight, kPaint, kResolve;
@@ -118,7 +118,7 @@ FrameStages::FrameStages(const Device& device, bool stepped)
 ShaderProgram FrameStages::program_of(const Stage& stage, Take take, bool stepped, std::uint32_t parts,
                                       std::uint32_t field_flags) {
   parts &= stage.parts;
-  // What rays have met is told by what they are sent for.
+  // The purpose of a ray determines how its hit is stored.
   if (stage.number == Stage::kTake.number && take != Take::light) parts = 0;
   // Constants that a shader does not have are ignored.
   return {stage.file,
@@ -185,7 +185,7 @@ void FrameStages::record(const Stage& stage, std::uint32_t threads, Take take) {
   commands_.dispatch(pipeline(stage, take), push_, {(threads + kThreads - 1) / kThreads, 1, 1});
 }
 
-// Runs what has been recorded. Nothing is when progress throws.
+// Runs the recorded commands. Nothing is recorded if `progress` throws.
 void FrameStages::submit() {
   commands_.barrier();
   commands_.read(counters_.buffer(), 0, sizeof counts_, &counts_);
@@ -254,12 +254,12 @@ std::optional<double> FrameStages::run(
   const auto kind = [&](std::uint32_t more_flags) {
     return glsl::batch_ground_kind(work.field_flags | more_flags, work.sample_type);
   };
-  // Rays that the sea reflects start on the ground where that is the sea's floor.
+  // Reflected rays start on the ground where the sea is flat ground.
   sight_ = {.statistics = tells_steps,
             .ground_kind = kind(walls | (water ? glsl::kScarpStarts : 0)),
             .sampling = samples(s.interpolate, s.steps + 1),
             .exact_only = work.exact_only};
-  // Steps do not tell any hit from the closest: one shader for both.
+  // Steps are the same for any hit and closest hit: one shader for both.
   light_ = {.any = true,
             .statistics = stepped_ && tells_steps,
             .ground_kind = kind(glsl::kScarpStarts),

@@ -32,7 +32,7 @@ struct FrameWork {
   const glsl::FrameSettings* numbers = nullptr;
   std::uint64_t settings = 0;  ///< address of the numbers
   std::uint64_t ground = 0;    ///< address
-  std::uint64_t sights = 0;    ///< address of a FrameSight per pixel; 0: not asked for
+  std::uint64_t sights = 0;    ///< address of a FrameSight per pixel; 0: not requested
   std::uint32_t parts = 0;     ///< kFrameHas...
   std::uint32_t field_flags = 0;
   std::uint32_t sample_type = 0;  ///< GroundBuffers::sample_type
@@ -48,7 +48,7 @@ class FrameStages {
   FrameStages& operator=(const FrameStages&) = delete;
 
   /// Calls take(first, words) with the words of all pixels, part by part. Returns the seconds by the device's clock, if
-  /// it has one. Throws Error: no memory on the device, the device is lost; Interrupted when progress asks for it.
+  /// it has one. Throws Error if the device lacks memory or is lost. Throws Interrupted if `progress` returns false.
   std::optional<double> run(const FrameWork& work, const Progress& progress,
                             const std::function<void(std::int64_t first, std::span<const std::uint32_t> words)>& take);
 
@@ -82,7 +82,7 @@ class FrameStages {
       owners_{"owners of rays"}, grounds_{"grounds in sight"}, counters_{"counts of rays"}, sums_{"sums of pixels"},
       pixels_{"pixels"};
   std::vector<std::uint32_t> words_;
-  // Of the picture.
+  // State of the current picture.
   const FrameWork* work_ = nullptr;
   const Progress* progress_ = nullptr;
   double done_ = 0;  // share of the picture

@@ -11,16 +11,16 @@
 namespace scarp {
 namespace {
 
-// Steps that fog by iterations and pictures of iterations take for the most, where the march has no such number.
+// Maximum steps assumed by fog and pictures of iterations if the march has no limit.
 constexpr double kMostSteps = 256;
 constexpr std::string_view kFixedStep = "fixed-step";
-// Points whose surfaces are asked of memory ahead of time.
+// Number of points whose surfaces are prefetched.
 constexpr std::size_t kPointsAhead = 8;
 
-// Surfaces of voxels, shapes and meshes that lie in the plane of the water: rounding decides which of the two a ray
-// meets first. Relative to the distance, or to the diagonal of the scene if that is longer. Rays through voxels are
-// rounded most, by 2^-20 of a voxel (and 2^-28 of the direction), and no voxel is longer than the diagonal. A terrain's
-// own samples say where it is level with the water.
+// Surfaces of voxels, shapes and meshes in the plane of the water: rounding decides which of the two a ray hits first.
+// Relative to the distance, or to the diagonal of the scene if that is longer. Rays through voxels are rounded most, by
+// 2^-20 of a voxel (and 2^-28 of the direction), and no voxel is longer than the diagonal. For terrain, the samples
+// themselves determine where it is level with the water.
 constexpr double kCoincident = 0x1p-20;
 
 }  // namespace
@@ -64,7 +64,7 @@ bool FrameTile::shows_steps() const {
   return view_.settings().look == Look::comanche && view_.settings().comanche.iterations;
 }
 
-// False: answered here, without the scene.
+// Returns false if it is resolved here, without the scene.
 bool FrameTile::look(RayRound& round) {
   asked_ = true;
   if (const StepMarch* march = view_.step_march()) {
@@ -121,7 +121,7 @@ double FrameTile::coincidence(double t) const {
   return kCoincident * std::max(t, box.empty() ? 1.0 : length(box.high - box.low));
 }
 
-// The level is before what lies in its plane; sides of the basin are behind.
+// The water is in front of surfaces in its plane; sides of the basin are behind.
 bool FrameTile::is_before(const Water::Meeting& meeting, const Hit& hit) const {
   const double margin = coincidence(meeting.t);
   return meeting.t < (meeting.normal.z > 0 ? hit.t + margin : hit.t - margin);
@@ -196,7 +196,7 @@ void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting, bool
                                         found.reflectance);
   }
   found.mirror = send(point, meeting, mirrored, water.settings().reflection ? reach : 0);
-  // Above what lies in the plane of the water, too.
+  // Also above surfaces in the plane of the water.
   if (const double margin = coincidence(meeting.t); meeting.normal.z > 0 && margin > 0)
     sent_.back().ray.origin.z = water.level() + margin;
   if (deep && water.settings().refraction && !meeting.sea) {
@@ -237,7 +237,7 @@ FrameTile::Seen* FrameTile::seen_or_sent(std::size_t i) {
 bool FrameTile::ask_light(RayRound& round) {
   if (shows_steps()) return false;
   const Lighting& lighting = view_.lighting();
-  // Ray::start says where a ray begins on a height field; for other fields their hits have to.
+  // Ray::start suffices for rays from a height field; other fields need their hits.
   const bool by_hit = !view_.scene().only_heights();
   round.question = RayRound::Question::any;
   round.rays.clear();

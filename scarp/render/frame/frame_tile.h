@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The colours of a tile's points, in rounds of rays:
+// Computes the colours of a tile's points, in rounds of rays:
 //
 //   camera rays ──▶ rays that water and metal send on ──▶ rays from all surfaces met to sun and sky, in as many rounds
 //   as these need
@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// Maximum number of rays that a tile asks in one round.
+/// Maximum number of rays of a tile in one round.
 std::size_t most_rays_of(const FrameView& view);
 
 class FrameTile {
@@ -28,7 +28,7 @@ class FrameTile {
   std::vector<vec3> pixels() const;
   /// Whether the points show a surface or water, not the sky or the plinth. Valid after the last round.
   std::vector<bool> shown() const;
-  /// The water that a ray of the camera meets before anything else.
+  /// The water that a camera ray hits before anything else.
   std::optional<Water::Meeting> water_of(const Ray& ray, const Hit& hit) const;
 
  private:
@@ -36,27 +36,27 @@ class FrameTile {
     std::size_t point;
     double t;
     double reflectance;
-    vec3 glitter;                       // of the sun, where the mirrored ray meets nothing
+    vec3 glitter;                       // of the sun, if the mirrored ray hits nothing
     std::size_t mirror;                 // in sent_
     std::optional<std::size_t> bottom;  // likewise
   };
-  // A surface that mirrors, met by a ray of the camera.
+  // A mirroring surface hit by a camera ray.
   struct MirrorPoint {
     std::size_t point;
     float share;  // of the light of `mirror`, tinted; the rest is the surface's own
     vec3 tint;
     std::size_t mirror;  // in sent_
   };
-  // What a ray of the camera, or one that was sent on, has met. There are many: they hold no surfaces.
+  // Hit of a camera ray, or of one that water or metal sent on. There are many, so they do not hold surfaces.
   struct Seen {
     Ray ray;
     Hit hit;
     std::uint32_t point = 0;
     std::uint32_t steps = 0;  // of the march, if it was counted
-    vec3 colour{0.0f};        // of a surface in its light, before any air; of all else with the air
+    vec3 colour{0.0f};        // of a lit surface, before any air; of everything else including the air
     bool lit = false;         // whether it is such a surface
   };
-  // A surface whose light has been asked for.
+  // A surface whose light rays have been requested.
   struct Open {
     Seen* seen;
     SceneSurface surface;
@@ -70,7 +70,7 @@ class FrameTile {
   void take_look(const RayRound& round);
   bool ask_sent(RayRound& round);
   void take_sent(const RayRound& round);
-  // By number, those of seen_ first; null after the last.
+  // By index, those of seen_ first; null after the last.
   Seen* seen_or_sent(std::size_t i);
   bool ask_light(RayRound& round);
   void take_light(const RayRound& round);
@@ -95,7 +95,7 @@ class FrameTile {
   std::vector<Seen> seen_, sent_;
   std::vector<WaterPoint> water_;
   std::vector<MirrorPoint> mirrors_;
-  std::vector<const Hit*> sent_from_;                    // surfaces on which rays of sent_ begin; null: those of water
+  std::vector<const Hit*> sent_from_;                    // surfaces on which rays of sent_ start; null: those of water
   std::vector<std::optional<Water::Meeting>> meetings_;  // by point; empty without water
   Stage stage_ = Stage::look;
   bool asked_ = false;

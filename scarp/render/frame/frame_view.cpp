@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
 constexpr float kUnlitWall = 0.55f;
 
-// Rays over ground that wraps round need an end: the top of everything.
+// Rays over wrapped ground need an end: the top of everything.
 std::optional<double> ceiling_of(const Scene& scene) {
   if (const HeightField* field = scene.only_heights()) return field->max_height();
   double top = !scene.box().empty() ? scene.box().high.z : -kInfinity;
@@ -32,14 +32,14 @@ std::optional<double> ceiling_of(const Scene& scene) {
   return scene.wraps() || !scene.endless() ? std::optional(top) : std::nullopt;
 }
 
-// No ray from a surface has a longer way to the end of the scene.
+// No ray from a surface has a longer path to the end of the scene.
 double ao_distance_of(const Scene& scene, const PictureSettings& settings) {
   const WorldBox& box = scene.box();
   return scene.endless() || box.empty() ? settings.ao_distance
                                         : std::min(settings.ao_distance, length(box.high - box.low));
 }
 
-// Haze of the settings' share lies over the scene, not between it and a camera that stands back.
+// The settings' haze covers the scene, not the space between it and a distant camera.
 Haze haze_of(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
   if (settings.look == Look::comanche || settings.fog.kind != FogKind::none) return {};
   if (std::isfinite(settings.haze_distance)) return {1 / settings.haze_distance, 0};
@@ -103,7 +103,7 @@ vec3 FrameView::lit(const Ray& ray, const Hit& hit, const SceneSurface& surface,
 
 vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {
   if (!hit) {
-    // Ground that lies farther away than the picture reaches is at the horizon.
+    // Ground beyond the picture's reach is at the horizon.
     return fog_(ray, kInfinity,
                 horizon_below() ? glsl::scarp_sky_beyond(sky().numbers(), ray.direction) : sky().colour(ray.direction));
   }

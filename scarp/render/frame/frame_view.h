@@ -52,27 +52,26 @@ class FrameView {
   bool mirrors() const { return mirrors_; }
   /// Null without a stepped march; see step_march_of().
   const StepMarch* step_march() const { return step_march_ ? &*step_march_ : nullptr; }
-  /// Height above which nothing is met, metres of world z; nothing if the scene has no such height.
+  /// Height above which there is nothing to hit, metres of world z; nullopt if there is none.
   const std::optional<double>& ceiling() const { return ceiling_; }
-  /// Whether the horizon's colour fills the sky below the horizon: ground farther away than the picture reaches.
+  /// Whether the horizon's colour fills the sky below the horizon, for ground beyond the picture's reach.
   bool horizon_below() const { return scene_.endless() || settings_.look == Look::comanche; }
 
-  /// Whether light has to be asked for there: not for walls, and not inside of a voxel.
+  /// Whether light rays are needed there: not for walls, and not inside a voxel.
   static bool is_lit(const SceneSurface& surface) { return !surface.wall && surface.normal != dvec3(0.0); }
   /// The surface's colour without light.
   vec3 surface_colour(const Ray& ray, const Hit& hit, const SceneSurface& surface) const;
-  /// The surface's colour in its light and in that which it emits. `rays` and `blocked` are those that `asked` refers
-  /// to.
+  /// The surface's colour, lit and with its emission. `rays` and `blocked` are those that `asked` refers to.
   vec3 lit(const Ray& ray, const Hit& hit, const SceneSurface& surface, const LightRays& asked,
            std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
-  /// The colour of what is not lit by rays: walls, the inside of voxels, the sky. `surface` is that of the hit.
+  /// The colour of everything not lit by rays: walls, the inside of voxels, the sky. `surface` is that of the hit.
   vec3 unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const;
   /// A colour seen through t metres of haze or fog.
   vec3 in_air(vec3 colour, const Ray& ray, double t) const;
   /// Light from beyond the scene, attenuated by the fog along the ray.
   vec3 from_beyond(vec3 light, const Ray& ray) const;
 
-  /// Colour of walls in linear light, and the share of it on walls that face away from the sun: 1 in unlit pictures.
+  /// Colour of walls in linear light, and the fraction of it on walls that face away from the sun: 1 in unlit pictures.
   vec3 earth() const;
   float unlit_wall() const;
 

@@ -14,12 +14,12 @@
 
 namespace scarp {
 
-/// A buffer that is made again when it is too small, and written when what is to be in it has changed.
+/// A buffer that is reallocated when too small, and written only when its contents change.
 class KeptBuffer {
  public:
   explicit KeptBuffer(const char* name) : name_(name) {}
 
-  /// At least so large; contents are lost when it grows.
+  /// Ensures this size; contents are lost when it grows.
   const DeviceBuffer& reserve(const Device& device, std::uint64_t bytes) {
     if (!buffer_ || buffer_->bytes() < bytes) {
       buffer_.reset();

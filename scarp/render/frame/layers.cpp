@@ -43,7 +43,7 @@ class LayersTile final : public TileWork {
   }
 
  private:
-  // Of pixel i of the tile, in the layers.
+  // Index in the layers of pixel i of the tile.
   std::size_t pixel(std::size_t i) const {
     const auto across = static_cast<std::size_t>(tile_.x1 - tile_.x0);
     return (static_cast<std::size_t>(tile_.y0) + i / across) * static_cast<std::size_t>(layers_.width) +

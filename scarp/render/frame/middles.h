@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the rays through the middles of a picture's pixels hit.
+// Hits of the rays through the centres of a picture's pixels.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace scarp {
 
-/// The rays through the middles of a tile's pixels, row by row.
+/// The rays through the centres of a tile's pixels, row by row.
 std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& tile);
 
-/// Receives a pixel's index (rows from the top), its ray, what that hit, and its steps (0 without `count`).
+/// Receives a pixel's index (rows from the top), its ray, its hit, and its steps (0 without `count`).
 using TakeMiddle = std::function<void(std::size_t, const Ray&, const Hit&, std::uint32_t)>;
 
 /// Calls `take` for each pixel, on any thread. `count`: whether to count steps. If not null, `stepped` traces the rays

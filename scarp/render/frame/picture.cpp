@@ -307,7 +307,7 @@ void require_visible(const Scene& scene) {
 
 WorldBox picture_box(const Scene& scene) {
   WorldBox box = scene.box();
-  // One copy of ground that wraps round.
+  // One copy of wrapped ground.
   if (const HeightField* field = scene.terrain(); field && field->wraps())
     box = around(box, {{0, 0, field->min_height()}, {field->width(), field->depth(), field->max_height()}});
   if (box.empty()) {

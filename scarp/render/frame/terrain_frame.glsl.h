@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A picture of a height field made on a device: what the compute shaders of its stages and the C++ that runs them
-// (terrain_frame_vk.h) agree upon.
+// A picture of a height field rendered on a device: the interface between the compute shaders of its stages and the C++
+// that runs them (terrain_frame_vk.h).
 //
 //   rays ──▶ march ──▶ take ──▶ water ──▶ march ──▶ take ──▶ light ──▶ march ──▶ take ──▶ ... ──▶ paint ──▶ resolve
 //   of the             what is  only if there is:            a ray to sun or sky for each       ground     pixels
@@ -16,11 +16,11 @@
 //       │  ├──counters──▶ FrameCounters: how many rays and grounds there are
 //       │  ├──sums──────▶ FrameSum of each pixel, over its points
 //       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | opacity << 24
-//       │  └──sights────▶ FrameSight per pixel, for those who ask what rays have found
+//       │  └──sights────▶ FrameSight per pixel, for callers that need the hits of rays
 //       └─ which pixels, and which of their points
 //
-// All pixels of a part of the picture go from stage to stage together, point by point. A ray that has nothing to march
-// takes no place in the list, so a march has as many invocations as there are rays.
+// All pixels of a part of the picture go from stage to stage together, point by point. Rays that have nothing to march
+// are not in the list, so a march has as many invocations as rays.
 #ifndef SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 #define SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 
@@ -32,8 +32,8 @@
 SCARP_GLSL_BEGIN
 
 // Specialisation constants of all stages: threads of a workgroup; whether rays are stepped (fixed-step) or exact
-// (max-mip); what the picture has (kFrameHas...) and what the field is (ScarpField::flags), so that a shader is made of
-// what it needs: drivers take seconds for all of it. Of `take` another one: whether rays are those of light.
+// (max-mip); the features of the picture (kFrameHas...) and of the field (ScarpField::flags), so that a shader contains
+// only what it needs: drivers take seconds to compile everything. For `take` also whether rays are those of light.
 const uint kFrameHasWater = 1u;
 const uint kFrameHasShadows = 2u;
 const uint kFrameHasPatches = 4u;  ///< detail by noise, or natural ground
@@ -42,12 +42,12 @@ const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
 const uint kFrameHasSamples = 64u;  ///< of sun and sky
 const uint kFrameHasPlinth = 128u;  ///< below the terrain
-/// Walls at the rims of holes of the plinth: the march knows those of solid ground.
+/// Walls at the rims of holes of the plinth; the march handles those of solid ground.
 const uint kFrameHasRims = 256u;
 const uint kFrameHasScattering = 512u;  ///< sky
 const uint kFrameHasTexture = 1024u;    ///< detail by an image
 
-// Rays of a point of the picture, and what they have seen.
+// Rays of a point of the picture, and their hits.
 const int kFrameCamera = 0;
 const int kFrameMirror = 1;
 const int kFrameBottom = 2;
@@ -77,11 +77,11 @@ struct FrameRampPiece {
   uint count;
 };
 
-/// All but `aa` and what is said to be in pixels is in metres of the world or grid units. Heights in metres count from
-/// near the lowest ground: of a height above the sea floats hold less, the higher the ground lies.
+/// Everything except `aa` and members documented in pixels is in metres of the world or grid units. Heights in metres
+/// are relative to the lowest ground, because floats lose precision at large heights above the sea.
 struct FrameSettings {
-  // Of the camera, in grid units: the ray through a place in the picture is the sum of these, x pixels to the right and
-  // y down. Along its axis it goes a metre per time.
+  // The camera in grid units: the ray through a position in the picture is the sum of these, x pixels to the right and
+  // y down. Along the view axis it travels a metre per time.
   ScarpLine line;
   ScarpLine line_right;
   ScarpLine line_down;
@@ -98,13 +98,13 @@ struct FrameSettings {
   vec2 per_cell;
   float metres_per_sample;
   float per_metre;        ///< sample units
-  float base_of_heights;  ///< sample units: where metres of heights count from, with what it lies above their zero
+  float base_of_heights;  ///< sample units: origin of heights in metres, with its height above their zero
   float metres_at_base;
   float last_row;  ///< rows of samples - 1
-  int plinth;      ///< 1: there is one below the terrain, down to
+  int plinth;      ///< 1: there is a plinth below the terrain, down to
   float base_sample;
   float base_sample_low;
-  // The steps of the look comanche; of rays to the sun those of the march.
+  // The steps of the look comanche; rays to the sun use those of the march.
   float step;
   int steps;
   int interpolate;
@@ -115,7 +115,7 @@ struct FrameSettings {
   int sun_interpolate;
   int iterations;  ///< 1: a picture of the steps
   int most_steps;
-  int no_descent;  ///< 1: what lies below the horizon has its colour
+  int no_descent;  ///< 1: everything below the horizon has its colour
   // Water.
   int water;
   float level;
@@ -155,7 +155,7 @@ struct FrameSettings {
   vec3 earth;
   float unlit_wall;
   int tone_curve;  ///< 1: bright colours are compressed
-  int alpha;       ///< 1: pixels are means of the points that show something, and carry the share of these
+  int alpha;       ///< 1: pixels are means of the points that show something, and store their fraction
   int unlit;       ///< 1: no light
   // Ground.
   int natural;
@@ -219,7 +219,7 @@ const int kFrameGround = 1;
 const int kFrameWall = 2;
 const int kFrameWater = 3;
 
-/// What the first ray of a pixel met.
+/// Hit of the first ray of a pixel.
 struct FrameSight {
   int kind;  ///< kFrameGround and so on
   float t;   ///< metres
@@ -227,28 +227,28 @@ struct FrameSight {
   uint steps;
 };
 
-/// A ray and what it has met.
+/// A ray and its hit.
 struct FrameSeen {
   ScarpLine line;
   float metres;       ///< per time
-  int asked;          ///< 0: there is no such ray
+  int asked;          ///< 0: no ray
   int kind;           ///< kFrameNothing, kFrameGround, kFrameWall
   ScarpTwoFloat t;    ///< time; of a ray that marches when it begins
   float per_time;     ///< of ScarpSent
   ScarpTwoFloat end;  ///< time; kept of rays from the water
   ivec2 cell;         ///< of ground and walls
   vec2 place;
-  float sun_cosine;  ///< what is seen of the sun: the sum over its rays
-  float sky;         ///< what is seen of the sky: its rays that nothing is in the way of
+  float sun_cosine;  ///< visible sun: the sum over its rays
+  float sky;         ///< visible sky: its unblocked rays
   float weight;      ///< of the ray of light that is under way
   vec3 normal;       ///< of ground, for shading
   vec3 light;        ///< of ground, before the air between
   uint steps;
 };
 
-/// Where the camera's ray comes to the water.
+/// Where the camera ray reaches the water.
 struct FrameWater {
-  int kind;         ///< 0: it does not; 1: from above; 2, 3: through a side of constant x, y
+  int kind;         ///< 0: nowhere; 1: from above; 2, 3: through a side of constant x, y
   ScarpTwoFloat t;  ///< time
   int sea;          ///< 1: a cell that is flat ground at the level
   ivec2 cell;
@@ -258,7 +258,7 @@ struct FrameWater {
   vec3 glitter;
 };
 
-/// The fourth byte of a pixel: 255 times the share of its points in the mean.
+/// The fourth byte of a pixel: 255 times the fraction of its points in the mean.
 SCARP_FN uint scarp_frame_opacity(float share) { return uint(floor(255.0f * share + 0.5f)); }
 
 SCARP_GLSL_END

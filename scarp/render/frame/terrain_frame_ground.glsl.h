@@ -83,13 +83,13 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction) {
   Settings s = settings();
   float metres = seen.t.high * seen.metres;
   vec3 normal = normal_of(scarp_slope(field, seen.cell, seen.place));
-  // What a pixel covers is longer than it is wide where ground is seen from the side: the mean of both.
+  // A pixel's footprint is longer than wide on ground seen from the side: uses the mean of both.
   float footprint =
       s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres) / sqrt(max(0.05, -dot(direction, normal)));
   ScarpCell cell = scarp_cell(field, seen.cell.x, seen.cell.y, s.is.base_of_heights);
   float height = scarp_bilinear(cell, seen.place.x, seen.place.y) * s.is.metres_per_sample + s.is.metres_at_base;
   ScarpPaintPlace place = paint_place(seen.line, seen.t);
-  // One place where noise is asked for keeps the shader small.
+  // A single call of noise keeps the shader small.
   vec3 patches = vec3(0.0);
   for (int set = 0; set < (has_patches ? kScarpPatchSets : 0); ++set) {
     if (set == kScarpDetail ? s.is.detail == 0.0 || has_texture : s.is.natural == 0) continue;

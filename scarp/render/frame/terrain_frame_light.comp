@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray to the sun or the sky from each ground that is seen, those of Lighting::ask(), in its order: a stage of
+// A ray to the sun or the sky from each visible ground point, those of Lighting::ask(), in its order: a stage of
 // terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -22,7 +22,7 @@ vec2 sample_point(uint pixel, uint purpose, int i) {
                            uint(s.is.samples * push.point + i));
 }
 
-// A ray of the light on what has been seen, and what it counts for where nothing is in its way.
+// A light ray of a visible point, and its weight if nothing blocks it.
 struct LightRay {
   ScarpLine line;
   float end;  // metres
@@ -38,7 +38,7 @@ LightRay light_ray(ScarpField field, FrameSeen seen, uint pixel) {
   vec3 direction = s.is.to_sun;
   bool to_sun = goes_to_sun();
   if (has_samples && (!to_sun || s.is.sun_depth > 0.0)) {
-    // One place where points are asked for keeps the shader small.
+    // A single call for points keeps the shader small.
     vec2 at = sample_point(pixel, to_sun ? kScarpPointsOfSun : kScarpPointsOfSky,
                            to_sun ? push.light : push.light - s.is.sun_rays);
     vec3 axis = to_sun ? s.is.to_sun : normal_of(scarp_slope(field, seen.cell, seen.place));
@@ -48,7 +48,7 @@ LightRay light_ray(ScarpField field, FrameSeen seen, uint pixel) {
   }
   ray.weight = to_sun ? max(0.0, dot(seen.normal, direction)) : 1.0;
   ray.end = to_sun ? kScarpNever : s.is.ao_distance;
-  // Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
+  // Rays over wrapped ground need an end: there is nothing above the highest summit, and low rays end far away.
   if (to_sun && (field.flags & kScarpWraps) != 0u)
     ray.end = max((field.highest - z.high) * s.is.metres_per_sample, 0.0) / max(direction.z, kScarpLeastSunRise);
   return ray;
@@ -67,7 +67,7 @@ void main() {
     Seens(push.seens).of[i].weight = light.weight;
     list_ray(sent, settings().is.sun_step, i);
   } else if (goes_to_sun()) {
-    // Nothing is in the way.
+    // Nothing blocks it.
     Seens(push.seens).of[i].sun_cosine = seen.sun_cosine + light.weight;
   } else {
     Seens(push.seens).of[i].sky = seen.sky + 1.0;

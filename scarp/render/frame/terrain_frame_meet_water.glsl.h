@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where rays meet water, for the stages that include this: Water::meets(). GLSL.
+// Where rays hit water, for the stages that include this: Water::meets(). GLSL.
 
 // Whether a cell is flat ground at the water's level.
 bool is_sea(ScarpField field, ivec2 cell) {
@@ -12,7 +12,7 @@ bool is_sea(ScarpField field, ivec2 cell) {
 
 bool same_time(ScarpTwoFloat a, ScarpTwoFloat b) { return a.high == b.high && a.low == b.low; }
 
-// The water that a line comes into from outside between 0 and `end`.
+// The water that a line enters from outside between 0 and `end`.
 FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   Settings s = settings();
   FrameWater found;
@@ -45,7 +45,7 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   }
   ScarpTwoFloat t = from;
   if (!wraps) {
-    // The basin is a box without a floor: the last of its three borders to be crossed is where the ray comes in.
+    // The basin is a box without a floor: the ray enters through the last of its three borders that it crosses.
     x = scarp_span_x(field, line);
     y = scarp_span_y(field, line);
     t = scarp_two_later(from, scarp_two_later(x.begin, y.begin));
@@ -62,7 +62,7 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   ScarpCell ground = scarp_cell(field, cell.x, cell.y, z.high);
   if (ground.hole) return found;
   float surface = scarp_surface(field, ground, place.x, place.y);
-  // Who sees the level where the ground is higher, looks from under the ground.
+  // A ray that hits the level below higher ground comes from below the ground.
   if (from_above && surface > z.low) return found;
   found.t = t;
   found.cell = cell;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ground in its light, without the air before it: a stage of terrain_frame.glsl.h.
+// Lit ground, without the air in front of it: a stage of terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Walls of the plinth, for the stages that include this: Plinth (plinth.h). GLSL.
 //
-// Without holes they stand at the border alone, and a ray is told there. With holes the march finds them: it takes the
-// ground for solid, on that part of the way that is above the base.
+// Without holes they exist only at the border, where the ray is tested. With holes the march finds them: it treats the
+// ground as solid, on the part of the ray above the base.
 
 // The ray's height above the plinth's base at time t.
 float above_base(ScarpLine line, ScarpTwoFloat t) {
@@ -11,21 +11,21 @@ float above_base(ScarpLine line, ScarpTwoFloat t) {
   return scarp_two_add(scarp_line_height(line, t), scarp_two_negate(base)).high;
 }
 
-// When a ray that is not level passes the base.
+// Time at which a ray that is not level passes the base.
 ScarpTwoFloat time_at_base(ScarpLine line) {
   Settings s = settings();
   ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
   return scarp_time_at(base, line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z);
 }
 
-// A ray that falls meets no wall below the base.
+// A falling ray hits no wall below the base.
 void end_at_base(ScarpLine line, inout ScarpTwoFloat end) {
   if (line.direction.z < 0.0) end = scarp_two_earlier(end, time_at_base(line));
 }
 
-// Limits to the plinth the way of a ray of the camera, from `begin` to `end`; a wall at the border is put into what
-// the ray has seen. True: the plinth hides the field, by a wall or because the ray falls past it; there is no ground to
-// be looked for.
+// Limits the range of a camera ray, from `begin` to `end`, to the plinth, and records a hit on a wall at the border.
+// Returns true if the plinth hides the field, by a wall or because the ray falls past it: the march is then
+// unnecessary.
 bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTwoFloat end, inout FrameSeen seen) {
   Settings s = settings();
   ScarpLine line = seen.line;
@@ -39,9 +39,9 @@ bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTw
   if (from_below) begin = time_at_base(line);
   end_at_base(line, end);
   if (has_rims) return false;
-  // One that rises comes in through the base, and sees nothing of the ground from below: the march says so.
+  // A rising ray enters through the base and does not hit the ground from below; the march handles this.
   if (from_below) return false;
-  // Through a side of constant column, then one of constant row where that is crossed later: the order of ties.
+  // Through a side of constant column, then one of constant row if that is crossed later: the order of ties.
   bool through_x = scarp_two_less(scarp_two(0.0), x.begin) && !scarp_two_less(x.begin, over);
   bool through_y = scarp_two_less(scarp_two(0.0), y.begin) && !scarp_two_less(y.begin, over);
   if (!through_x && !through_y) return false;
@@ -69,13 +69,13 @@ bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTw
   return true;
 }
 
-// The field as a ray has it that may meet walls at rims.
+// The field for a ray that may hit walls at rims.
 ScarpField walled(ScarpField field) {
   if (has_rims) field.flags |= kScarpSolid;
   return field;
 }
 
-// Whether a ray sees walls: not those at rims if it begins in the rock.
+// Whether a ray hits walls: not those at rims if it starts in the solid.
 bool meets_walls(ScarpField field, ScarpRay ray) {
   if (!has_rims || (ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) return true;
   ScarpCell ground = scarp_cell(field, ray.cell.x, ray.cell.y, ray.z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rays of the camera, one per pixel, and where they would come to the water: a stage of terrain_frame.glsl.h.
+// The camera rays, one per pixel, and where they would reach the water: a stage of terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -19,7 +19,7 @@ ScarpTwoFloat camera_number(float base, float base_low, float right, float right
                            two(base, base_low));
 }
 
-// The camera's ray through a place in the picture, in pixels.
+// The camera ray through a position in the picture, in pixels.
 FrameSeen camera_ray(vec2 at) {
   Settings s = settings();
   ScarpLine base = s.is.line;
@@ -49,40 +49,40 @@ FrameSeen camera_ray(vec2 at) {
   return seen;
 }
 
-// The step at which a stepped ray finds out that it has met the water at time `plane`.
+// The step at which a stepped ray detects that it has reached the water at time `plane`.
 float stop_of(ScarpField field, FrameSeen seen, float step, float plane) {
   float first = 0.0;
   if ((field.flags & kScarpWraps) == 0u) {
-    // Of a ray along an axis the span is endless.
+    // A ray along an axis has an infinite span.
     first = max(0.0, max(scarp_span_x(field, seen.line).begin.high, scarp_span_y(field, seen.line).begin.high));
   }
   return first + ceil((plane - first) / step) * step;
 }
 
-// Where a stepped ray ends. Water that it does not come to is none. Less than 0: it goes nowhere.
+// End of a stepped ray. Water that it does not reach is ignored. Less than 0: no ray.
 float end_of_steps(ScarpField field, float step, inout FrameSeen seen, inout FrameWater water) {
   float last = stepped_end(field, seen, step);
   if (last < 0.0) {
     seen.steps = 1u;
     water.kind = 0;
   } else if (water.kind != 0) {
-    // Known at the first step that is past it, if the ray goes so far.
+    // Known at the first step past it, if the ray gets that far.
     float stop = stop_of(field, seen, step, water.t.high);
     if (stop > last) water.kind = 0;
     last = min(last, stop);
     if (settings().is.interpolate == 0) water.t = scarp_two(stop);
-    // Its side and its bottom are not asked for.
+    // Its side and its bottom are not needed.
     water.sea = 0;
     water.normal = vec3(0.0, 0.0, 1.0);
   }
   return last;
 }
 
-// Limits the way of an exact ray to where it may meet ground. False: nowhere.
+// Limits the range of an exact ray to where it may hit ground. Returns false if it cannot.
 bool limit(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTwoFloat end, inout FrameSeen seen,
            inout FrameWater water) {
   ScarpLine line = seen.line;
-  // Above the highest ground there is nothing more to meet.
+  // Above the highest ground there is nothing to hit.
   if (line.direction.z > 0.0) {
     float leaves = (field.highest - line.origin.z) / line.direction.z;
     end = scarp_two_earlier(end, scarp_two(max(0.0, leaves)));

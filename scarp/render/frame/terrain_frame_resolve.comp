@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours of points with all that is between the eye and what it sees, and of pixels: the last stage of
+// Colours of points, including everything between the eye and the surface, and of pixels: the last stage of
 // terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -49,7 +49,7 @@ vec3 sky_behind(FrameSeen seen, vec3 direction) {
 
 vec3 wall_colour(FrameSeen seen, vec3 direction) {
   Settings s = settings();
-  // It stands on the side of its cell through which the ray came in.
+  // It is on the side of its cell through which the ray entered.
   float from_x = direction.x > 0.0 ? seen.place.x : 1.0 - seen.place.x;
   float from_y = direction.y > 0.0 ? 1.0 - seen.place.y : seen.place.y;
   bool on_x = direction.y == 0.0 || (direction.x != 0.0 && from_x <= from_y);
@@ -58,7 +58,7 @@ vec3 wall_colour(FrameSeen seen, vec3 direction) {
   return s.is.earth * (s.is.unlit_wall + (1.0 - s.is.unlit_wall) * lit);
 }
 
-// What comes out of the water at its surface; `behind` is what its ray sees.
+// Light that leaves the water at its surface; `behind` is the colour seen by its ray.
 vec3 water_body(FrameSeen bottom, vec3 behind) {
   Settings s = settings();
   vec3 light = behind;
@@ -72,8 +72,8 @@ vec3 water_body(FrameSeen bottom, vec3 behind) {
   return ends ? scarp_through_water(light, s.is.deep, s.is.water_per_metre, metres) : s.is.deep;
 }
 
-// Of the point, seen by the camera. One place for the colours of all rays keeps the shader small: from the water's
-// bottom through the mirrored ray to the camera's.
+// Colour of the point, seen by the camera. A single place for the colours of all rays keeps the shader small: from the
+// water's bottom through the mirrored ray to the camera's.
 vec3 colour_of_point(uint slot, FrameWater water) {
   Settings s = settings();
   vec3 body = vec3(0.0);
@@ -106,7 +106,7 @@ vec3 colour_of_point(uint slot, FrameWater water) {
   return colour;
 }
 
-// Of a picture of the steps.
+// Colour in a picture of the steps.
 vec3 share_of_steps(FrameSeen camera, bool meets) {
   float share = min(1.0, float(camera.steps) / float(settings().is.most_steps));
   // A stepped ray that hits nothing takes all its steps, sampled or not.

@@ -3,7 +3,7 @@
 
 #include "scarp/march/height/ray_blocks.glsl.h"
 
-// Writes what is known of a ray before it is marched. The rest means something where it meets ground.
+// Writes the known state of a ray before it is marched. The rest is defined if it hits ground.
 void keep(uint i, FrameSeen seen) {
   Seens(push.seens).of[i].line = seen.line;
   Seens(push.seens).of[i].metres = seen.metres;
@@ -21,7 +21,7 @@ float step_of(FrameSeen seen, bool of_camera) {
   return step;
 }
 
-// How far a stepped ray goes, in its time. Less than 0: nowhere.
+// Length of a stepped ray, in its time. Less than 0: none.
 float stepped_end(ScarpField field, FrameSeen seen, float step) {
   float end = min(seen.end.high, step * float(settings().is.steps));
   if (!(seen.line.direction.z > 0.0)) return end;
@@ -29,10 +29,10 @@ float stepped_end(ScarpField field, FrameSeen seen, float step) {
   return leaves < 0.0 ? -1.0 : min(end, leaves + step);
 }
 
-// Takes a ray of scarp_send() into the list. `step`: time between its samples; `seen`: the index of what it sees.
+// Appends a ray of scarp_send() to the list. `step`: time between its samples; `seen`: the index of its FrameSeen.
 void list_ray(ScarpSent sent, float step, uint seen) {
   uint at = atomicAdd(Counters(push.counters).are.rays, 1u);
-  // The march counts steps in cells of a time that the ray tells.
+  // The march counts steps in cells; the ray holds the time per cell.
   if (stepped) sent.ray.cell_time *= step;
   put_ray(RayBlockTo(ray_block_address(push.rays, at, kRayBlockBytes)), at % kRayBlock, sent.ray);
   Indices(push.owners).of[at] = seen;

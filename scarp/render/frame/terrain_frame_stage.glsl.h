@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the stages of a picture (terrain_frame.glsl.h) have in common: constants, buffers, places and directions. GLSL;
-// a stage includes this first.
+// Shared by the stages of a picture (terrain_frame.glsl.h): constants, buffers, positions and directions. GLSL; a stage
+// includes this first.
 
 #include "scarp/march/height/ground_host.glsl.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
@@ -30,7 +30,7 @@ layout(push_constant, scalar) uniform Push { FramePush push; };
 
 Settings settings() { return Settings(push.settings); }
 
-// Where the ray of a pixel of this part of the picture has what it has seen.
+// The FrameSeen of the ray of a pixel in this part of the picture.
 uint seen_index(int ray, uint slot) { return uint(ray) * push.count + slot; }
 
 ScarpTwoFloat two(float high, float low) { return ScarpTwoFloat(high, low); }
@@ -68,7 +68,7 @@ ScarpField shown_field() {
 // Whether the rays of light that are under way go to the sun, those before the others; else to the sky.
 bool goes_to_sun() { return has_samples ? push.light < settings().is.sun_rays : has_shadows; }
 
-// Ground that is to be lit and painted.
+// Ground to light and paint.
 void list_ground(uint seen) {
   uint at = atomicAdd(Counters(push.counters).are.grounds, 1u);
   Indices(push.grounds).of[at] = seen;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rays have met that have been marched, one invocation per ray: a stage of terrain_frame.glsl.h.
+// Stores the hits of marched rays, one invocation per ray: a stage of terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/render/frame/terrain_frame_stage.glsl.h"
-// It asks the stage for its ground.
+// It reads its ground through the stage.
 #include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/height/surface_normal.glsl.h"
 

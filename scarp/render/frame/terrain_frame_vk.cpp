@@ -34,7 +34,7 @@ void split(const dvec2& value, glm::vec2& high, glm::vec2& low) {
 }
 float never_if_infinite(double value) { return std::isinf(value) ? glsl::kScarpNever : static_cast<float>(value); }
 
-// A line in grid units; `origin` is a place, or a difference of places.
+// A line in grid units; `origin` is a position, or a difference of positions.
 glsl::ScarpLine line_of(const HeightField& field, const dvec3& origin, bool place, const dvec3& direction) {
   const auto difference = [&](const dvec3& d) {
     Ray ray;
@@ -64,7 +64,7 @@ void set_camera(glsl::FrameSettings& s, const HeightField& field, const Camera& 
   s.aa = settings.aa;
 }
 
-// Where a frame's heights count from: near the field's lowest, on a heavy contour.
+// Origin of a frame's heights: near the field's lowest, on a heavy contour.
 double zero_of_heights(const HeightField& field, const GroundPaint& paint) {
   const double low = field.min_height(), apart = paint.heavy_contour_interval();
   return apart > 0 ? std::floor(low / apart) * apart : low;
@@ -182,7 +182,7 @@ void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPa
   s.natural = settings.natural;
   s.snow_share = static_cast<float>(settings.snow_share);
   s.low = static_cast<float>(field.min_height() - zero_of_heights);
-  // Of level ground any number will do that a float holds.
+  // For level ground any number that a float represents is valid.
   constexpr double kLevelRelief = 1e-30;
   s.per_relief = static_cast<float>(1 / std::max(field.max_height() - field.min_height(), kLevelRelief));
   s.from_sun = glm::vec2(paint.away_from_sun());
@@ -196,9 +196,9 @@ void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPa
   }
 }
 
-// What the picture has: drivers compile shaders of these parts only.
+// The features of the picture: drivers compile only the shaders for these.
 std::uint32_t parts_of(const glsl::FrameSettings& s, bool stepped, std::uint32_t field_flags) {
-  const bool plinth = s.plinth != 0 && !stepped;  // steps do not see it
+  const bool plinth = s.plinth != 0 && !stepped;  // does not affect steps
   const bool rims = (field_flags & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
   const bool lit = s.unlit == 0, soft = s.samples > 0 && s.sun_rays + s.sky_rays > 0;
   std::uint32_t parts = 0;
@@ -219,7 +219,7 @@ std::uint32_t parts_of(const glsl::FrameSettings& s, bool stepped, std::uint32_t
 
 class FrameMaker {
  public:
-  // Of one scene: its march and its field.
+  // The march and the field of a scene.
   explicit FrameMaker(const Scene& scene)
       : device_(scene.device_terrain()->device),
         stepped_(scene.marches() == "fixed-step"),
@@ -337,7 +337,7 @@ Image render_whole_frame(const Scene& scene, const Camera& camera, const Picture
   glsl::FrameSettings numbers{};
   set_camera(numbers, field, camera, settings);
   const double zero = zero_of_heights(field, view.paint());
-  // What is beside the terrain in a scene of only_heights() is its plinth.
+  // In a scene of only_heights(), any object beside the terrain is its plinth.
   std::optional<Plinth> plinth;
   if (scene.objects().size() > 1) plinth.emplace(field, plinth_base(field));
   set_field(numbers, field, plinth, zero);

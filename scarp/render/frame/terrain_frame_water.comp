@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether pixels see water or ground, and the rays that water sends on: a stage of terrain_frame.glsl.h.
+// Determines whether pixels show water or ground, and the rays that water sends on: a stage of terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -38,16 +38,15 @@ float water_roughness(float footprint) {
   return roughness;
 }
 
-// Metres to where a ray in the water comes out at a side of the field; kScarpNever where it has none.
+// Metres to where a ray in the water leaves through a side of the field; kScarpNever if there is none.
 float leaves_water(ScarpField field, ScarpLine line) {
   if ((field.flags & kScarpWraps) != 0u) return kScarpNever;
   return min(scarp_span_x(field, line).end.high, scarp_span_y(field, line).end.high);
 }
 
-// Decides between water and what the camera's ray has met.
+// Decides between water and the hit of the camera ray.
 void decide(ScarpField field, inout FrameSeen camera, inout FrameWater water) {
-  // Exact rays end at the water. Of samples ground is asked for first and water then; in between, what comes first
-  // counts.
+  // Exact rays end at the water. At a sample, ground is tested before water; between samples, the nearer one counts.
   if (camera.kind != kFrameNothing && water.kind != 0) {
     if (stepped && settings().is.interpolate != 0 && water.t.high < camera.t.high)
       camera.kind = kFrameNothing;
@@ -64,7 +63,7 @@ void decide(ScarpField field, inout FrameSeen camera, inout FrameWater water) {
   }
 }
 
-// Sends one of the rays that go on from the water, if it has anything to march.
+// Sends one of the rays that continue from the water, if it has anything to march.
 void send_from(ScarpField field, FrameWater water, uint i, inout FrameSeen seen) {
   ScarpTwoFloat end = seen.end;
   float step = 0.0;
@@ -116,7 +115,7 @@ void send_on(ScarpField field, uint slot, FrameSeen camera, inout FrameWater wat
   seen.metres = 1.0;
   seen.kind = kFrameNothing;
   seen.steps = 0u;
-  // One place where rays are sent keeps the shader small.
+  // A single place that sends rays keeps the shader small.
   for (int ray = kFrameMirror; ray <= kFrameBottom; ++ray) {
     bool mirror = ray == kFrameMirror;
     seen.line.direction = grid_direction(mirror ? mirrored : refracted);

@@ -31,7 +31,7 @@ struct OpenTile {
   std::size_t first = 0;  // of its rays in the batch
 };
 
-// One batch for all tiles that ask the same.
+// One batch for all tiles with the same query.
 class Together {
  public:
   void answer(const Scene& scene, std::vector<OpenTile>& tiles, Question question) {
@@ -86,7 +86,7 @@ void work_together(const Scene& scene, const PixelTiles& tiles, std::size_t tile
                    const Progress& progress) {
   Together together;
   for (std::int64_t first = 0; first < tiles.count(); first += static_cast<std::int64_t>(tiles_at_once)) {
-    // Nothing is known of the share within a round; what counts is to hear that somebody wants to stop.
+    // The fraction within a round is unknown; the call only polls for a request to stop.
     Progress listen;
     if (progress) {
       listen = [&](double) { return progress(static_cast<double>(first) / static_cast<double>(tiles.count())); };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Pictures in rounds of questions: the work on a tile asks rays, gets all answers at once, asks again, until it knows
-// its pixels.
+// Renders pictures in rounds: the work on a tile submits rays, receives all results at once, and submits again until
+// its pixels are done.
 //
 //   on the CPU      every thread works on a tile of its own; its rays are a batch of hundreds
-//   on a device     many tiles are worked on together, and what they ask in a round is one batch of 2^18 rays at most
+//   on a device     many tiles are worked on together, and their rays of a round are one batch of at most 2^18
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace scarp {
 
-/// Rays of one tile that wait for their answers, and then the answers.
+/// Rays of one tile that wait for their results, then the results.
 struct RayRound {
   enum class Question {
     closest,       ///< answered in `hits`
@@ -26,29 +26,29 @@ struct RayRound {
   };
   Question question = Question::closest;
   std::vector<Ray> rays;
-  /// Hits on whose surfaces the rays begin, as in Scene::closest_hits(); empty: none, or Ray::start says so.
+  /// Hits on whose surfaces the rays start, as in Scene::closest_hits(); empty: by Ray::start.
   std::vector<const Hit*> from;
   std::vector<Hit> hits;
   std::vector<std::uint32_t> steps;
   std::vector<std::uint8_t> blocked;
 };
 
-/// No tile asks more at once.
+/// Maximum number of rays of a tile in one round.
 constexpr std::size_t kMostRaysOfRound = 8192;
 
 class TileWork {
  public:
   virtual ~TileWork() = default;
-  /// Reads the answers of the round before (none in the first call) and sets the next question and its rays, at most
-  /// kMostRaysOfRound. False: the tile is done.
+  /// Reads the results of the previous round (none in the first call) and sets the next query and its rays, at most
+  /// kMostRaysOfRound. Returns false if the tile is done.
   virtual bool next(RayRound& round) = 0;
 };
 
-/// Makes the work on one tile; called on any thread.
+/// Creates the work on one tile; called on any thread.
 using MakeTileWork = std::function<std::unique_ptr<TileWork>(const PixelTile&)>;
 
-/// Does the work on all tiles, on all threads. `most_rays` is what a tile asks at most in a round, 1 to
-/// kMostRaysOfRound. Throws Interrupted when progress asks for it.
+/// Does the work on all tiles, on all threads. `most_rays` is the maximum number of rays of a tile in a round, 1 to
+/// kMostRaysOfRound. Throws Interrupted if `progress` returns false.
 void work_on_tiles(const Scene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
                    const Progress& progress);
 

@@ -22,7 +22,7 @@ const int kScarpFogByDistance = 1;
 const int kScarpFogByHeight = 2;
 const int kScarpFogByIterations = 3;
 
-/// (1 - exp(-x)) / x, which goes through 1 at 0: by its series where the difference would cancel.
+/// (1 - exp(-x)) / x, which is 1 at 0: by its series where the difference would cancel.
 SCARP_FN real scarp_mean_of_decay(real x) {
   if (abs(x) >= real(0.0625)) return (real(1.0) - exp(-x)) / x;
   real sum = real(1.0);
@@ -30,8 +30,8 @@ SCARP_FN real scarp_mean_of_decay(real x) {
   return sum;
 }
 
-/// What comes through fog from t metres along a ray that begins at height `z` and rises by `rise` per metre.
-/// `per_metre` at the height `base`; by height it thins out by the factor e every `falloff` metres.
+/// Transmittance of fog over t metres along a ray that starts at height `z` and rises by `rise` per metre. `per_metre`
+/// is the density at the height `base`; by height it decreases by the factor e every `falloff` metres.
 SCARP_FN real scarp_fog_transmittance(int kind, real per_metre, real base, real falloff, real z, real rise, real t) {
   if (kind == kScarpFogByDistance) return exp(-per_metre * t);
   if (kind != kScarpFogByHeight) return real(1.0);

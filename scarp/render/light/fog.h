@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Air that takes light away and gives its own: fog with distance, with height, and as the first ray casters had it.
+// Air that absorbs light and adds its own: fog by distance, by height, and by steps as in the first ray casters.
 //
 //   seen = ground * T + colour of the fog * (1 - T), T the transmittance between eye and ground
 //
@@ -25,7 +25,7 @@ enum class FogKind { none, distance, height, iterations };
 
 /// "none", "distance", "height", "iterations".
 std::string_view name_of(FogKind kind);
-/// Throws Error listing the names when there is no such fog.
+/// Throws Error listing the names if the fog is unknown.
 FogKind find_fog(std::string_view name);
 
 struct FogSettings {
@@ -36,12 +36,12 @@ struct FogSettings {
   double sun_tint = 0.6;      ///< share of the colour of sunlight, looking into the sun; 0..1; plain sky only
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const FogSettings& settings);
 
-/// Returns the share of light, 0..1, that comes through from the point `t` metres along the ray, whose direction has
-/// length 1. t may be infinite: 1 for fog by distance, whose colour is that of the sky at the horizon anyway. For
-/// `iterations` it is 1.
+/// Returns the fraction of light, 0..1, transmitted from the point `t` metres along the ray, whose direction has length
+/// 1. t may be infinite: 1 for fog by distance, whose colour is that of the sky at the horizon anyway. For `iterations`
+/// it is 1.
 double transmittance(const FogSettings& settings, const Ray& ray, double t);
 
 }  // namespace scarp

@@ -20,7 +20,7 @@ class Fog {
   const FogSettings& settings() const { return settings_; }
   /// A colour in linear light, seen through the fog.
   vec3 operator()(const Ray& ray, double t, vec3 behind) const;
-  /// The same for `iterations`: `share` of the most steps, 0..1.
+  /// The same for `iterations`: `share` is the fraction of the maximum steps, 0..1.
   vec3 by_share(const Ray& ray, double share, vec3 behind) const;
 
  private:

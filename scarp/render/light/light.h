@@ -2,8 +2,8 @@
 // The light on the ground: a sun at a compass azimuth and altitude, and the sky around it.
 //
 // Level ground in full sun has the brightness 1 (for a sun at 30 degrees or more): in every channel below a plain sky,
-// so colours of a ramp stay what they are there; slopes are brighter or darker. Shadowed ground has the sky's light
-// alone, bluish, and more of it where it turns towards the sun's side: shadowed slopes still read.
+// so colours of a ramp are unchanged there; slopes are brighter or darker. Shadowed ground receives only the bluish
+// light of the sky, and more of it on the sun's side, so shadowed slopes keep their contrast.
 #pragma once
 
 #include "scarp/base/vec.h"
@@ -30,8 +30,8 @@ class Light {
   const Sky& sky() const { return sky_; }
   /// Light on a surface with this unit normal, in linear light.
   vec3 on(const dvec3& normal, bool in_sun) const;
-  /// The same from what the surface sees: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,
-  /// `sky_share` the unoccluded share of the sky, 0..1.
+  /// The same with given visibility: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,
+  /// `sky_share` the unoccluded fraction of the sky, 0..1.
   vec3 on(const dvec3& normal, double sun_cosine, double sky_share) const;
 
  private:

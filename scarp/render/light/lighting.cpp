@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-// Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
+// Rays over wrapped ground need an end: there is nothing above the highest summit, and low rays end far away.
 void end_above_ground(std::span<Ray> rays, double highest) {
   for (Ray& ray : rays) {
     const double rise = std::max(highest - ray.origin.z, 0.0);
@@ -34,7 +34,7 @@ std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::m
 LightRays Lighting::ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const {
   const auto pattern = [&](std::uint32_t purpose) {
     const auto count = static_cast<std::uint32_t>(samples());
-    if (count == 0) return PatternRange{};  // a point of a sun needs none
+    if (count == 0) return PatternRange{};  // a point sun needs none
     return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
                         count * static_cast<std::uint32_t>(point.index), count};
   };

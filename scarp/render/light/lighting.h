@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The light on a point of any surface: which rays have to be asked for it, and what their answers make of it.
+// The light on a surface point: the rays that it requires, and the light that results from them.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace scarp {
 
-/// Rays about the light of one point, among others.
+/// Range of the light rays of one point in a list.
 struct LightRays {
-  std::size_t sun = 0;  ///< the first to the sun; up to that to the sky
+  std::size_t sun = 0;  ///< the first to the sun; ends at the first to the sky
   std::size_t sky = 0;  ///< the first to the sky
   std::size_t end = 0;
 };
@@ -26,30 +26,30 @@ struct LightRays {
 /// Refers to the settings.
 class Lighting {
  public:
-  /// `ao_distance` in metres replaces that of the settings. `highest`, for ground that wraps round: nothing is met
-  /// above it, and rays to the sun end there.
+  /// `ao_distance` in metres replaces that of the settings. `highest`, for wrapped ground: there is nothing above it,
+  /// and rays to the sun end there.
   Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest = {});
 
-  /// How many rays ask() appends at most.
+  /// Maximum number of rays that ask() appends.
   std::size_t most_rays() const;
-  /// Appends what has to be known of the light on a point.
+  /// Appends the rays for the light on a point.
   LightRays ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const;
-  /// Linear light; `rays` and their answers are those that `asked` refers to.
+  /// Returns linear light; `rays` and their results are those that `asked` refers to.
   vec3 on(const LightPoint& at, const LightRays& asked, std::span<const Ray> rays,
           std::span<const std::uint8_t> blocked) const;
-  /// Of a point: to the sun at most, and to the sky.
+  /// Rays per point: to the sun at most, and to the sky.
   int sun_rays() const;
   int sky_rays() const;
   /// Whether surfaces block the sun, and the number of rays per point and purpose; none in unlit pictures.
   bool shadows() const { return settings_.shadows && !settings_.unlit; }
   int samples() const { return settings_.unlit ? 0 : settings_.samples; }
-  /// Metres; where rays to the sky end.
+  /// Length of rays to the sky, metres.
   double ao_distance() const { return ao_distance_; }
   const SamplePattern& pattern() const { return pattern_; }
   const Light& light() const { return light_; }
   /// Unit vector to the middle of the sun's disc.
   const dvec3& to_sun() const { return light_.to_sun(); }
-  /// Of the disc with `samples`; else the sun is a point.
+  /// Radius of the disc with `samples`; otherwise the sun is a point.
   double sun_radius() const { return samples() > 0 ? light_.sun_radius() : 0; }
 
  private:

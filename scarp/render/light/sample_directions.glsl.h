@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From points of the unit square to directions: the formulas of sample_directions.h. Text of C++ and of GLSL.
+// Maps points of the unit square to directions: the formulas of sample_directions.h. Text of C++ and of GLSL.
 #ifndef SCARP_RENDER_SAMPLE_DIRECTIONS_GLSL_H
 #define SCARP_RENDER_SAMPLE_DIRECTIONS_GLSL_H
 
@@ -37,13 +37,13 @@ SCARP_FN real3 scarp_round_axis(real3 axis, real3 v) {
   return v.x * sides.side + v.y * sides.other + v.z * axis;
 }
 
-/// Unit vector of the hemisphere round +z, in proportion to its z.
+/// Unit vector of the hemisphere around +z, with density proportional to z.
 SCARP_FN real3 scarp_cosine_weighted(real2 square) {
   real2 disc = scarp_on_disc(square);
   return real3(disc.x, disc.y, sqrt(max(real(0.0), real(1.0) - dot(disc, disc))));
 }
 
-/// Unit vector of the cap round +z, uniform in solid angle; `depth` is 1 - cos(its radius).
+/// Unit vector of the cap around +z, uniform in solid angle; `depth` is 1 - cos(its radius).
 SCARP_FN real3 scarp_in_cap(real2 square, real depth) {
   real2 disc = scarp_on_disc(square);
   real below_pole = depth * dot(disc, disc);

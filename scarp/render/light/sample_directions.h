@@ -19,13 +19,14 @@ struct Frame {
   dvec3 axis, side, other;
 };
 
-/// Unit vector of the hemisphere round +z, in proportion to its z (Malley's method: a disc, lifted to the sphere).
+/// Unit vector of the hemisphere around +z, with density proportional to z (Malley's method: a disc, projected to the
+/// sphere).
 dvec3 cosine_weighted(dvec2 square);
 
 /// Unit vector of the cap round +z out to `radius` radians, 0 to pi/2, uniform in solid angle (the disc lifted by
 /// Lambert's equal-area projection).
 dvec3 in_cap(dvec2 square, double radius);
-/// 1 - cos(radius), without its loss of digits for the few milliradians of the sun.
+/// 1 - cos(radius), without cancellation for the few milliradians of the sun.
 double cap_depth(double radius);
 
 }  // namespace scarp

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where in the unit square the samples of a pixel lie: the formulas of sample_pattern.h. Text of C++ and of GLSL: whole
-// numbers are the same on both sides, to the bit.
+// Positions of a pixel's samples in the unit square: the formulas of sample_pattern.h. Compiles as C++ and GLSL;
+// integers are bit-identical on both sides.
 #ifndef SCARP_RENDER_SAMPLE_PATTERN_GLSL_H
 #define SCARP_RENDER_SAMPLE_PATTERN_GLSL_H
 
@@ -63,7 +63,7 @@ SCARP_FN uint scarp_sobol_y(uint number) {
   return y;
 }
 
-/// Where `digit` goes in a permutation of 0..3 that `random` selects.
+/// The image of `digit` under a permutation of 0..3 that `random` selects.
 SCARP_FN uint scarp_permuted(uint digit, uint random) {
   uint to = 0xe4u;  // 0, 1, 2, 3: two bits each
   for (uint i = 3u; i > 0u; --i) {
@@ -85,7 +85,7 @@ SCARP_FN ScarpPixelPoints scarp_pixel_points(uint seed, int index_bits, uint x, 
     place = place << 2 | scarp_permuted(quarter, scarp_scatter(above ^ scarp_scatter_two(random, digit)));
     above = above << 2 | quarter;
   }
-  // Beyond 2^32 points the sequence repeats: so do parts of large pictures that are far from one another.
+  // Beyond 2^32 points the sequence repeats, and so do distant parts of large pictures.
   uint first = place << uint(index_bits);
   ScarpPixelPoints points;
   points.x = scarp_reverse_bits(first);
@@ -97,8 +97,8 @@ SCARP_FN ScarpPixelPoints scarp_pixel_points(uint seed, int index_bits, uint x, 
   return points;
 }
 
-/// The middle of one of 2^32 parts of 0..1, or in floats of 2^23: no point is on the square's rim, which is where
-/// hemispheres touch the ground.
+/// The centre of one of 2^32 parts of 0..1, or of 2^23 in floats: no point is on the square's border, where hemispheres
+/// touch the ground.
 SCARP_FN real scarp_middle_of_part(uint part) {
 #ifdef __cplusplus
   return (part + 0.5) * 0x1p-32;
@@ -109,7 +109,7 @@ SCARP_FN real scarp_middle_of_part(uint part) {
 
 /// Point i.
 SCARP_FN real2 scarp_pixel_point(ScarpPixelPoints points, uint i) {
-  // A pixel of one point has no bits to shuffle, and shifts by all 32 mean nothing.
+  // A pixel with one point has no bits to shuffle, and a shift by 32 is undefined.
   uint unused = uint(32 - points.index_bits);
   uint at = points.index_bits == 0 ? 0u : scarp_owen_scramble(i << unused, points.seed_order) >> unused;
   // Sobol's points are linear in the bits of their index over xor, so a block's first point is computed only once.

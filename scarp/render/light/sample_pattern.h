@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where in the unit square the samples of a pixel lie: low-discrepancy points, the same on every run and for every
-// number of threads, because they are a function of pixel and seed alone.
+// Positions of a pixel's samples in the unit square: low-discrepancy points that depend only on pixel and seed, and so
+// are the same on every run and for every number of threads.
 //
 //   points   the first two dimensions of Sobol's sequence (Sobol 1967), a (0,2)-sequence: of 2^m consecutive points
 //   from
@@ -25,7 +25,7 @@ namespace scarp {
 /// The points of one pixel for one purpose.
 class PixelPoints {
  public:
-  /// Point i inside the unit square, never on its rim; i below the pattern's points per pixel.
+  /// Returns point i inside the unit square, never on its border; i is less than the pattern's points per pixel.
   dvec2 operator[](std::uint32_t i) const;
 
  private:
@@ -37,14 +37,14 @@ class PixelPoints {
 
 class SamplePattern {
  public:
-  /// `points_per_pixel`, 1..2^26, is the most that is asked of a pixel for one purpose.
+  /// `points_per_pixel`, 1..2^26, is the maximum number of points per pixel and purpose.
   SamplePattern(std::uint32_t seed, std::uint32_t points_per_pixel);
 
   /// The points of pixel (x, y), 0..65535 each. Purposes (any numbers) are independent of one another.
   PixelPoints pixel(int x, int y, std::uint32_t purpose) const;
 
   std::uint32_t seed() const { return seed_; }
-  /// Of a point's number in its pixel.
+  /// Bits of a point's number in its pixel.
   int index_bits() const { return index_bits_; }
 
  private:

@@ -81,7 +81,7 @@ SCARP_FN vec3 scarp_sky_colour(ScarpSky sky, real3 direction) {
                   : scarp_between(kScarpHorizon, kScarpZenith, real(1.0) - far * far * far);
 }
 
-/// The same for ground that is too far away to be seen: below the horizon it has the horizon's colour.
+/// The same for ground too far away to be visible: below the horizon it has the horizon's colour.
 SCARP_FN vec3 scarp_sky_beyond(ScarpSky sky, real3 direction) {
   return direction.z < real(0.0) ? scarp_horizon_colour(sky, direction) : scarp_sky_colour(sky, direction);
 }

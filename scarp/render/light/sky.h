@@ -23,7 +23,7 @@ struct SkySettings {
   double turbidity = 3;  ///< `scattering`: extinction relative to pure air, 2 (very clear) to 10 (hazy)
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const SkySettings& settings);
 
 }  // namespace scarp

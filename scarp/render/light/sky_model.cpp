@@ -18,7 +18,7 @@ constexpr double kLowestFullSun = 0.5;
 // view, so that a picture of the sun is exposed for the sky at its border.
 constexpr double kBesideSun = 0.26;
 
-// Directions round the horizon of which means are taken.
+// Number of directions around the horizon for means.
 constexpr int kAround = 48;
 
 // Linear in the turbidity.
@@ -69,7 +69,7 @@ vec3 sunlight_below_air(double turbidity, double altitude) {
   return light;
 }
 
-// Of linear sRGB (IEC 61966-2-1).
+// Luminance of linear sRGB (IEC 61966-2-1).
 float luminance(vec3 colour) { return dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
 // Cosine-weighted mean over the hemisphere: the radiance of white level ground in skylight.

@@ -10,7 +10,7 @@ struct SunSettings {
   double size_deg = 0.533;   ///< apparent diameter, for soft shadows; 0 (a point) to 90
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const SunSettings& settings);
 
 }  // namespace scarp

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How much of the sky and of the sun's disc a point of a surface sees, by sampling with any-hit rays. The rays start on
+// Fraction of the sky and of the sun's disc visible from a surface point, sampled with any-hit rays. The rays start on
 // the surface without an offset, so nothing is lit through a ridge and a plane does not shade itself.
 //
 //   ask_...(point, ..., rays)  appends rays    ──▶  Scene::occluded  ──▶    sky_occlusion, sun_cosine of those
 //
-// Two normals meet here. What is visible is a matter of the surface alone: the sky is that over its own tangent plane,
-// and whatever ray goes below it is blocked. How bright visible light makes the ground is a matter of the shading
-// normal, which is continuous from cell to cell. Occlusion round the surface's normal steps little from cell to cell:
-// both sides of a hollow crease hide the same share of each other's sky, and those of a ridge hide nothing. Round the
-// shading normal a ridge would be dark.
+// Two normals are involved. Visibility depends on the surface alone: the sky is above its tangent plane, and rays below
+// it are blocked. Brightness depends on the shading normal, which is continuous from cell to cell. Occlusion round the
+// surface's normal steps little from cell to cell: both sides of a hollow crease hide the same share of each other's
+// sky, and those of a ridge hide nothing. Round the shading normal a ridge would be dark.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +25,8 @@ struct LightPoint {
   dvec3 position;
   dvec3 normal;              ///< unit, of the surface
   dvec3 shading_normal;      ///< unit
-  double openness = 1;       ///< share of the sky that is there, where it is not sampled
-  std::uint32_t object = 0;  ///< where rays from the point begin: Ray::start_object and start_cell
+  double openness = 1;       ///< fraction of the sky that is visible, if it is not sampled
+  std::uint32_t object = 0;  ///< start of rays from the point: Ray::start_object and start_cell
   Cell cell{};
 };
 
@@ -41,20 +40,20 @@ struct PatternRange {
   std::uint32_t count = 1;
 };
 
-/// Rays to the sky over the tangent plane, most of them where its cosine is large, that end at `distance` metres; as
-/// many as there are samples.
+/// Appends one ray per sample to the sky above the tangent plane, cosine-weighted, of length `distance` metres.
 void ask_sky(const LightPoint& point, double distance, const PatternRange& samples, std::vector<Ray>& rays);
-/// Ambient occlusion: the share of the sky over the tangent plane, weighted with the cosine to its normal, that ground
-/// closer than `distance` hides; 0..1. `blocked` answers the rays of ask_sky, at least one. The standard error is at
+/// Ambient occlusion: the cosine-weighted fraction of the sky above the tangent plane that ground closer than
+/// `distance` hides; 0..1. `blocked` holds the results of the rays of ask_sky, at least one. The standard error is at
 /// most 1 / (2 sqrt(count)), that of unstratified samples.
 double sky_occlusion(std::span<const std::uint8_t> blocked);
 
-/// Rays to the sun's disc, of angular radius `radius` in radians round the unit vector `to_sun`; one to the middle when
-/// the radius is 0. There are none to where it shines onto the back of the shading normal.
+/// Appends rays to the sun's disc, of angular radius `radius` in radians around the unit vector `to_sun`; one to its
+/// centre if the radius is 0. Omits directions behind the shading normal.
 void ask_sun(const LightPoint& point, const dvec3& to_sun, double radius, const PatternRange& samples,
              std::vector<Ray>& rays);
-/// The mean over the sun's disc of the cosine between shading normal and ray, hidden parts and parts behind the normal
-/// counting nothing; 0..1. `rays` are those of ask_sun for `radius` and `count` samples, answered by `blocked`.
+/// Returns the mean over the sun's disc of the cosine between shading normal and ray, 0..1; hidden parts and parts
+/// behind the normal contribute zero. `rays` are those of ask_sun for `radius` and `count` samples, `blocked` their
+/// results.
 double sun_cosine(const LightPoint& point, double radius, std::uint32_t count, std::span<const Ray> rays,
                   std::span<const std::uint8_t> blocked);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Where a ray comes to be over the field: from there on fixed-step counts its samples.
+// Where a ray enters the field: fixed-step counts its samples from there.
 double entry(const HeightField& field, const Ray& ray) {
   if (field.wraps()) return ray.t_min;
   const auto from = [](double o, double d, double high) {
@@ -37,7 +37,7 @@ void validate(const ComancheSettings& settings) {
 double default_reach(const HeightField& field) { return std::max(field.width(), field.depth()); }
 
 Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height) {
-  constexpr double kAbove = 1.0, kDown = 0.2;  // of the relief; of the way ahead
+  constexpr double kAbove = 1.0, kDown = 0.2;  // of the relief; of the distance ahead
   const double low = field.min_height(), relief = field.max_height() - low;
   const double x = 0.3 * field.width(), y = 0.1 * field.depth();
   dvec3 eye(x, y, low + kAbove * relief);
@@ -74,7 +74,7 @@ StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water, double st
     }
     marched.t_max = std::min(marched.t_max, leaves + step);
   }
-  double plane = kInfinity, stop = kInfinity;  // where the ray meets the water, and where the march finds that out
+  double plane = kInfinity, stop = kInfinity;  // where the ray reaches the water, and where the march detects it
   if (water) {
     if (const auto meeting = water->meets(ray)) {
       plane = meeting->t;
@@ -89,7 +89,7 @@ StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water, double st
   MarchStats stats;
   answer.hit = march_fixed_step({&field_}, marched, settings, &stats);
   answer.steps = std::min(stats.steps, static_cast<std::uint32_t>(settings_.steps));
-  // As the text has it, ground is asked for first and water then, at each sample; in between, what comes first counts.
+  // As in the founding text, each sample tests ground before water; between samples, the nearer one counts.
   const bool ended_at_water = stop <= marched.t_max;
   answer.t = settings_.interpolate ? plane : stop;
   answer.water = ended_at_water && (!answer.hit || (settings_.interpolate && plane < answer.hit.t));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The look `comanche`: endless terrain in few large pixels, as flight simulators of the nineties and the founding text
-// on a ray caster for semi-voxel terrain have it. With the march `fixed-step` it is the picture of that text, faults
-// and all; with an exact march the same picture without them.
+// The look `comanche`: endless terrain in few large pixels, as in flight simulators of the nineties and the founding
+// text on a ray caster for semi-voxel terrain. With the march `fixed-step` it reproduces the picture of that text,
+// including its artefacts; with an exact march it shows the same picture without them.
 //
 //                     fixed-step                                     exact marches
 //   steps             reach / steps apart, on planes parallel to     none
@@ -11,8 +11,8 @@
 //   crests            what is thinner than a step is passed          all
 //   looking up        left where nothing is higher                   the same
 //
-// `step_by_view` is the text's wish, long steps looking down and short ones at grazing angles: samples are equally far
-// apart on the map, not along the ray, so a ray that falls steeply takes steps up to kLongestStep times as long.
+// `step_by_view` implements the text's proposal, long steps looking down and short ones at grazing angles: samples are
+// equally spaced on the map, not along the ray, so steep rays take steps up to kLongestStep times as long.
 #pragma once
 
 #include <cstdint>
@@ -28,26 +28,26 @@ struct Image;
 struct ComancheSettings {
   int scale = 3;              ///< sides of the picture's large pixels in pixels of the image, 1..64
   int steps = 256;            ///< of `fixed-step` over the reach, 1..65536
-  bool shells = false;        ///< samples on spheres round the eye, as normalised rays give them; else on planes
+  bool shells = false;        ///< samples on spheres around the eye, as with normalised rays; otherwise on planes
   bool step_by_view = false;  ///< longer steps looking down
-  bool interpolate = true;    ///< whether a hit is put between the last two samples, or on the last
-  bool iterations = false;    ///< a picture of the steps instead, from black (0) to white (the most)
+  bool interpolate = true;    ///< whether a hit is interpolated between the last two samples
+  bool iterations = false;    ///< shows the steps instead, from black (0) to white (the maximum)
   bool heights = false;       ///< shows the heights that the same rays hit, in grey levels of the look `height`
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const ComancheSettings& settings);
 
-/// Of the step at a grazing angle, `step_by_view`.
+/// Longest step at a grazing angle, with `step_by_view`.
 constexpr double kLongestStep = 8;
 
-/// A camera low over the field's south, looking north: what a picture of endless ground is for.
+/// A camera low over the field's south, looking north: the usual view of endless ground.
 Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height);
 
-/// How far a picture of a field reaches where nothing ends it: once across the field.
+/// Reach of a picture of an unbounded field: once across the field.
 double default_reach(const HeightField& field);
 
-/// Rays as the founding text steps them, on the calling thread. Refers to the field.
+/// Marches rays as the founding text does, on the calling thread. Refers to the field.
 class StepMarch {
  public:
   /// `reach` in metres; `forward` is the camera's unit axis.
@@ -55,13 +55,13 @@ class StepMarch {
 
   struct Answer {
     Hit hit;
-    bool water = false;  ///< the ray came to the water first, at t
+    bool water = false;  ///< the ray reached the water first, at t
     double t = 0;
     std::uint32_t steps = 0;
   };
-  /// Of a ray of the camera; directions have length 1. `water` may be null.
+  /// For a ray of the camera; directions have length 1. `water` may be null.
   Answer march(const Ray& ray, const Water* water) const;
-  /// Of a ray that comes from elsewhere: there are no planes for it.
+  /// For a ray that does not start at the camera: it has no planes.
   Hit march(const Ray& ray) const;
   int most_steps() const { return settings_.steps; }
 

@@ -39,7 +39,7 @@ constexpr std::array<Style, kVerdicts> kStyles{{
 
 const Style& style_of(Verdict verdict) { return kStyles[static_cast<std::size_t>(verdict)]; }
 
-// A ray judged by `exhaustive` may take a millisecond: a device waits for the judge, and so does whoever wants to stop.
+// A ray judged by `exhaustive` may take a millisecond, during which the device, and a request to stop, must wait.
 constexpr std::size_t kMostRays = kMostRaysOfRound;
 
 }  // namespace
@@ -61,11 +61,11 @@ namespace {
 
 constexpr int kProvenEvery = 8;  // in both directions
 
-// Whether intervals say otherwise than the judge's answer.
+// Whether intervals contradict the judge.
 bool contradicts(const Hit& hit, const FunctionJudgement& judgement, const Ray& ray, double tolerance) {
   if (judgement.verdict == FunctionVerdict::clear) return static_cast<bool>(hit);
   if (judgement.verdict != FunctionVerdict::crossing) return false;
-  // Any crossing within the tolerance is correct, and so is a point that the tolerance does not separate from one.
+  // Any crossing within the tolerance is correct, and so is a point within the tolerance of one.
   const double slack = tolerance * (judgement.crossed_by - ray.t_min);
   return !hit || hit.t > judgement.crossed_by + slack;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The look `error`: where a march is wrong. Every pixel's ray is judged by the march that judges the field
+// The look `error` shows where a march is wrong. Every pixel's ray is compared with the reference march of the field
 // (SceneField::judge()): `exhaustive` for height fields, `voxel-planes` for voxels, `lipschitz-local` for functions,
 // `sphere-trace` with the finest tolerance for shapes.
 //
-// `lipschitz-local` passes no crossing. In pictures of one function that is not left to trust: one pixel in 64 is
-// judged by interval bisection as well (function_exhaustive.h), and contradictions are counted.
+// `lipschitz-local` misses no crossing. Pictures of one function verify this: one pixel in 64 is also judged by
+// interval bisection (function_exhaustive.h), and contradictions are counted.
 //
 //   grey       both hit the same place, within the tolerance (hill-shaded)
 //   dark grey  both miss
@@ -13,7 +13,7 @@
 //   blue       early: the march stopped before the ground, or at something nearer
 //   orange     late: the march hit behind the first ground
 //   yellow     gave up: the march came to its step limit
-//   brown      not judged: the ray begins or comes in below the surface and never meets it from above
+//   brown      not judged: the ray starts or enters below the surface and never meets it from above
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ std::string_view name_of(Verdict verdict);
 std::string_view colour_name_of(Verdict verdict);
 vec3 srgb_of(Verdict verdict);
 
-/// Judges a march's answer by the true one. Hits agree when their t differ by at most `tolerance`.
+/// Compares a march's result with the true one. Hits agree if their t differ by at most `tolerance`.
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance);
 
 struct ErrorSettings {
@@ -46,7 +46,7 @@ struct ErrorSettings {
   double share = 0.01;     ///< of functions and shapes: within this share of the distance; >= 0
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const ErrorSettings& settings);
 
 struct ErrorCounts {
@@ -56,7 +56,7 @@ struct ErrorCounts {
   double tolerance_m = 0;           ///< along the ray, of the field with the smallest cells; 0: fields have no cells
   double share = 0;                 ///< of the distance, the tolerance of fields without cells
   std::int64_t proven = 0;          ///< pixels of a function that interval bisection decided
-  std::int64_t contradictions = 0;  ///< of those, where the judge says otherwise: none, or there is a bug
+  std::int64_t contradictions = 0;  ///< of those, pixels where the judge disagrees: 0, unless there is a bug
 
   std::int64_t operator[](Verdict verdict) const { return pixels[static_cast<std::size_t>(verdict)]; }
 };
@@ -66,7 +66,7 @@ struct ErrorPicture {
   ErrorCounts counts;
 };
 
-/// One ray through the middle of each pixel. Throws Interrupted when progress asks for it.
+/// Traces one ray through the centre of each pixel. Throws Interrupted if `progress` returns false.
 ErrorPicture render_error(const Scene& scene, const Camera& camera, int width, int height,
                           const ErrorSettings& settings, const Progress& progress);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The look `hillshade`: Lambert's law in grey levels 1 to 255, as in gdaldem; 0 is no ground. No shadows, colours or
+// The look `hillshade`: Lambert's law in grey levels 1 to 255, as in gdaldem; 0 means no ground. No shadows, colours or
 // skylight.
 #pragma once
 

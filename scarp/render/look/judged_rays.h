@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verdicts of the look `error`, for rays of the caller's choice, with the steps that they took.
+// The verdicts of the look `error` for arbitrary rays, with the steps that they took.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct JudgedRays {
   int operator[](Verdict verdict) const { return rays[static_cast<std::size_t>(verdict)]; }
 };
 
-/// Judges what `scene` answers to the rays by `judges`, Scene::judge() of the same objects. Throws Interrupted if
+/// Judges the hits of `scene` for these rays by `judges`, Scene::judge() of the same objects. Throws Interrupted if
 /// `progress` returns false.
 JudgedRays judge_rays(const Scene& scene, const Scene& judges, std::span<const Ray> rays, const ErrorSettings& settings,
                       const Progress& progress = {});

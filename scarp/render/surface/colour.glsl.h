@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours: from sRGB to linear light and back, and between two of them. Text of C++ and of GLSL.
+// Colours: conversion between sRGB and linear light, and interpolation. Text of C++ and of GLSL.
 #ifndef SCARP_RENDER_COLOUR_GLSL_H
 #define SCARP_RENDER_COLOUR_GLSL_H
 
@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// From one to the other, share 0..1.
+/// Interpolates from one to the other, share 0..1.
 SCARP_FN vec3 scarp_between(vec3 from, vec3 to, real share) {
   float f = float(share);
   return from * (1.0f - f) + to * f;
@@ -19,7 +19,7 @@ SCARP_FN vec3 scarp_linear_from_srgb(vec3 srgb) {
   return vec3(scarp_linear_channel(srgb.x), scarp_linear_channel(srgb.y), scarp_linear_channel(srgb.z));
 }
 
-/// And back to 0..255, rounded, clamped.
+/// The inverse, to 0..255, rounded and clamped.
 SCARP_FN float scarp_srgb_byte(float linear) {
   float c = clamp(linear, 0.0f, 1.0f);
   float s = c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 1.0f / 2.4f) - 0.055f;
@@ -45,8 +45,8 @@ SCARP_FN vec3 scarp_toned(vec3 linear) {
   return scarp_between(vec3(1.0f), colour, min(real(1.0), real(kScarpToneFull / most)));
 }
 
-/// Where a value lies in a table of `count` colours, evenly spaced from `low` to `high`: entry + place, 0..1, to the
-/// next one.
+/// Position of a value in a table of `count` colours, evenly spaced from `low` to `high`: entry + fraction, 0..1,
+/// towards the next one.
 struct ScarpTablePlace {
   int entry;
   float place;

@@ -19,37 +19,37 @@ SCARP_FN real scarp_smooth(real from, real to, real x) {
 /// Cosine to straight up that keeps slopes of walls finite.
 const float kScarpLeastUpright = 1e-9f;
 
-/// Every so many contour lines one is heavy, from height 0 on.
+/// Number of contour lines per heavy one, from height 0 on.
 const int kScarpHeavyContour = 5;
 
-/// Pixels between lines up to which there are none, and from which they have their full ink.
+/// Spacings in pixels up to which lines are omitted, and from which they have full opacity.
 const float kScarpTouchingContours = 3.0f;
 const float kScarpClearContours = 8.0f;
 
-/// Ground is level where lines would be more pixels apart, sixteen times the longest side of a picture: what slope it
-/// has there is rounding of its samples.
+/// Ground counts as level if lines would be farther apart than this many pixels, sixteen times the longest side of a
+/// picture: its slope there is only rounding of its samples.
 const float kScarpLevelContours = 1048576.0f;
 
-/// Metres of height that a pixel `footprint` metres wide covers; 0: level. The slope counts up to 1: no more than its
-/// length on the surface. From x and y, without the rounding of 1 - z^2, of which a level surface would get a slope.
+/// Metres of height that a pixel `footprint` metres wide covers; 0: level. The slope is limited to 1: no more than its
+/// length on the surface. Computed from x and y, because the rounding of 1 - z^2 would give level surfaces a slope.
 SCARP_FN real scarp_height_per_pixel(real3 normal, real footprint) {
   real slope = sqrt(normal.x * normal.x + normal.y * normal.y) / max(normal.z, real(kScarpLeastUpright));
   return min(slope, real(1.0)) * footprint;
 }
 
-/// With contour lines over it, `interval` metres apart. `normal` is that of the surface itself: next to level ground,
-/// smooth normals lean, and level ground at a line's height would be painted as a whole. It has no lines, only its
-/// border has.
+/// Adds contour lines, `interval` metres apart. `normal` is that of the surface itself: next to level ground, smooth
+/// normals lean, and level ground at a line's height would be painted as a whole. Level ground has lines only at its
+/// border.
 SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real footprint, real interval) {
   real per_pixel = scarp_height_per_pixel(normal, footprint);
   if (per_pixel * real(kScarpLevelContours) <= interval) return colour;
   real line = floor(height / interval + real(0.5));
   real pixels = abs(height - line * interval) / per_pixel;
-  // A tenth of a line more than rounding takes from the quotient.
+  // A tenth of a line, more than the rounding of the quotient.
   real fifth = abs(line) - real(kScarpHeavyContour) * floor(abs(line) / real(kScarpHeavyContour) + real(0.1));
   bool heavy = fifth == real(0.0);
   real width = heavy ? real(2.0) : real(1.1);
-  // Heavy lines are five times as far apart, and last longer.
+  // Heavy lines are five times as far apart, and fade later.
   real apart = interval * (heavy ? real(kScarpHeavyContour) : real(1.0)) / per_pixel;
   real ink = clamp(width / real(2.0) + real(0.5) - pixels, real(0.0), real(1.0)) *
              scarp_smooth(real(kScarpTouchingContours), real(kScarpClearContours), apart) *

@@ -34,7 +34,7 @@ SCARP_FN real scarp_texture_at(ScarpTexels texels, int begin, ivec2 size, real2 
   return sum;
 }
 
-/// The texture at a place where a pixel is `covered` texels of the finest level wide: a mixture of the level whose
+/// The texture at a position where a pixel is `covered` texels of the finest level wide: a mixture of the level whose
 /// texels are half a pixel to a pixel wide and the next coarser one.
 SCARP_FN real scarp_texture_detail(ScarpTexels texels, ivec2 size, real2 place, real covered) {
   int begin = 0;

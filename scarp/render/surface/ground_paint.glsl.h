@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours of ground: the formulas of ground_paint.h. Text of C++ and of GLSL. Who includes it has defined, before,
+// Colours of ground: the formulas of ground_paint.h. Compiles as C++ and GLSL. The including file must define before:
 //   struct ScarpPaintPlace, a place on the ground, and
 //   real scarp_paint_noise(ScarpPaintPlace place, int set, int octave, real size)
 //                                              Perlin noise, seed octave + 1, of patches of so many metres; `set` and
@@ -19,7 +19,7 @@ const vec3 kScarpRock = vec3(0.47f, 0.43f, 0.40f);
 const vec3 kScarpScree = vec3(0.60f, 0.56f, 0.51f);
 const vec3 kScarpSnow = vec3(0.93f, 0.95f, 0.98f);
 
-/// Sets of patches: what they are for, their octaves and the largest, in sizes of the detail.
+/// Sets of patches: their purpose, their octaves, and the size of the largest relative to the detail.
 const int kScarpDetail = 0;
 const int kScarpBlur = 1;
 const int kScarpRough = 2;
@@ -29,16 +29,16 @@ SCARP_FN int scarp_patch_octaves(int set) { return set == kScarpDetail ? 4 : set
 SCARP_FN real scarp_patch_size(int set, real detail_size) {
   return set == kScarpDetail ? detail_size : set == kScarpBlur ? real(3.0) * detail_size : real(0.7) * detail_size;
 }
-/// Of the next octave.
+/// Size of the next octave.
 SCARP_FN real scarp_smaller_patch(real size) { return size / real(2.17); }
 
-/// Along what, in x and y of the world, patches of an octave are stretched: alternating directions, so that no two
-/// octaves have one grain. They are twice as long there as across.
+/// Direction, in x and y of the world, in which patches of an octave are stretched: alternating, so that no two octaves
+/// have the same grain. They are twice as long along it as across.
 SCARP_FN real2 scarp_patch_grain(int octave) {
   return octave % 2 == 0 ? real2(real(0.8), real(0.6)) : real2(real(0.6), real(-0.8));
 }
 
-/// Noise of a set; what is smaller than a pixel, `footprint` metres wide, is left out.
+/// Noise of a set; patches smaller than a pixel, `footprint` metres wide, are omitted.
 SCARP_FN real scarp_patches(ScarpPaintPlace place, int set, real detail_size, real footprint) {
   real size = scarp_patch_size(set, detail_size);
   real sum = real(0.0);
@@ -64,17 +64,17 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   // Sines of slopes between which grass gives way to rock.
   colour = scarp_between(
       colour, rock, scarp_smooth(real(0.45), real(0.68), steep + real(0.10) * blur + real(0.35) * (share - real(0.5))));
-  // How much lower snow lies on the shadowed side, how wide its border is, and cosines below which it slides off.
+  // How much lower snow lies on the shadowed side, the width of its border, and cosines below which it slides off.
   real line = snow_share - real(0.10) * (normal.x * from_sun.x + normal.y * from_sun.y);
   real snow = scarp_smooth(line - real(0.05), line + real(0.05), share + real(0.07) * blur) *
               scarp_smooth(real(0.55), real(0.72), normal.z + real(0.06) * rough);
   return scarp_linear_from_srgb(scarp_between(colour, kScarpSnow, snow));
 }
 
-/// Where in a picture, 0..1 from its north-west corner, a share of the extent lies; beyond 0..1 outside the picture.
-/// See Drape in ground_paint.h.
+/// Position in a picture, 0..1 from its north-west corner, of a fraction of the extent; beyond 0..1 outside the
+/// picture. See Drape in ground_paint.h.
 SCARP_FN real2 scarp_drape_place(real2 share, real2 first, real2 last, bool mirrored) {
-  // The border of the extent, but for rounding.
+  // The border of the extent, up to rounding.
   share = clamp(share, real2(0.0), real2(1.0));
   // The raster lies in the south-west quarter.
   if (mirrored) share = real2(real(1.0) - abs(real(2.0) * share.x - real(1.0)), abs(real(2.0) * share.y - real(1.0)));

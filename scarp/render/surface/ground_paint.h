@@ -21,19 +21,19 @@
 
 namespace scarp {
 
-/// A picture over the extent or part of it, with nothing beside it. Corners are shares of the extent, east and south
+/// A picture over the extent or part of it, transparent elsewhere. Corners are fractions of the extent, east and south
 /// from its north-west corner.
 struct Drape {
   int width = 0;                   ///< pixels, >= 1
   int height = 0;                  ///< pixels, >= 1
-  std::vector<std::uint8_t> rgba;  ///< 4 bytes a pixel, sRGB, from the north-west; opacity 0: what is below
+  std::vector<std::uint8_t> rgba;  ///< 4 bytes a pixel, sRGB, from the north-west; opacity 0 shows the ground below
   dvec2 first{0.0}, last{1.0};     ///< corners of the first and the last pixel, last > first
-  bool mirrored = false;  ///< over an extent mirrored as by source/mirrored.h, of whose quarter these are shares
+  bool mirrored = false;  ///< for an extent mirrored as by source/mirrored.h; fractions then refer to its quarter
 };
 
 struct GroundPaintSettings {
   bool natural = false;     ///< rock, grass and snow instead of the ramp
-  double snow_share = 0.7;  ///< share of the relief at which snow begins, `natural`; finite
+  double snow_share = 0.7;  ///< fraction of the relief at which snow begins, for `natural`; finite
   double detail = 0;        ///< strength of the patches, 0..1
   double detail_size = 0;   ///< metres of the largest patches, or the width of the texture, >= 0;
                             ///< 0: sixteen cells
@@ -42,16 +42,16 @@ struct GroundPaintSettings {
   std::shared_ptr<const Drape> drape{};                   ///< null: none
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const GroundPaintSettings& settings);
 
-/// One contour line of so many is heavy.
+/// Every this many contour lines, one is heavy.
 int lines_per_heavy_contour();
 
-/// What paint measures by, in world space.
+/// Reference measures of the paint, in world space.
 struct PaintExtent {
   double low = 0, high = 1;      ///< heights in metres
-  double exaggeration = 1;       ///< that heights contain
+  double exaggeration = 1;       ///< factor contained in heights
   double cell = 1;               ///< metres of a cell or voxel
   dvec2 origin{0.0}, size{1.0};  ///< of the overlay, in metres: its south-west corner, and east and north from there
   bool repeats = false;          ///< whether the overlay does
@@ -59,12 +59,12 @@ struct PaintExtent {
 
 class GroundPaint {
  public:
-  /// `to_sun` is a unit vector: the shadowed side is away from it. `ramp` takes heights of the extent.
+  /// `to_sun` is a unit vector: the shadowed side faces away from it. `ramp` maps heights of the extent.
   GroundPaint(const GroundPaintSettings& settings, const PaintExtent& extent, Ramp ramp, const dvec3& to_sun);
 
-  /// The ground's own colour and what lies over any colour, in linear light. `height` of the surface at `position` in
-  /// metres, `normal` unit: smooth for the ground's own colour, of the surface itself for contour lines; `footprint`
-  /// the width of a pixel there in metres.
+  /// The ground's own colour, and the layers over any colour, in linear light. `height` is the height of the surface at
+  /// `position` in metres. `normal` is a unit vector: the smooth normal for the ground's own colour, that of the
+  /// surface itself for contour lines. `footprint` is the width of a pixel there in metres.
   vec3 ground(const dvec3& position, double height, const dvec3& normal, double footprint) const;
   vec3 over(vec3 colour, const dvec3& position, double height, const dvec3& normal, double footprint) const;
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kNames = {"viridis", "magma", "inferno", "plasma", "grey", "hypsometric"};
 
-// A colour of a hand-made ramp at a share of its way.
+// A colour of a hand-made ramp at a fraction of its range.
 struct Stop {
   double at;
   std::uint32_t rgb;
@@ -58,8 +58,8 @@ std::vector<vec3> from_stops(std::span<const Stop> stops) {
   return colours;
 }
 
-// scarp_srgb_byte() without its power: the byte at the beginning of a piece of the channel's range, and whether the
-// next byte has begun. No piece holds the beginnings of two.
+// scarp_srgb_byte() without its power: the byte at the start of a piece of the channel's range, and where the next byte
+// starts. No piece contains the starts of two bytes.
 class SrgbBytes {
  public:
   SrgbBytes() {
@@ -81,7 +81,7 @@ class SrgbBytes {
   static constexpr std::uint32_t kPieces = (std::bit_cast<std::uint32_t>(1.0f) - kFirst) >> kShift;
 
   static unsigned char by_power(float linear) { return static_cast<unsigned char>(glsl::scarp_srgb_byte(linear)); }
-  // The least float with this byte.
+  // The smallest float with this byte.
   static float first_with(float byte) {
     std::uint32_t below = 0, from = std::bit_cast<std::uint32_t>(1.0f);
     while (from - below > 1) {
@@ -118,7 +118,7 @@ Ramp::Ramp(std::string_view name, double low, double high) {
 }
 
 Ramp::Ramp(const RampStops& stops, double low, double high, double scale) {
-  // Steps within a slice that no eye tells apart.
+  // Steps within a slice that are indistinguishable to the eye.
   constexpr int kSteps = 32;
   for (const RampSlice& slice : stops.slices) {
     const auto placed = [&](double value) {

@@ -18,9 +18,9 @@ std::span<const std::string_view> ramp_names();
 /// sea as 0), land colours above, each scaled to its own part of the range; the others run from end to end.
 class Ramp {
  public:
-  /// Throws Error listing the names when there is no such ramp. low <= high.
+  /// low <= high. Throws Error listing the names if the ramp is unknown.
   Ramp(std::string_view name, double low, double high);
-  /// Of a file; values of its own are multiplied by `scale` (of exaggerated heights).
+  /// A ramp from a file; its absolute values are multiplied by `scale` (for exaggerated heights).
   Ramp(const RampStops& stops, double low, double high, double scale = 1);
 
   /// In linear light, 0..1. Values outside the range have the colour of its nearer end.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colour tables of others, with their rights in ramp_tables.cpp.
+// Third-party colour tables; ramp_tables.cpp states their licences.
 #pragma once
 
 #include <array>

@@ -13,8 +13,8 @@ namespace scarp {
 
 class SurfaceColours {
  public:
-  /// Throws Error naming the material: a ramp that there is not, a range that is none, a blend of materials that do not
-  /// come before it.
+  /// Throws Error naming the material for an unknown ramp, an invalid range, or a blend of materials that do not
+  /// precede it.
   explicit SurfaceColours(std::span<const Material> materials);
 
   /// In linear light. Surfaces whose material is beyond the list have the field's own colours.

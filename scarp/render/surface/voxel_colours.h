@@ -11,8 +11,8 @@
 
 namespace scarp {
 
-/// RGB of a surface's material, sRGB, red in the lowest 8 bits: what voxelised() and VoxelModel take. Throws Error for
-/// materials that are none.
+/// Returns the RGB colour of a surface's material, sRGB, red in the lowest 8 bits, as voxelised() and VoxelModel
+/// expect. Throws Error for invalid materials.
 std::function<std::uint32_t(const SceneSurface&)> voxel_colours(std::span<const Material> materials);
 
 }  // namespace scarp

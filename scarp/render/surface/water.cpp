@@ -19,11 +19,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // water. II", Applied Optics 36, 1997, table 3.
 constexpr vec3 kPureWater(0.340f, 0.0565f, 0.00922f);
 
-// Wave i is shorter than the one before by this factor and turned by the golden angle: no two repeat one another.
+// Wave i is shorter than the previous one by this factor and rotated by the golden angle, so no two coincide.
 constexpr std::size_t kWaves = glsl::kScarpWaves;
 constexpr double kShorter = 0.71;
 constexpr double kTurn = 2.399963229728653;
-// Towards these the waves run.
+// Directions of the waves.
 const std::array<dvec2, kWaves> kAlong = [] {
   std::array<dvec2, kWaves> along;
   for (std::size_t i = 0; i < kWaves; ++i) {
@@ -75,7 +75,7 @@ std::optional<Water::Meeting> Water::from_above(const Ray& ray, double t) const 
   const dvec3 p = ray.at(t);
   Meeting meeting{t, {0, 0, 1}};
   const auto ground = scene_.height(p.x, p.y);
-  // An eye that sees the level where the ground is higher is under the ground.
+  // An eye that sees the level where the ground is higher is below the ground.
   if (ground && *ground > level_) return {};
   if (!field_) return meeting;
   const auto place = field_->place(p.x, p.y);
@@ -95,7 +95,7 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
     if (!(d.z < 0) || !(t >= ray.t_min && t <= ray.t_max)) return {};
     return from_above(ray, t);
   }
-  // The last of the basin's three borders to be crossed is where the ray comes in.
+  // The ray enters through the last of the basin's three borders that it crosses.
   const Span x = span_in(o.x - basin_.low.x, d.x, basin_.high.x - basin_.low.x),
              y = span_in(o.y - basin_.low.y, d.y, basin_.high.y - basin_.low.y);
   Span z;
@@ -107,7 +107,7 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   const double t = std::max({x.from, y.from, z.from}), end = std::min({x.to, y.to, z.to});
   if (!(t < end) || !(t >= ray.t_min && t <= ray.t_max)) return {};
   if (t == z.from) return from_above(ray, t);
-  // A side, above what is there: the ground of a terrain, else the floor of the box.
+  // A side, above the ground of a terrain, otherwise above the floor of the box.
   const bool through_x = t == x.from;
   dvec3 p = ray.at(t);
   p.x = std::clamp(p.x, basin_.low.x, basin_.high.x);

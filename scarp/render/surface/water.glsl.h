@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What water does to light: the formulas of water.h. Text of C++ and of GLSL.
+// Light in water: the formulas of water.h. Text of C++ and of GLSL.
 #ifndef SCARP_RENDER_WATER_GLSL_H
 #define SCARP_RENDER_WATER_GLSL_H
 
@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// The share that is reflected, Schlick's formula; `cosine` of the angle to the normal, `index` of refraction.
+/// The reflected fraction, by Schlick's formula; `cosine` of the angle to the normal, `index` of refraction.
 SCARP_FN real scarp_schlick(real cosine, real index) {
   real root = (index - real(1.0)) / (index + real(1.0));
   real r0 = root * root;
@@ -26,10 +26,10 @@ SCARP_FN real3 scarp_refracted(real3 direction, real3 normal, real index) {
   real inside = sqrt(real(1.0) - ratio * ratio * (real(1.0) - cosine * cosine));
   return normalize(ratio * direction + (ratio * cosine - inside) * normal);
 }
-/// The least sine by which mirrored rays rise: less would take them over a thousand metres for each metre of height.
+/// The minimum sine by which mirrored rays rise: below it they would travel over a thousand metres per metre of height.
 const float kScarpLeastMirroredRise = 1e-3f;
 
-/// Waves must not send a mirrored ray into the water: it runs along it then.
+/// Waves must not send a mirrored ray into the water: it then runs along the surface.
 SCARP_FN real3 scarp_kept_above(real3 mirrored) {
   real least = real(kScarpLeastMirroredRise);
   return mirrored.z < least ? normalize(real3(mirrored.x, mirrored.y, least)) : mirrored;
@@ -37,18 +37,18 @@ SCARP_FN real3 scarp_kept_above(real3 mirrored) {
 
 const int kScarpWaves = 7;
 
-/// How much is seen of a wave that is so long where a pixel is `footprint` metres wide: nothing when it is as long as
-/// two pixels, all when it is as long as four.
+/// Visible fraction of a wave of this length where a pixel is `footprint` metres wide: 0 if it is as long as two
+/// pixels, 1 if it is as long as four.
 SCARP_FN real scarp_wave_seen(real wavelength, real footprint) {
   return clamp(wavelength / (real(2.0) * footprint) - real(1.0), real(0.0), real(1.0));
 }
-/// The slope of wave i where it has turned by `turns` since the origin, for waves that have the mean slope `slope`
-/// together: that of a cos is its height by sqrt(2), and slopes of different directions add up squared.
+/// The slope of wave i at a phase of `turns` from the origin, for waves with the total mean slope `slope`: the mean
+/// slope of a cosine is its amplitude / sqrt(2), and squared slopes of different directions add up.
 SCARP_FN real scarp_wave_slope(int i, real turns, real slope) {
   return slope * sqrt(real(2.0) / real(kScarpWaves)) * cos(real(6.283185307179586) * turns + real(i));
 }
 
-/// Mean square slope of a wave that is resolved by the share `seen`; the unresolved part roughens the water.
+/// Mean square slope of the unresolved part of a wave whose fraction `seen` is resolved; it roughens the water.
 SCARP_FN real scarp_wave_roughness(real seen, real slope) {
   return (real(1.0) - seen * seen) * slope * slope / real(kScarpWaves);
 }
@@ -73,11 +73,11 @@ SCARP_FN vec3 scarp_glitter(ScarpSky sky, vec3 sunlight, real3 view, real3 norma
   return vec3(min(seen.x, sky.disc.x), min(seen.y, sky.disc.y), min(seen.z, sky.disc.z));
 }
 
-/// The share of light, per colour, that is left after some metres (Beer).
+/// The remaining fraction of light, per colour, after some metres (Beer).
 SCARP_FN vec3 scarp_left_after(vec3 per_metre, float metres) {
   return vec3(exp(-per_metre.x * metres), exp(-per_metre.y * metres), exp(-per_metre.z * metres));
 }
-/// What is behind, through some metres of water of the colour `deep`.
+/// The colour behind, seen through some metres of water of the colour `deep`.
 SCARP_FN vec3 scarp_through_water(vec3 behind, vec3 deep, vec3 per_metre, float metres) {
   vec3 left = scarp_left_after(per_metre, metres);
   return behind * left + deep * (vec3(1.0f) - left);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Still water over the ground, up to a level: where rays meet it, and what light does there.
+// Still water over the ground, up to a level: where rays hit it, and its reflection, refraction and absorption.
 //
 //    eye \      / reflected        the level is a plane, met in closed form: a coast is where the ground goes through
 //   ______\____/_______            it, to the last bit, and no step of any march can fray it
@@ -7,12 +7,12 @@
 //           \    .                 the rest goes on, refracted by Snell's law, to the bottom that the ray meets
 //      ______\_.'__                 and comes back as bottom * exp(-c d) + the water's own colour * (1 - exp(-c d))
 //                                                                                          (Beer; d as traced)
-// Absorption is that of pure water at 650, 550 and 450 nm (Pope and Fry 1997), and `turbidity` for what floats in it.
-// Waves tilt the normal alone: some sines along different directions whose slopes are known in closed form; those
-// shorter than the width of a pixel are omitted; they widen the sun's reflection to glitter (Cox and Munk 1954).
+// Absorption is that of pure water at 650, 550 and 450 nm (Pope and Fry 1997), plus `turbidity` for suspended matter.
+// Waves only tilt the normal: a sum of sines in different directions with slopes in closed form. Waves shorter than the
+// width of a pixel are omitted; they widen the sun's reflection to glitter (Cox and Munk 1954).
 //
-// A scene that has an end holds water in its box, like a basin whose sides are met, too; over ground that goes on
-// forever so does the water.
+// A bounded scene holds water in its box, like a basin whose sides are also hit; over unbounded ground the water is
+// unbounded.
 #pragma once
 
 #include <optional>
@@ -24,21 +24,21 @@ namespace scarp {
 
 struct WaterSettings {
   double level = 0;                ///< metres, not exaggerated; finite
-  double turbidity = 0.04;         ///< per metre, taken from all colours alike; >= 0
-  vec3 srgb{0.10f, 0.25f, 0.33f};  ///< what deep water gives back, sRGB 0..1
+  double turbidity = 0.04;         ///< absorption per metre, the same for all colours; >= 0
+  vec3 srgb{0.10f, 0.25f, 0.33f};  ///< colour of deep water, sRGB 0..1
   double waves = 0.02;             ///< mean slope of the surface (root mean square), 0..0.5; 0: a mirror
   double wavelength = 0;           ///< of the longest wave in metres, >= 0; 0: two cells or voxels
-  bool refraction = true;          ///< whether rays go on to the bottom; false: water of the one colour
-  bool reflection = true;          ///< whether reflected rays are traced; false: they see the sky alone
+  bool refraction = true;          ///< whether rays continue to the bottom; false: the water has one colour
+  bool reflection = true;          ///< whether reflected rays are traced; false: they see only the sky
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting out of range.
 void validate(const WaterSettings& settings);
 
-/// Of air to water.
+/// Refractive index from air to water.
 constexpr double kWaterIndex = 1.333;
 
-/// The share of light that is reflected where the ray and the normal enclose an angle of this cosine, 0..1.
+/// Returns the reflected fraction of light, 0..1, for this cosine of the angle between ray and normal.
 double schlick(double cosine, double index = kWaterIndex);
 
 class Water {
@@ -55,29 +55,29 @@ class Water {
     dvec3 normal;              ///< unit, of the still water: up, or level at the sides of the basin
     std::optional<Hit> sea{};  ///< where is_sea() holds: object and cell
   };
-  /// Where a ray enters the water from outside, within its range; something may be met before. Nothing where the ray
-  /// begins in the water, over holes of a terrain, and where the ground is above the level.
+  /// Returns where a ray enters the water from outside, within its range; a surface may be hit before. Returns nullopt
+  /// if the ray starts in the water, over holes of a terrain, and where the ground is above the level.
   std::optional<Meeting> meets(const Ray& ray) const;
-  /// Whether a hit is on a cell all of whose corners are exactly at the level: a sea that the elevation model has as
-  /// flat ground, of unknown depth. Of the one terrain of a scene.
+  /// Whether a hit is on a cell of the scene's only terrain with all corners exactly at the level: a sea that the
+  /// elevation model represents as flat ground, of unknown depth.
   bool is_sea(const Hit& hit) const;
-  /// Where a ray in the water leaves the basin; infinite without an end.
+  /// Returns where a ray in the water leaves the basin; infinite if it is unbounded.
   double leaves(const Ray& ray) const;
 
   /// Unit normal of the surface with its waves; `footprint` is the width of a pixel there in metres.
   dvec3 normal_at(const dvec3& position, double footprint) const;
   /// Mean square of the wave slopes that normal_at() omits.
   double roughness_at(double footprint) const;
-  /// Bottom, or what else is there, `distance` metres away through the water, in linear light.
+  /// Returns the colour of the bottom, or of another surface, seen through `distance` metres of water, in linear light.
   vec3 through(vec3 behind, double distance) const;
-  /// The share of sunlight that is left, per colour, `depth` metres below the surface; to_sun is a unit vector.
+  /// Returns the remaining fraction of sunlight per colour, `depth` metres below the surface; to_sun is a unit vector.
   vec3 sunlight(double depth, const dvec3& to_sun) const;
-  /// Of water without a bottom in sight.
+  /// Colour of water without a visible bottom.
   vec3 deep() const { return deep_; }
 
-  /// Per metre and colour, what water takes.
+  /// Absorption per metre and colour.
   vec3 per_metre() const { return per_metre_; }
-  /// Where wave i of glsl::kScarpWaves runs, a unit vector, and how long it is in metres.
+  /// Direction of wave i of glsl::kScarpWaves, a unit vector, and its length in metres.
   static dvec2 wave_direction(int i);
   double wavelength(int i) const;
 

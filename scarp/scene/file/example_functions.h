@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions to look at and to measure by, by name; and functions from files.
+// Named example terrain functions, and functions from files.
 #pragma once
 
 #include <span>
@@ -16,11 +16,11 @@ struct ExampleFunction {
 };
 
 std::span<const ExampleFunction> example_functions();
-/// Throws Error listing the names when there is no such function.
+/// Throws Error listing the names if the function is unknown.
 Function example_function(std::string_view name);
 
-/// A name of example_functions(), or else the path of a JSON file that holds one function. Throws Error: no such file,
-/// not JSON (with the line), or not a function, with the place in the file.
+/// Returns the function named in example_functions(), or else read from a JSON file at this path. Throws Error: no such
+/// file, not JSON (with the line), or not a function (with the position in the file).
 Function read_function(const std::string& name_or_path);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From samples of a file to a surface in metres.
+// Converts samples of a file to a surface in metres.
 #pragma once
 
 #include "scarp/field/height_field.h"
@@ -7,7 +7,7 @@
 
 namespace scarp {
 
-/// What a raster does not say about the surface through its samples; see HeightFieldSettings.
+/// Properties of the surface that a raster does not state; see HeightFieldSettings.
 struct FieldOptions {
   double exaggeration = 1.0;  ///< > 0
   Surface surface = Surface::bilinear;
@@ -16,9 +16,9 @@ struct FieldOptions {
   bool solid = false;
 };
 
-/// The surface of a raster; its cells have the lengths on the ground that the georeference gives. Takes the samples
-/// without copying them. Throws Error naming the file: infinite samples, an exaggeration that is not above 0, a border
-/// that is not the shared one it should be.
+/// Returns the surface of a raster, with the georeference's cell lengths on the ground. Moves the samples. Throws Error
+/// naming the file for infinite samples, an exaggeration that is not above 0, or sides that differ although `wrap` is
+/// shared_border.
 HeightField height_field_from(Raster raster, const FieldOptions& options = {});
 
 }  // namespace scarp

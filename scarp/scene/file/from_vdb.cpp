@@ -62,9 +62,9 @@ class Cells {
     blocks_ = ((box.high - 1) >> 7) + 1 - first_block_;
   }
 
-  // What a grid of them takes, at most.
+  // Maximum memory of a grid of them.
   std::int64_t bytes() const {
-    // A leaf is in four pages, which it may have for itself.
+    // A leaf covers four pages, which it may not share.
     const auto leaves = static_cast<std::int64_t>(file_.leaves.size());
     std::int64_t cells = leaves, pages = 4 * leaves, places = 0;
     for (const VdbTile& tile : file_.tiles) {

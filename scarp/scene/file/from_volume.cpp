@@ -21,7 +21,7 @@ constexpr int kEntryBits = 8;
 
 bool is_solid(double value, std::optional<double> from) { return from ? value >= *from : value > 0; }  // NaN: no
 
-// Where the voxels of a grid come from: from(v) in the file, with the axes turned.
+// Source of the voxels of a grid: from(v) in the file, with the axes rotated.
 struct FromFile {
   ivec3 size;  // of the grid
   LatticeRotation turn, back;

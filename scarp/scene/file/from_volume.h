@@ -11,13 +11,13 @@
 
 namespace scarp {
 
-/// Which axis of the file points up; the others follow so that nothing is mirrored.
+/// The axis of the file that points up; the others follow without mirroring.
 enum class UpAxis : std::uint8_t { y, z };
 
 struct FromVolumeOptions {
   VoxelFileOptions voxels{};
   UpAxis up = UpAxis::z;
-  std::optional<double> solid_from;  ///< the least number of a solid voxel; nothing: all above 0 are solid
+  std::optional<double> solid_from;  ///< minimum number of a solid voxel; nullopt: all above 0 are solid
 };
 
 /// Smallest and largest number of some voxels; low > high if there are none.
@@ -29,14 +29,14 @@ SolidRange solid_range(const DenseVolume& volume, std::optional<double> solid_fr
 /// Range of all numbers that are not NaN.
 SolidRange number_range(const DenseVolume& volume);
 
-/// Throws Error if volumes of this size are too large for the march that `options` selects: before they are read.
+/// Throws Error, before reading, if volumes of this size are too large for the march that `options` selects.
 void require_marchable(const VolumeFormat& format, const VoxelFileOptions& options);
 
 /// `colour`: of all voxels.
 PlacedVoxels placed_voxels_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options = {});
 
 /// The lowest number of `range`, solid_range(), has the first of the colours, the highest the last; at most 255
-/// colours, at least one. A single colour needs no range. NaN is empty. Throws Error when there are more or none.
+/// colours, at least one. A single colour needs no range. NaN is empty. Throws Error if there are more or none.
 PlacedVoxels placed_voxels_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
                                 const SolidRange& range, const FromVolumeOptions& options = {});
 

@@ -21,7 +21,7 @@ namespace scarp {
 namespace {
 
 // Limits on hostile files. Pairs of instances that are examined, and voxels that are compared where they overlap, each
-// pair as much as some: about 10 s each.
+// pair counting as several: about 10 s each.
 constexpr std::int64_t kMostPairs = std::int64_t{1} << 32, kMostCompared = std::int64_t{1} << 29, kVoxelsPerPair = 8;
 constexpr const char* kTooManyOverlaps =
     "its models overlap too much to decide which voxels are shown (move them apart, or unite them in the editor)";
@@ -50,7 +50,7 @@ class Solid {
   bool operator()(const VoxVoxel& v) const { return ordered_rank(place_of(v)) < ranks_[v.index]; }
 
  private:
-  // The nearest number of ranks out of four; none that is seen at all vanishes.
+  // The nearest number of ranks out of four, but at least one for visible colours.
   static int ranks_of(int alpha) { return alpha == 0 ? 4 : std::max(1, (4 * alpha + 127) / 255); }
 
   std::array<int, 256> ranks_{};  // by palette index; 0: none
@@ -208,7 +208,7 @@ void for_each_overlap(const std::vector<Placed>& instances, const Body& body) {
   }
 }
 
-// Keeps one of several instances of a model that cover one another exactly: the first, or the last.
+// Keeps one of several coincident instances of a model: the first, or the last.
 std::vector<VoxInstance> different(std::vector<VoxInstance> instances, bool keeps_first) {
   const auto key = [](const VoxInstance& i) {
     return std::tuple(i.model, i.move.x, i.move.y, i.move.z, i.turn.axis, i.turn.sign);
@@ -246,7 +246,7 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
   for (const VoxInstance& instance : instances)
     placed.emplace_back(instance, file.models[static_cast<std::size_t>(instance.model)], models.at(instance.model));
 
-  // What lies under another instance is removed from a copy.
+  // Voxels below another instance are removed from a copy.
   std::map<std::size_t, VoxelGrid> cut;
   const auto for_each_pair = [&](const auto& body) {
     for_each_overlap(placed,

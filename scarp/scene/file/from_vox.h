@@ -17,10 +17,9 @@ struct FromVoxOptions {
 /// 254 is the share of a colour's voxels that are solid, chosen by ordered_pattern.h. An alpha of 0 means opaque,
 /// because many programs do not write alpha. Where instances overlap, one voxel remains at each position, the one that
 /// MagicaVoxel shows: that of the first instance in files from version 200 on, that of the last in older files. An
-/// instance that loses voxels gets a model of its own; all others share the models of the file. Of instances that cover
-/// one another exactly one remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such
-/// march, too many overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it
-/// is allocated.
+/// instance that loses voxels gets its own model; all others share the models of the file. If instances coincide, one
+/// remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such march, too many
+/// overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it is allocated.
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options = {});
 
 }  // namespace scarp

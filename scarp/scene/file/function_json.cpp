@@ -82,7 +82,7 @@ class FunctionReader {
   }
 
  private:
-  // What is out of range is told by make_function(), in its words.
+  // make_function() reports values out of range in its own words.
   static Function made(FunctionShape shape, const std::string& path) {
     try {
       return make_function(std::move(shape));
@@ -156,7 +156,7 @@ class FunctionReader {
     return read;
   }
 
-  // Of more than two operands the first two are one, and so on.
+  // With more than two operands, the first two are combined first, and so on.
   Function combined(Type type, JsonObject& object, int depth) const {
     const Json& of = object.at("of");
     const std::string path = object.path_of("of");

@@ -28,11 +28,12 @@
 
 namespace scarp {
 
-/// The function of a name that stands at a place of the file. Throws Error, naming the place, when there is none.
+/// Returns the function with this name, used at a position in the file. Throws Error naming the position if there is
+/// none.
 using FunctionByName = std::function<Function(const std::string& name, std::string_view path)>;
 
-/// `path` is where `json` stands in its file, as a JSON pointer. Without `by_name`, names are those of
-/// example_functions.h. Throws Error naming the place and what would be right there.
+/// `path` is the position of `json` in its file, as a JSON pointer. Without `by_name`, names are those of
+/// example_functions.h. Throws Error naming the position and the expected value.
 Function function_from_json(const nlohmann::json& json, std::string_view path, const FunctionByName& by_name = {});
 
 }  // namespace scarp

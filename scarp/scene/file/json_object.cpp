@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// What stands there, short enough for one line.
+// The value, shortened to fit in one line.
 std::string shown(const nlohmann::json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("a list of {}", value.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An object of a JSON file, read key by key: what is missing, of the wrong kind or unknown is told with its place in
-// the file, as a JSON pointer ("/fields/0/function/octaves").
+// An object of a JSON file, read key by key. Missing, mistyped and unknown keys are reported with their position in the
+// file, as a JSON pointer ("/fields/0/function/octaves").
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ void take_json(std::optional<T>& to, const nlohmann::json& object, const char* k
 /// Refers to the JSON that it was made of.
 class JsonObject {
  public:
-  /// Throws Error when it is none.
+  /// Throws Error if it is not an object.
   JsonObject(const nlohmann::json& json, std::string path);
 
   const std::string& path() const { return path_; }
   std::string path_of(std::string_view key) const;
-  /// Null when there is none. Whatever has been asked for is known to finish().
+  /// Null if there is none. finish() accepts every key that was requested.
   const nlohmann::json* find(std::string_view key);
   const nlohmann::json& at(std::string_view key);
 
-  /// A finite number, or what stands for it when there is none.
+  /// A finite number, or the default if there is none.
   double number(std::string_view key, double fallback);
   double number(std::string_view key);
   std::int64_t whole(std::string_view key, std::int64_t fallback, std::int64_t least, std::int64_t most);
@@ -43,7 +43,7 @@ class JsonObject {
   /// A list of two numbers.
   void pair(std::string_view key, double& first, double& second);
 
-  /// Throws Error for a key that nobody has asked for, listing those that somebody has.
+  /// Throws Error for a key that was never requested, listing those that were.
   void finish() const;
 
  private:

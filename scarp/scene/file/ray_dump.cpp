@@ -21,8 +21,8 @@
 namespace scarp {
 namespace {
 
-// Samples of a generated field, 4 GiB: no fewer than those of the largest field of scarp-bench leaks, and a line of a
-// file shall not ask for all memory.
+// Samples of a generated field, 4 GiB: no fewer than those of the largest field of scarp-bench leaks; a line of a file
+// must not allocate all memory.
 constexpr std::int64_t kMostGenerated = std::int64_t{1} << 30;
 
 constexpr std::string_view kHead = "scarp-rays 1";
@@ -172,7 +172,7 @@ class DumpReader {
     }
     return value;
   }
-  // One of several names, by its place among them.
+  // The index of one of several names.
   std::size_t choice(std::string_view what, std::initializer_list<std::string_view> names) {
     const std::string_view text = word();
     const auto found = std::find(names.begin(), names.end(), text);
@@ -266,7 +266,7 @@ class DumpReader {
     }
   }
 
-  // All lines of the field are there: it is made once, for all of its rays.
+  // The field is complete: it is built once, for all of its rays.
   void end_field() {
     if (!in_field_) fail("a ray without a field; a line 'field TYPE COLUMNS ROWS' must come first");
     if (field_) return;
@@ -313,7 +313,7 @@ class DumpReader {
     return samples;
   }
 
-  // What the library finds wrong is wrong at this line or in the lines before.
+  // An error of the library refers to this line or earlier ones.
   template <class Check>
   void with_line(const Check& check) const {
     try {
@@ -328,7 +328,7 @@ class DumpReader {
   const std::string& path_;
   std::ifstream in_;
   std::string line_;
-  std::string_view rest_;  // of the line, what is not yet read
+  std::string_view rest_;  // the unread rest of the line
   int number_ = 0;
 
   bool in_field_ = false, in_ray_ = false;

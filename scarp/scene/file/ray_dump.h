@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One ray over one field as text: all that it takes to ask the same question elsewhere, to the bit.
+// One ray over one field as text: everything needed to repeat the query elsewhere, bit for bit.
 //
 //   scarp-rays 1                          first line: what this is, and its version
 //   # anything                            lines like this and empty ones are skipped
@@ -31,19 +31,19 @@ namespace scarp {
 
 struct RayDump {
   HeightField field;
-  /// Where the samples are those of a procedural DEM in metres of its cell: they are then not written out.
+  /// Set if the samples are a procedural DEM in metres; they are then not written out.
   std::optional<ProceduralDem> generator;
   Ray ray;
   std::string expected;  ///< for people: one line; may be empty
   std::string answered;
 };
 
-/// Writes the rays into one file; consecutive ones over the same field (copies of one) share its text. Throws Error
-/// when the file cannot be written; then no file is left or changed.
+/// Writes the rays into one file; consecutive ones over the same field (copies of one) share its text. Throws Error if
+/// the file cannot be written; then no file is created or changed.
 void write_ray_dumps(const std::string& path, std::span<const RayDump> dumps);
 
-/// Reads what write_ray_dumps() writes, or what people have written in that form; at least one ray. Throws Error naming
-/// the file and the line.
+/// Reads files by write_ray_dumps(), or hand-written ones in this form; at least one ray. Throws Error naming the file
+/// and the line.
 std::vector<RayDump> read_ray_dumps(const std::string& path);
 
 }  // namespace scarp

@@ -231,7 +231,7 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
   if (!kind) refuse_json(path, json, fmt::format("an object with one of {}", fmt::join(kKinds, ", ")));
   const MarchSettings settings =
       json.contains("settings") ? march_settings_from_json(json["settings"], path + "/settings") : MarchSettings{};
-  // The march that the field has, or that which suits its kind.
+  // The march of the field, or the default of its kind.
   const auto march = [&](const auto& find, const char* usual) -> const auto& {
     try {
       return find(json.value("march", usual));
@@ -256,7 +256,7 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
                              try {
                                return ground_from(ground, at, around);
                              } catch (const Error& error) {
-                               // Most have a place already.
+                               // Most have a position already.
                                if (*error.what() == '/') throw;
                                rethrow_at(at);
                              }

@@ -39,13 +39,13 @@ std::string text_of(const std::string& path) {
   return text;
 }
 
-// What all files of a scene add to.
+// Shared by all files of a scene.
 struct Whole {
   std::vector<SceneFieldPtr> fields;
   std::vector<Material> materials;
   std::vector<std::string> notes;
-  std::vector<std::string> files;       // that have been read
-  std::vector<std::string> open_files;  // that are being read, each in the one before
+  std::vector<std::string> files;       // files already read
+  std::vector<std::string> open_files;  // files being read, each included by the previous one
   Progress progress;
 };
 
@@ -95,7 +95,7 @@ class SceneReader {
     return function;
   }
 
-  // The index of a field that is placed by name, or stands in the object itself.
+  // The index of a field that is referred to by name, or defined in the object itself.
   std::pair<std::uint32_t, dvec3> field_of(const Json& object, const std::string& path) {
     if (!object.contains("field")) return add_field(object, path);
     for (const char* key : {"march", "settings", "heights", "function", "shape", "voxels", "mesh", "scene"}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parts of a scene file, each from JSON that keeps to the schema. `path` is where it stands in the file, as a JSON
-// pointer, with which errors begin.
+// Parts of a scene file, each from JSON that conforms to the schema. `path` is its position in the file, as a JSON
+// pointer; errors begin with it.
 #pragma once
 
 #include <functional>
@@ -19,12 +19,12 @@
 
 namespace scarp {
 
-/// What fields may refer to, and what is said about them.
+/// Context of fields: what they may refer to, and the notes about them.
 struct FieldSurroundings {
   std::string folder;        ///< that paths count from
   FunctionByName functions;  ///< named ones
-  /// A material's number for shapes, from 1; and the JSON of a field and where it stands: of a name that is asked for
-  /// at a place. Both throw Error.
+  /// Look up a name used at a position: a material's number for shapes, from 1, and the JSON of a field with its
+  /// position. Both throw Error.
   std::function<int(const std::string& name, const std::string& path)> material;
   std::function<std::pair<const nlohmann::json*, std::string>(const std::string& name, const std::string& path)> field;
   std::vector<std::string>* notes;  ///< of readers
@@ -47,7 +47,7 @@ FieldWithPlace voxels_from_json(const nlohmann::json& json, const std::string& p
 /// Returns the path of a file given relative to the scene's folder.
 std::string resolved(const FieldSurroundings& around, const nlohmann::json& file);
 
-/// Materials by name, appended to `all` in an order in which they refer to earlier ones alone; the index of each.
+/// Appends the materials to `all`, ordered so that they refer only to earlier ones, and returns the index of each name.
 std::map<std::string, std::uint32_t> materials_from_json(const nlohmann::json& json, const std::string& path,
                                                          std::vector<Material>& all);
 
@@ -60,10 +60,10 @@ SceneSky sky_from_json(const nlohmann::json& scene);
 std::optional<SceneWater> water_from_json(const nlohmann::json& scene);
 std::optional<SceneFog> fog_from_json(const nlohmann::json& scene);
 
-/// Settings of all marches, by the names that the command line has, with underscores.
+/// Settings of all marches, with the names of the command line's options, with underscores.
 MarchSettings march_settings_from_json(const nlohmann::json& json, const std::string& path);
 
-/// Rethrows the current Error with the place before it.
+/// Rethrows the current Error, prefixed with the position.
 [[noreturn]] void rethrow_at(const std::string& path);
 
 }  // namespace scarp

@@ -25,18 +25,18 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostShown = 60;  // of a place or a name
+constexpr std::size_t kMostShown = 60;  // of a position or a name
 
 std::string shortened(const std::string& text) {
   return text.size() <= kMostShown ? text : text.substr(0, kMostShown) + "...";
 }
 
-// What the parser is inside of.
+// The containers that the parser is in.
 struct Level {
   bool list;
   std::size_t index = 0;         // of a list
   std::string key{};             // of an object
-  std::set<std::string> keys{};  // that were there
+  std::set<std::string> keys{};  // that occurred
 };
 
 std::string pointer(const std::vector<Level>& levels) {
@@ -48,7 +48,7 @@ std::string pointer(const std::vector<Level>& levels) {
   return path;
 }
 
-// The part of the schema for a place of the file; null when there is none.
+// The part of the schema for a position in the file; null if there is none.
 class SchemaWalk {
  public:
   explicit SchemaWalk(const Json& schema) : schema_(schema), here_(&schema) {}
@@ -169,7 +169,7 @@ void check_scene_schema(const Json& scene) {
   }();
   valijson::ValidationResults results;
   if (valijson::Validator().validate(*schema, valijson::adapters::NlohmannJsonAdapter(scene), &results)) return;
-  // What is inside of others is told first.
+  // Errors in nested values are reported first.
   refuse(scene, schema_json, *results.begin());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the text of a scene file to JSON that keeps to the schema (scene.schema.json).
+// Parses a scene file to JSON that conforms to the schema (scene.schema.json).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,15 +8,15 @@
 
 namespace scarp {
 
-/// Levels of a scene file within one another.
+/// Maximum nesting depth of a scene file.
 inline constexpr std::size_t kDeepestScene = 1000;
 
-/// Throws Error naming the line: text that is no JSON; or the place as a JSON pointer: a key given twice, more than
-/// kDeepestScene levels.
+/// Throws Error naming the line if the text is not JSON, or naming the position as a JSON pointer for a duplicate key
+/// or more than kDeepestScene levels.
 nlohmann::json parse_scene_text(std::string_view text);
 
-/// Throws Error naming the first place that does not keep to the schema, and what would be right there. What stands
-/// under "function", "functions", "shape" and "settings" is judged by those who read it.
+/// Throws Error naming the first position that does not conform to the schema, and the expected value. The contents of
+/// "function", "functions", "shape" and "settings" are checked by their own readers.
 void check_scene_schema(const nlohmann::json& scene);
 
 /// The schema itself.

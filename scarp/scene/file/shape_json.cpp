@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// What a value is, in few words: a number as it is, other things by their kind.
+// Describes a value: numbers literally, others by their kind.
 std::string told(const Json& json) {
   constexpr std::size_t kMost = 40;
   if (json.is_object()) return "an object";
@@ -49,7 +49,7 @@ std::string within(const std::string& path, std::string_view key) {
 }
 std::string within(const std::string& path, std::size_t index) { return fmt::format("{}/{}", path, index); }
 
-// The keys of an object, each asked for by name; what nobody asked for is an error.
+// The keys of an object, each requested by name; keys that were not requested are errors.
 class Settings {
  public:
   Settings(const Json& json, std::string path, std::span<const std::string_view> known)
@@ -130,7 +130,7 @@ Settings settings(const Json& json, const std::string& path, const std::string_v
   return {json, path, known};
 }
 
-// Words that are settings of a shape, not what it is.
+// Keys that are settings of a shape, not its type.
 bool is_setting(std::string_view key) { return key == "material" || key == "smooth" || key == "of"; }
 
 class ShapeReader {
@@ -181,7 +181,7 @@ class ShapeReader {
   }
 
  private:
-  // Fewer than nodes may be under one another, for a solid has up to three: its place, itself and its material.
+  // Fewer than the maximum depth of nodes, because a solid has up to three: its placement, itself and its material.
   static constexpr int kDeepestJson = 64;
 
   static constexpr std::array<std::string_view, 16> kKinds = {
@@ -195,7 +195,7 @@ class ShapeReader {
   }
   static std::string kinds() { return fmt::format("{}", fmt::join(kKinds, ", ")); }
 
-  // What the library refuses is told with its place.
+  // Errors of the library are reported with their position.
   static Shape made(const std::string& path, const shape::Form& form) {
     try {
       return make_shape(form);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shapes as they stand in a scene file. An object with one key that says what it is, and perhaps a material:
+// Shapes in scene files: an object with one key that names its type, and an optional material:
 //
 //   {"sphere": {"radius": 1, "at": [0, 0, 2]}, "material": "red"}
 //   {"box": {"half": [1, 2, 0.5], "round": 0.1, "at": ..}}          {"plane": {"normal": [0, 0, 1], "height": 0}}
@@ -12,7 +12,7 @@
 //   {"repeat": {"period": [4, 4, 0], "count": [3, 3, 0]}, "of": SHAPE}      count 0: without end
 //   {"union": [SHAPE, ..], "smooth": 0.3}    {"intersection": [SHAPE, ..]}    {"subtract": [FROM, WHAT, ..]}
 //
-// Lengths are metres. An inner material goes before an outer one.
+// Lengths are metres. An inner material overrides an outer one.
 #pragma once
 
 #include <functional>
@@ -23,15 +23,15 @@
 
 namespace scarp {
 
-/// What shapes ask of the scene that they stand in. Both may be empty: then a material or a ground is an error. They
-/// throw Error for a name that there is not; `path` says where it was asked for.
+/// Lookups of shapes in their scene. Both may be empty: then a material or a ground is an error. They throw Error for
+/// unknown names; `path` is the position of the name.
 struct ShapeNames {
   std::function<int(const std::string& name, const std::string& path)> material;
   std::function<Shape(const nlohmann::json& ground, const std::string& path)> ground;
 };
 
-/// `path` is the JSON pointer of `json` in its file, "/objects/2/shape". Throws Error for the first thing that is
-/// wrong, with the place of it: "/objects/2/shape/sphere/radius: expected > 0, got -1".
+/// `path` is the JSON pointer of `json` in its file, "/objects/2/shape". Throws Error for the first mistake, with its
+/// position: "/objects/2/shape/sphere/radius: expected > 0, got -1".
 Shape shape_from_json(const nlohmann::json& json, const std::string& path, const ShapeNames& names = {});
 /// The same, compiled.
 DistanceField distance_field_from_json(const nlohmann::json& json, const std::string& path,

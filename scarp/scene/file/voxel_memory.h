@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the memory of grids and accelerators, refused before it is allocated.
+// Private to the station: limits the memory of grids and accelerators before it is allocated.
 #pragma once
 
 #include <fmt/format.h>

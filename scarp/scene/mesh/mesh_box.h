@@ -13,7 +13,7 @@ namespace scarp {
 
 inline bool finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-/// Throws Error: no triangles, corners that are not finite.
+/// Throws Error if there are no triangles, or corners are not finite.
 inline WorldBox box_of(const TriangleMesh& mesh) {
   if (mesh.corners.empty() || mesh.corners.size() % 3 != 0) throw Error("mesh: has no whole triangles");
   WorldBox box;

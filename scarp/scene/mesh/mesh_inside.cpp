@@ -19,7 +19,7 @@ bool before(const vec3& a, const vec3& b) { return std::tie(a.x, a.y, a.z) < std
 
 Edge in_order(const vec3& a, const vec3& b) { return before(b, a) ? Edge{b, a} : Edge{a, b}; }
 
-// Whether the edge passes the point in the east.
+// Whether the edge passes east of the point.
 bool is_east(const vec3& a, const vec3& b, const dvec3& p) {
   const auto [from, to] = in_order(a, b);
   const dvec3 f(from), t(to);

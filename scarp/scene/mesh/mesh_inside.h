@@ -15,7 +15,7 @@
 
 namespace scarp {
 
-/// Counts the edges of triangles, three corners each. Corners are the same where their coordinates are.
+/// Counts the edges of triangles, three corners each. Corners with equal coordinates are the same.
 MeshEdges count_edges(std::span<const vec3> corners);
 
 class MeshInside {

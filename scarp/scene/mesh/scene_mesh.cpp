@@ -30,7 +30,7 @@ namespace scarp {
 namespace {
 
 constexpr std::uint32_t kNone = RTC_INVALID_GEOMETRY_ID;
-constexpr std::size_t kMostCorners = std::size_t{1} << 31;  // what Hit::cell counts, thrice
+constexpr std::size_t kMostCorners = std::size_t{1} << 31;  // number of triangles, times three
 
 struct Released {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -51,10 +51,10 @@ void require_no_error(RTCDevice device) {
 struct MeshRay {
   dvec3 start{0.0};      ///< near the mesh
   dvec3 direction{0.0};  ///< unit
-  double start_s = 0;    ///< of `start`, counted from the world ray's origin
+  double start_s = 0;    ///< t of `start`, relative to the world ray's origin
   double length = 1;     ///< of the world ray's direction: s = t * length
   double first_t = 0, last_t = 0;
-  double reach = 0;              ///< s beyond which nothing is left of the mesh or the range
+  double reach = 0;              ///< s beyond which the mesh or the range ends
   std::uint32_t passed = kNone;  ///< the triangle that the ray starts on
 };
 
@@ -69,7 +69,7 @@ class MeshField final : public SceneField {
     const dvec3 half = 0.5 * (box_.high - box_.low);
     const double largest = std::max({half.x, half.y, half.z});
     if (!(largest > 0 && std::isfinite(largest))) throw Error("mesh: its extent must be finite and above 0");
-    // A power of two rounds nothing. The smallest normal number has a finite reciprocal.
+    // A power of two is exact. The smallest normal number has a finite reciprocal.
     unit_ = std::ldexp(1.0, std::max(std::ilogb(largest), std::numeric_limits<double>::min_exponent));
     half_ = half / unit_ + kMeshRounding;
     for (const MeshCorner& corner : mesh.corners) {
@@ -111,7 +111,7 @@ class MeshField final : public SceneField {
     Query query(*this, local);
     RTCRay found = embree_ray(local);
     rtcOccluded1(scene_.get(), &query, &found);
-    return found.tfar < 0;  // minus infinity where something is in the way
+    return found.tfar < 0;  // minus infinity if something blocks the ray
   }
 
   FieldSurface surface(const Ray& ray, const Hit& hit) const override {
@@ -140,13 +140,13 @@ class MeshField final : public SceneField {
     vec3 colour;
   };
 
-  // The caller's filter, and the ray that it is asked for.
+  // The caller's filter, and the ray passed to it.
   struct MeshFilter {
     const Ray& ray;
     const HitFilter* accept;
   };
 
-  // Embree hands its context on to the filter.
+  // Embree passes its context to the filter.
   struct Query : RTCIntersectContext {
     Query(const MeshField& mesh_, const MeshRay& ray_, const MeshFilter* filter_ = nullptr)
         : RTCIntersectContext{}, mesh(mesh_), ray(ray_), filter(filter_) {
@@ -156,7 +156,7 @@ class MeshField final : public SceneField {
     const MeshField& mesh;
     const MeshRay& ray;
     const MeshFilter* filter;
-    std::exception_ptr failure{};  // of the caller's filter: Embree must not be left by an exception
+    std::exception_ptr failure{};  // thrown by the filter: exceptions must not pass through Embree
     std::uint32_t triangles = 0;
   };
 
@@ -196,7 +196,7 @@ class MeshField final : public SceneField {
                                                                             : kNone;
   }
 
-  // With normals turned towards a direction.
+  // With normals flipped towards a direction.
   FieldSurface surface_at(std::uint32_t triangle, double u, double v, const dvec3& towards) const {
     const CornerLook* look = &looks_[3 * std::size_t{triangle}];
     const dvec3 plane = normalize(normal(triangle));
@@ -211,7 +211,7 @@ class MeshField final : public SceneField {
     return surface;
   }
 
-  // False where the ray passes the box.
+  // Returns false if the ray misses the box.
   bool enters(const Ray& ray, const Hit* from, MeshRay& local) const {
     // Divided by its largest part first: squares neither overflow nor vanish.
     const double part = std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
@@ -239,7 +239,7 @@ class MeshField final : public SceneField {
       high = std::min(high, (std::copysign(h, d) - o) / d);
     }
     if (!(low <= high)) return false;
-    // A little before, so that float32 loses no touch at the beginning.
+    // Slightly earlier, so that float32 loses no touch at the start.
     local.start_s = low - kMeshRounding;
     local.start = origin + local.start_s * local.direction;
     local.reach = high - low + 2 * kMeshRounding;
@@ -260,8 +260,8 @@ class MeshField final : public SceneField {
     return ray;
   }
 
-  // Where the ray meets the plane of a triangle that Embree has found at found_s. t is NaN if float32 has left the
-  // triangle no area; it hides nothing.
+  // Where the ray hits the plane of a triangle that Embree found at found_s. t is NaN if the triangle has no area in
+  // float32; it then blocks nothing.
   TriangleHit meets(const MeshRay& ray, std::uint32_t triangle, double found_s) const {
     const dvec3 a = position(triangle, 0) - ray.start, b = position(triangle, 1) - ray.start,
                 c = position(triangle, 2) - ray.start;
@@ -270,7 +270,7 @@ class MeshField final : public SceneField {
     if (square == 0) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
     const double facing = dot(n, ray.direction);
     double s = facing != 0 ? dot(n, a) / facing : found_s;
-    // Of a triangle seen edge-on the plane says little; its corners bound s all the same.
+    // The plane of a triangle seen edge-on is ill-conditioned, but its corners still bound s.
     const double along_a = dot(a, ray.direction), along_b = dot(b, ray.direction), along_c = dot(c, ray.direction);
     s = std::clamp(s, std::min({along_a, along_b, along_c}), std::max({along_a, along_b, along_c}));
     const dvec3 p = s * ray.direction;
@@ -322,7 +322,7 @@ class MeshField final : public SceneField {
   WorldBox box_;
   dvec3 middle_;
   double unit_ = 1;  // the file's, in one of Embree's
-  dvec3 half_{0.0};  // of the box in Embree's units, wider by what is rounded
+  dvec3 half_{0.0};  // of the box in Embree's units, widened by the rounding error
   std::size_t triangles_ = 0;
   std::vector<vec3> positions_;  // in Embree's units, three per triangle and one more; Embree reads them here
   std::vector<CornerLook> looks_;

@@ -5,8 +5,8 @@
 //   const Placement place = mesh_placement(mesh, {.at = {500, 300, 1200}});
 //   fields.push_back(scene_mesh(std::move(mesh)));
 //
-// Rays meet both sides of a triangle. within() finds what is inside a closed mesh, where every edge belongs to an even
-// number of triangles; of other meshes, nothing.
+// Rays hit both sides of a triangle. within() works for closed meshes, in which every edge belongs to an even number of
+// triangles; it finds nothing in other meshes.
 //
 // Guarantee: approximate. Embree finds the triangle in float32 with its robust setting, so neighbours leave no gaps,
 // but which triangle is hit near an edge, and whether a silhouette is hit at all, is uncertain within kMeshRounding of
@@ -30,7 +30,7 @@ constexpr double kMeshRounding = 0x1p-18;
 /// index of the triangle, u and v are the barycentric weights of its second and third corner. Both sides are hit.
 ///
 /// A ray from a hit (or with RayStart::on_surface and the triangle in start_cell.col) starts in the plane of that
-/// triangle and hits neither it nor anything nearer than kMeshRounding. Rays are moved to the mesh in double before
+/// triangle and hits neither it nor anything closer than kMeshRounding. Rays are moved to the mesh in double before
 /// they are rounded to float32, so distance and coordinates far from the origin cost no accuracy.
 ///
 /// Throws Error: no triangles, corners that are not finite, out of memory.
@@ -44,7 +44,7 @@ struct MeshEdges {
 /// Returns nullopt for other kinds of field.
 std::optional<MeshEdges> mesh_edges(const SceneField& field);
 
-/// Where a mesh stands.
+/// Placement of a mesh.
 struct MeshPlacement {
   dvec3 at{0.0};        ///< metres: position of its centre seen from above, and of its lowest point
   double scale = 1;     ///< metres per unit of the file, > 0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Links scarp::core alone: rays straight down on a plane 5 m high and on voxels that stand on it.
+// Links only scarp::core: rays straight down on a plane 5 m high and on voxels that stand on it.
 #include <cstdint>
 #include <vector>
 

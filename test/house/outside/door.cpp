@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Links scarp::core alone, which must fail: render() is in scarp::scarp.
+// Links only scarp::core, which must fail: render() is in scarp::scarp.
 #include "scarp/scarp.h"
 
 int main() { scarp::render(scarp::combine({}), "outside.png"); }

@@ -12,7 +12,7 @@
 namespace scarp::test {
 namespace {
 
-// Of a time, what a float rounds it by, twice.
+// Twice the rounding of a time to float, relative.
 constexpr double kTime = 0x1p-23;
 
 Ray moved(Ray ray, double metres) {
@@ -24,7 +24,7 @@ double clearance(const HeightFunction& function, const Ray& ray, double t) {
   return p.z - function.value(p.x, p.y);
 }
 
-// Nothing is passed: what a higher ray meets is met, and no later.
+// No hit is passed: a hit of a higher ray is also hit, and no later.
 std::string objection_to_loss(const HeightFunction& function, const Ray& ray, double delta, const Hit& hit,
                               double late) {
   const Hit met = march_lipschitz_local(function, moved(ray, delta));
@@ -34,7 +34,7 @@ std::string objection_to_loss(const HeightFunction& function, const Ray& ray, do
   return {};
 }
 
-// A hit is where the test of an approximate march holds.
+// At a hit, the test of an approximate march holds.
 std::string objection_to_place(const HeightFunction& function, const Ray& ray, double delta, const Hit& hit,
                                double limit) {
   if (!hit) return {};
@@ -65,11 +65,11 @@ std::string function_objection(std::string_view march, const MarchSettings& sett
     return objection_to_place(function, ray, delta, hit, (1 + kTime) * settings.naive.tolerance * way * speed);
   if (march == "relaxed")
     return objection_to_place(function, ray, delta, hit, (1 + kTime) * settings.relaxed.tolerance * way * speed);
-  // fixed-step: points are counted, so they are those of doubles.
+  // fixed-step: points are counted, so they equal those in double.
   const FunctionRay part(function, ray, FunctionUse::march, settings.function.reach, FunctionRay::Unrounded{});
   const double step = settings.function.step / speed;
   if (!part.crosses() || part.clearance(part.t_enter) <= delta) return {};
-  double nearest = delta;  // of the points next to the hit
+  double nearest = delta;  // of the points around the hit
   for (int i = 0; i < settings.fixed_step.max_steps; ++i) {
     const double t = std::min(part.t_enter + i * step, part.t_exit), h = part.clearance(t);
     if (hit && std::abs(t - hit.t) <= step * (1 + kTime)) nearest = std::min(nearest, h - delta);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a march over a terrain function in single precision may tell of a ray: that of the CPU for a ray that runs up to
-// `delta` metres higher or lower. The CPU's lipschitz-local, itself proven against intervals
-// (function_marches_test), is asked for both.
+// Answers that a march over a terrain function in single precision may give: those of the CPU for a ray up to `delta`
+// metres higher or lower. Both come from the CPU's lipschitz-local, which function_marches_test proves against
+// intervals.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace scarp::test {
 
-/// What is wrong with `hit`; empty: nothing. `delta` in metres.
+/// Returns why `hit` is wrong, or an empty string. `delta` is in metres.
 std::string function_objection(std::string_view march, const MarchSettings& settings, const HeightFunction& function,
                                const Ray& ray, double delta, const Hit& hit);
 

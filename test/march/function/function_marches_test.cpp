@@ -27,7 +27,7 @@ namespace {
 
 const int kRays = cases(10'000, 2000, 60);
 
-// The last interval of lipschitz-local: of several crossings in it any may be told.
+// The last interval of lipschitz-local: any of several crossings in it may be reported.
 constexpr double kTolerance = LipschitzLocalSettings{}.tolerance;
 
 struct Counts {
@@ -51,7 +51,7 @@ void expect_nothing_lost(const NamedFunction& named, const FunctionJudgement& ju
   }
 }
 
-TEST(FunctionMarches, ConservativeOnesLoseNothing) {
+TEST(FunctionMarches, ConservativeMarchesLoseNoHits) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(11);
@@ -70,13 +70,13 @@ TEST(FunctionMarches, ConservativeOnesLoseNothing) {
     EXPECT_GE(crossings, kRays / 4) << named.name;
     EXPECT_LE(local.exhausted, kRays / 500) << named.name;
     EXPECT_EQ(local.early + local.inexact, 0) << named.name;
-    if (HasFailure()) return;  // one function says enough
+    if (HasFailure()) return;  // one function is enough
   }
 }
 
 // A ridge where two planes meet. Bounds know a crease to first order only: segments as long as the tolerance do not
-// tell a ray from it that passes a thousandth of them above.
-TEST(FunctionMarches, PassCreasesClosely) {
+// distinguish it from a ray that passes a thousandth of them above.
+TEST(FunctionMarches, PassCloseToCreases) {
   const Function planes = make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})});
   const HeightFunction ridge(planes);
   for (const double above : {1e-2, 1e-4, 1e-6, -1e-6, -1e-4}) {
@@ -89,7 +89,7 @@ TEST(FunctionMarches, PassCreasesClosely) {
   }
 }
 
-TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
+TEST(FunctionMarches, RaysFromTheSurfaceLoseNoHits) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(12);
@@ -103,13 +103,13 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
       ray.t_max = 5000;
       ray.start = RayStart::on_surface;
       const Hit hit = march_lipschitz_local(function, ray);
-      // A millimetre on, the ray is either free, and judged from there, or it has gone into the ground.
+      // A millimetre further, the ray is either free, and judged from there, or it has entered the ground.
       Ray later = ray;
       later.start = RayStart::free;
       later.t_min = 1e-3;
       const dvec3 p = later.at(later.t_min);
       const double clearance = p.z - function.value(p.x, p.y);
-      // That of heights, of the ray's own height, and of the place where it begins, which is rounded, too.
+      // Rounding of heights, of the ray's own height, and of its start, which is also rounded.
       const FunctionBound near = function.bound({x - 1, x + 1, y - 1, y + 1});
       const double rounding =
           near.rounding + 0x1p-49 * (std::abs(p.z) + (1 + near.slope) * (std::abs(x) + std::abs(y) + 1));
@@ -119,7 +119,7 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
         ++leaving;
         const FunctionJudgement judge = judge_function(named.function, later);
         if (judge.verdict == FunctionVerdict::crossing) {
-          // Creases that a ray nearly runs along take many short segments: given up, but not lost.
+          // A ray nearly along a crease takes many short segments: it may be given up, but not lost.
           exhausted += hit.status == HitStatus::exhausted;
           EXPECT_NE(hit.status, HitStatus::miss) << named.name << ": lost the crossing at t = " << judge.crossed_by;
           EXPECT_NE(hit.status, HitStatus::below) << named.name;
@@ -142,7 +142,7 @@ const HeightFunction& bowl() {
   return function;
 }
 
-TEST(FunctionMarches, FollowRaysOfAnyDirection) {
+TEST(FunctionMarches, AcceptAnyDirection) {
   const HeightFunction plane(make_function(Plane{5}));
   // Upright, level, and with a direction of any length.
   const Hit down = march_lipschitz_local(plane, {{1, 2, 9}, {0, 0, -4}});
@@ -165,7 +165,7 @@ TEST(FunctionMarches, FollowRaysOfAnyDirection) {
   }
 }
 
-TEST(FunctionMarches, RespectTheRange) {
+TEST(FunctionMarches, RespectTheRayRange) {
   Ray ray{{-25, 3, 5}, {1, 0, 0}};
   ray.t_max = 33;
   EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::miss);
@@ -176,7 +176,7 @@ TEST(FunctionMarches, RespectTheRange) {
   EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::below);
 }
 
-TEST(FunctionMarches, EndAtTheirReach) {
+TEST(FunctionMarches, StopAtTheirReach) {
   const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // meets the ground after 33.3 m
   for (const FunctionMarchEntry& march : function_marches()) {
     MarchSettings settings;
@@ -187,7 +187,7 @@ TEST(FunctionMarches, EndAtTheirReach) {
   }
 }
 
-TEST(FunctionMarches, TellUsedUpStepsFromHits) {
+TEST(FunctionMarches, ReportExhaustionSeparatelyFromHits) {
   const Ray ray{{-25, 3, 5}, {1, 0, 0}, 0, 200};
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = 2;
@@ -197,7 +197,7 @@ TEST(FunctionMarches, TellUsedUpStepsFromHits) {
   }
 }
 
-TEST(FunctionMarches, TheTableNamesThem) {
+TEST(FunctionMarches, AreFoundByName) {
   std::vector<std::string_view> names;
   for (const FunctionMarchEntry& march : function_marches()) {
     names.push_back(march.name);
@@ -227,8 +227,8 @@ TEST(FunctionMarches, ValidateTheirSettings) {
   EXPECT_THROW(find_refinement("newton"), Error);
 }
 
-// The numbers, by what they do over a ramp: a ray along x at height 2 is 102 - t above it.
-TEST(FunctionMarches, PresetsHaveTheirNumbers) {
+// The effect of the settings over a ramp: a ray along x at height 2 is 102 - t above it.
+TEST(FunctionMarches, PresetsSetTheDocumentedValues) {
   const HeightFunction ramp(make_function(Plane{0, 1, 0}));
   const Ray ray{{-100, 0, 2}, {1, 0, 0}, 0, 200};
   const auto steps = [&](std::string_view name, double& t) {
@@ -240,7 +240,7 @@ TEST(FunctionMarches, PresetsHaveTheirNumbers) {
     t = hit.t;
     return stats.steps;
   };
-  // After n steps of share s the clearance is 102 (1 - s)^n, and t what is missing to 102.
+  // After n steps of fraction s the clearance is 102 (1 - s)^n, and t is 102 minus that.
   const auto expected = [](double share, double tolerance) {
     std::uint32_t n = 0;
     for (double h = 102; !(h < tolerance * (102 - h)); h *= 1 - share) ++n;
@@ -254,14 +254,15 @@ TEST(FunctionMarches, PresetsHaveTheirNumbers) {
   EXPECT_NEAR(t, 102, 1e-12);
   EXPECT_EQ(steps("castle", t), 2u);
   EXPECT_EQ(t, 102);
-  // Towards the ramp for ever, but for the least step, 2^-40 of the way out: under it by no more than that.
+  // It would approach the ramp for ever without the minimum step, 2^-40 of the distance: it is below it by no more than
+  // that.
   EXPECT_LE(steps("snowy", t), 64u);
   EXPECT_TRUE(t > 102 && t <= 102 + 200 * 0x1p-40);
   EXPECT_THROW(find_march_preset("comanche"), Error);
 }
 
 // castle ends within a millimetre of the ground at any distance, and a ray to the sun starts there.
-TEST(FunctionMarches, RaysFromTheSurfaceLeaveItWithEveryPreset) {
+TEST(FunctionMarches, RaysFromTheSurfaceEscapeWithEveryPreset) {
   const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
   for (const MarchPreset& preset : march_presets()) {
     const FunctionMarchEntry& march = find_function_march(preset.march);
@@ -304,7 +305,7 @@ TEST(FunctionMarches, FixedStepCountsItsSamples) {
   hit = march_fixed_step(ramp, ray, settings, &stats);
   EXPECT_EQ(hit.t, 60);
   EXPECT_EQ(stats.steps, 10u);
-  // A ray that begins under the ramp is below; one that comes up and goes down again is not.
+  // A ray that starts below the ramp is below; one that rises above it and enters again is not.
   EXPECT_EQ(march_fixed_step(ramp, {{10, 0, 2}, {1, 0, 0}, 0, 60}, settings).status, HitStatus::below);
   EXPECT_EQ(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 60}, {}).status, HitStatus::below);
   EXPECT_TRUE(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 160}, {}));
@@ -328,13 +329,13 @@ TEST(FunctionMarches, RefineTheLastInterval) {
     EXPECT_NEAR(halved.t, 102 / 1.01, 2 * 0x1p-24);
     EXPECT_NEAR(secant.t, 102 - 0.01 * plain.t, 1e-12);
   }
-  // Metres that count as a hit at any distance.
+  // Clearance in metres that counts as a hit at any distance.
   settings.sampling = {.refinement = Refinement::bisect, .tolerance = 3};
   settings.relaxed.tolerance = 0;
   EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
 }
 
-TEST(FunctionMarches, LipschitzHitsUnderTheGroundWithALargeShrinkFactor) {
+TEST(FunctionMarches, LipschitzHitsBelowGroundWithALargeShrinkFactor) {
   const HeightFunction function(endless_waves());
   const double proven = largest_proven_shrink(function.bound_everywhere().slope);
   MarchSettings too_large, smaller;
@@ -354,8 +355,8 @@ TEST(FunctionMarches, LipschitzHitsUnderTheGroundWithALargeShrinkFactor) {
   EXPECT_GT(under, 10);
 }
 
-// From beyond the reach of functions, under the ground there: down through it later on.
-TEST(FunctionMarches, FollowRaysThatComeInUnderTheGround) {
+// From beyond the domain of functions, below the ground there: it enters the ground later.
+TEST(FunctionMarches, FollowRaysThatEnterBelowGround) {
   const HeightFunction function(make_function(Sines{{{10, 100, 0.5 * std::numbers::pi, 0}}}));
   const Ray ray{{-kFunctionReach - 10, 25, 5}, {1, 1, 0}, 0, 200};
   for (const FunctionMarchEntry& march : function_marches()) {
@@ -368,7 +369,7 @@ TEST(FunctionMarches, FollowRaysThatComeInUnderTheGround) {
   }
 }
 
-TEST(FunctionMarches, VectorsAnswerBitForBit) {
+TEST(FunctionMarches, SimdIsBitIdentical) {
   std::vector<NamedFunction> functions = terrain_functions();
   functions.push_back({"both at once", make_function(Maximum{functions[2].function, functions[9].function}), false});
   for (const NamedFunction& named : functions) {
@@ -405,7 +406,7 @@ TEST(FunctionMarches, VectorsAnswerBitForBit) {
   }
 }
 
-TEST(FunctionMarches, LocalBoundsTakeFewerEvaluations) {
+TEST(FunctionMarches, LocalBoundsNeedFewerEvaluations) {
   const HeightFunction function(make_function(Fractal{}));
   FunctionRandom random(13);
   double global = 0, local = 0;

@@ -45,7 +45,7 @@ glsl::ScarpTwoFloat two(double x) {
 }
 double value(const glsl::ScarpTwoFloat& x) { return static_cast<double>(x.high) + static_cast<double>(x.low); }
 
-// A function's program as the shaders' text reads it.
+// A function's program in the layout that the shaders read.
 class Program {
  public:
   explicit Program(const FunctionProgram& program) : words_(function_words(program)) {
@@ -65,7 +65,7 @@ double random_place(FunctionRandom& random) {
   return value(two(random.between(-reach, reach)));
 }
 
-TEST(NoiseInShaders, HasTheSameLattice) {
+TEST(NoiseInShaders, UsesTheSameLattice) {
   FunctionRandom random(1);
   for (int i = 0; i < kPlaces; ++i) {
     const double x = random_place(random) * (i % 2 ? 64 : 1), y = random_place(random);
@@ -82,7 +82,7 @@ TEST(NoiseInShaders, HasTheSameLattice) {
   }
 }
 
-TEST(NoiseInShaders, IsWithinItsBound) {
+TEST(NoiseInShaders, StaysWithinItsBound) {
   FunctionRandom random(2);
   for (const NoiseKind kind : {NoiseKind::value, NoiseKind::perlin, NoiseKind::simplex}) {
     const glsl::ScarpNoiseBound bound = glsl::scarp_noise_bound(static_cast<std::uint32_t>(kind));
@@ -107,7 +107,7 @@ TEST(NoiseInShaders, IsWithinItsBound) {
   }
 }
 
-TEST(FunctionsInShaders, HeightsAreWithinTheirBound) {
+TEST(FunctionsInShaders, HeightsStayWithinTheirBound) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     const Program program(function.program(FunctionUse::march));
@@ -172,7 +172,7 @@ TEST(FunctionsInShaders, BoundsHold) {
   }
 }
 
-TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
+TEST(FunctionsInShaders, MarchesMatchWithinSinglePrecision) {
   const auto march = [](const Program& program, const DeviceFunctionRay& ray, std::string_view name,
                         const MarchSettings& settings, double slope) {
     if (name == "lipschitz-local")
@@ -215,8 +215,8 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
-// As PassCreasesClosely of function_marches_test, as far as floats tell times: 1000 / 2^22.
-TEST(FunctionsInShaders, PassCreasesClosely) {
+// As PassCloseToCreases of function_marches_test, as far as floats tell times: 1000 / 2^22.
+TEST(FunctionsInShaders, PassCloseToCreases) {
   const HeightFunction ridge(make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})}));
   const Program program(ridge.program(FunctionUse::march));
   const SingleRounding rounding(ridge.program(FunctionUse::march));
@@ -231,7 +231,7 @@ TEST(FunctionsInShaders, PassCreasesClosely) {
   }
 }
 
-TEST(FunctionsInShaders, RaysLeaveTheSurface) {
+TEST(FunctionsInShaders, RaysEscapeTheSurface) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     const Program program(function.program(FunctionUse::march));
@@ -247,7 +247,7 @@ TEST(FunctionsInShaders, RaysLeaveTheSurface) {
       if (!prepared.marches) continue;
       const Hit hit = hit_from_device(ray, prepared,
                                       glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, false));
-      // Later on, by when the ray is clear of the surface or under it by more than rounding, it is judged as free.
+      // Once the ray is above or below the surface by more than rounding, it is judged as free.
       const double delta = 4 * static_cast<double>(prepared.ray.rounding), speed = length(ray.direction);
       Ray later = ray;
       later.start = RayStart::free;
@@ -266,7 +266,7 @@ TEST(FunctionsInShaders, RaysLeaveTheSurface) {
       if (h < 0) {
         EXPECT_TRUE(at_once) << named.name << ", ray " << i;
       } else if (at_once) {
-        // Along the surface either answer is right, on the way out of it a hit is none.
+        // Along the surface either answer is right; on the way out a hit is wrong.
         EXPECT_FALSE(rises) << named.name << ", ray " << i;
       } else {
         left += rises;
@@ -281,7 +281,7 @@ TEST(FunctionsInShaders, RaysLeaveTheSurface) {
   }
 }
 
-TEST(FunctionsInShaders, RefuseWhatFloatsDoNotHold) {
+TEST(FunctionsInShaders, RejectValuesBeyondFloatRange) {
   const Function high = make_function(Plane{0x1p29, 0, 0});
   const Function higher = make_function(Product{high, make_function(Product{high, high})});
   EXPECT_THROW(SingleRounding(compile(higher, FunctionUse::march)), Error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions on a Vulkan device: all their marches tell what single precision allows (function_judge.h), any-hit
-// agrees with closest-hit, and validation has nothing to say.
+// Terrain functions on a Vulkan device: all their marches return what single precision allows (function_judge.h),
+// any-hit agrees with closest-hit, and validation is silent.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ DeviceFunctionQueries& queries(const FunctionMarchEntry& march) {
       .first->second;
 }
 
-TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
+TEST_F(FunctionsOnDevice, MarchesMatchWithinSinglePrecision) {
   const std::vector<NamedFunction> functions = terrain_functions();
   for (std::size_t f = 0; f < functions.size(); f += 3) {
     const NamedFunction& named = functions[f];
@@ -77,9 +77,9 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
-// Invocations share a vector and its turns of loops, and come to their last evaluations at different steps: the longest
+// Invocations share a vector and its loop iterations, and reach their last evaluations at different steps: the longest
 // program, and the most of these.
-TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
+TEST_F(FunctionsOnDevice, RaysDoNotAffectNeighbours) {
   const int kTogether = cases(16, 16, 4);
   Fractal fractal{.damping = 0.1, .octaves = {kMostOctaves, kMostOctaves, kMostOctaves}};
   Function sum = make_function(fractal);
@@ -110,8 +110,8 @@ TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
   }
 }
 
-// castle ends within a millimetre of the ground, less than a float may be off: its rays to the sun begin there.
-TEST_F(FunctionsOnDevice, RaysFromTheSurfaceLeaveIt) {
+// castle ends within a millimetre of the ground, less than a float may be off: its rays to the sun start there.
+TEST_F(FunctionsOnDevice, RaysFromTheSurfaceEscape) {
   const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
   const DeviceFunction on_device(device(), hills);
   const DeviceFunctionTarget target{&hills, &on_device};
@@ -128,7 +128,7 @@ TEST_F(FunctionsOnDevice, RaysFromTheSurfaceLeaveIt) {
   EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 1), 0);
 }
 
-TEST_F(FunctionsOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
+TEST_F(FunctionsOnDevice, HitBelowGroundWithALargeShrinkFactor) {
   const HeightFunction function(endless_waves());
   const DeviceFunction on_device(device(), function);
   MarchSettings settings;
@@ -147,7 +147,7 @@ TEST_F(FunctionsOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
   EXPECT_GT(same, 475);
 }
 
-TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
+TEST_F(FunctionsOnDevice, ReportErrors) {
   FunctionMarchEntry unknown = find_function_march("naive");
   unknown.name = "max-mip";
   EXPECT_EQ(test::refusal([&] { DeviceFunctionQueries(device(), unknown); }),
@@ -167,7 +167,7 @@ constexpr std::uint32_t kShader[] = {
 #include "scarp/march/function/lipschitz_local.comp.inc"
 };
 
-TEST(FunctionBatchLayout, IsThatOfTheShaders) {
+TEST(FunctionBatchLayout, MatchesTheShaders) {
   using glsl::ScarpMarchState, glsl::ScarpFunctionRay, glsl::ScarpFunctionHit, glsl::FunctionBatch,
       glsl::ScarpInstruction;
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpFunctionRay, origin), offsetof(ScarpFunctionRay, origin_low),
@@ -197,7 +197,7 @@ TEST(FunctionBatchLayout, IsThatOfTheShaders) {
   EXPECT_EQ(sizeof(ScarpInstruction), 64u);
 }
 
-TEST(FunctionBatchLayout, NumbersMeanTheSame) {
+TEST(FunctionBatchLayout, ConstantsMatchTheShaders) {
   EXPECT_EQ(glsl::kScarpRadial, static_cast<std::uint32_t>(FunctionOp::radial));
   EXPECT_EQ(glsl::kScarpNoiseSlope, static_cast<std::uint32_t>(FunctionOp::noise_slope));
   EXPECT_EQ(glsl::kScarpReciprocal, static_cast<std::uint32_t>(FunctionOp::reciprocal));

@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-TEST(EdgeHeight, StaysBetweenItsNodesWhateverRoundingDoes) {
+TEST(EdgeHeight, StaysBetweenItsNodesDespiteRounding) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> height(-1, 1), place(-0.5, 1.5);
   int beyond_without = 0;
@@ -25,7 +25,7 @@ TEST(EdgeHeight, StaysBetweenItsNodesWhateverRoundingDoes) {
   EXPECT_GT(beyond_without, 1000);
 }
 
-TEST(EdgeHeight, IsThatOfTheNodesAtTheNodes) {
+TEST(EdgeHeight, MatchesTheNodes) {
   EXPECT_EQ(edge_height(3, 7, 0), 3);
   EXPECT_EQ(edge_height(3, 7, 1), 7);
   EXPECT_EQ(edge_height(7, 3, 0.25), 6);

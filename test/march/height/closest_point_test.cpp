@@ -24,7 +24,7 @@ double by_force(const HeightField& field, const dvec3& p, int parts) {
   return best;
 }
 
-TEST(ClosestPoint, IsThatOfAllTriangles) {
+TEST(ClosestPoint, MatchesASearchOfAllTriangles) {
   Random random(2);
   for (int round = 0; round < 60; ++round) {
     const HeightField field =
@@ -49,7 +49,7 @@ TEST(ClosestPoint, IsThatOfAllTriangles) {
   }
 }
 
-TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
+TEST(ClosestPoint, StaysWithinItsBoundOnBilinearCells) {
   Random random(3);
   constexpr int kParts = 6;
   for (int round = 0; round < 12; ++round) {
@@ -72,7 +72,7 @@ TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
       EXPECT_NEAR(field.height_from_sample(
                       height_in_cell(Surface::bilinear, *field.cell_heights(found->cell), found->u, found->v)),
                   found->point.z, 1e-12);
-      // No point of the cell or its neighbours beside it is closer by more than the bound.
+      // No point of the cell or its neighbours is closer by more than the bound.
       for (int j = 0; j < 200; ++j) {
         const double x = found->point.x + uniform(random, -0.01, 0.01),
                      y = found->point.y + uniform(random, -0.01, 0.01);
@@ -84,7 +84,7 @@ TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
   }
 }
 
-TEST(ClosestPoint, RefusesWhatItCannotAnswer) {
+TEST(ClosestPoint, RejectsUnsupportedQueries) {
   const std::vector<float> flat(25, 1.0f);
   const HeightField wrapped = HeightField::own(flat, 5, 5, {.wrap = Wrap::periodic}),
                     field = HeightField::own(flat, 5, 5);

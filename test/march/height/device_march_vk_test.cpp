@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays that stay on a Vulkan device: shaders made for one kind of field answer as those for any, in one run
-// or in many, and rays through walls as over ground that is not solid.
+// Batches of rays that stay on a Vulkan device: shaders specialised for one kind of field return the same answers as
+// general ones, in one run or in many, also for rays through walls and over ground that is not solid.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ constexpr std::size_t kKindsOfField = 4;
 
 class BatchesOnDevice : public OnDevice {
  protected:
-  // The answers to rays, in so many runs.
+  // The answers to rays, in this many runs.
   struct Marched {
     std::vector<glsl::ScarpHit> hits;
     int runs = 0;
@@ -65,7 +65,7 @@ class BatchesOnDevice : public OnDevice {
   }
 };
 
-TEST_F(BatchesOnDevice, AreTheSameForOneKindOfField) {
+TEST_F(BatchesOnDevice, MatchWhenSpecialisedForTheField) {
   DeviceHeightMarch any_field(device(), "max-mip"), in_pieces(device(), "max-mip", 5);
   Random random(3);
   int runs = 0;
@@ -92,7 +92,7 @@ TEST_F(BatchesOnDevice, AreTheSameForOneKindOfField) {
   EXPECT_GT(runs, 1);
 }
 
-TEST_F(BatchesOnDevice, RaysMayPassThroughWalls) {
+TEST_F(BatchesOnDevice, CanPassThroughWalls) {
   DeviceHeightMarch max_mip(device(), "max-mip");
   Random random(4);
   int walls = 0;

@@ -13,9 +13,9 @@ namespace {
 
 // The factors of numerics.md: sideways per cell, vertically per unit of height.
 constexpr double kSideways = 0x1p-21, kVertically = 0x1p-20;
-// The judge's own, in doubles, and that of what clipped the ray.
+// The judge's own rounding, in doubles, and that of clipping the ray.
 constexpr double kDoubles = 32 * 0x1p-53;
-// Times are rounded this often.
+// Number of roundings of a time.
 constexpr double kTimes = 8 * 0x1p-24;
 
 }  // namespace
@@ -33,7 +33,7 @@ EasyJudge::EasyJudge(const HeightField& field, const GridRay& ray, double t_max,
   origin_ = clipped ? std::max(cells_[0], cells_[1]) : std::max(std::abs(o.x), std::abs(o.y));
   height_ = clipped ? std::abs(o.z + d.z * t_in_) : std::abs(o.z) + std::abs(d.z * t_in_);
   if (d.z != 0) {
-    // Nothing is met later.
+    // No hit is possible later.
     const double relief = field.max_sample() - field.min_sample() + 1;
     t_out_ = std::min(t_out_, t_in_ + (std::abs(o.z + d.z * t_in_ - field.min_sample()) + 2 * relief) / std::abs(d.z));
   }
@@ -86,7 +86,7 @@ double EasyJudge::delta(double t) const {
          kDoubles * (std::abs(ray_.origin.z) + std::abs(ray_.direction.z) * t);
 }
 
-// The least clearance in a piece, in shares of delta.
+// The least clearance in a piece, in multiples of delta.
 double EasyJudge::deepest(const Piece& piece) const {
   const double middle = 0.5 * (piece.begin + piece.end);
   const Cell cell = cell_at(middle);
@@ -98,7 +98,8 @@ double EasyJudge::deepest(const Piece& piece) const {
   return least / delta(middle);
 }
 
-// The least clearance before a time, in shares of delta: wherever a ray displaced by the bound is still over the field.
+// The least clearance before a time, in multiples of delta, wherever a ray displaced by the bound is still over the
+// field.
 double EasyJudge::passes_by(double until) const {
   double from = t_in_ + kTimes * t_in_, to = std::min(t_out_, until) - kTimes * std::min(t_out_, until);
   for (int axis = 0; axis < 2; ++axis) {
@@ -123,7 +124,7 @@ std::string EasyJudge::objection(const EasyAnswer& answer) const {
     return least < -1 ? fmt::format("passes ground, by {} delta", -least) : "";
   }
   const double t = answer.t, slack = kTimes * t;
-  // The field's corner may be met by a displaced ray alone.
+  // Only a displaced ray may reach the field's corner.
   const bool near = t >= 0 && t <= t_max_;
   if (!near) return "out of the ray's range";
   const double e = sideways(t);

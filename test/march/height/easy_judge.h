@@ -21,14 +21,14 @@ struct EasyAnswer {
 
 class EasyJudge {
  public:
-  /// A bilinear field without holes and wrap. `clipped`: the ray began, in floats, where it enters the field.
+  /// A bilinear field without holes and wrap. `clipped`: the ray starts, in floats, where it enters the field.
   EasyJudge(const HeightField& field, const GridRay& ray, double t_max, bool clipped = false);
 
-  /// Empty if a march may answer so, else why not.
+  /// Empty if this is a valid answer of a march, otherwise the reason.
   std::string objection(const EasyAnswer& answer) const;
-  /// Whether a march may take the ray to begin below the ground.
+  /// Whether a march may treat the ray as starting below the ground.
   bool may_begin_below() const;
-  /// Greatest error of the answers that were judged, as a share of delta.
+  /// Greatest error of the judged answers, as a multiple of delta.
   double worst() const { return worst_; }
 
  private:

@@ -2,7 +2,7 @@
 // Compiled with -funsafe-math-optimizations -ffp-contract=fast (test/march/CMakeLists.txt).
 #include "march/height/easy_reordered.h"
 
-// A class of its own: the linker would keep one of two.
+// A separate class: the linker would keep only one of two equal ones.
 #define Ground ReorderedGround
 #include "scarp/march/height/max_mip_easy_ground.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Triangles against Embree on the same triangles: the same rays, bit-identical in float32, to two engines.
 //
-// Embree computes in float32: in the coordinates of a vertex, in the edge functions and in t. With L the largest
-// coordinate that goes in, each clearance of its planes is off by some 2^-24 L, of which 32 are allowed (vertices minus
-// origin, two products and a sum per component of a cross product and a dot product, twice). So where both hit, the
-// ray must be within 32 * 2^-24 L of Scarp's surface all along between the two times. Where that does not hold, a hit
-// of Embree's that Scarp passes must be a back face, from below; a hit of Scarp's that Embree passes is counted as lost
-// by Embree. Scarp must lose none.
+// Embree computes in float32: in the coordinates of a vertex, in the edge functions and in t. If L is the largest input
+// coordinate, each clearance of its planes is off by some 2^-24 L, of which 32 are allowed (vertices minus origin, two
+// products and a sum per component of a cross product and a dot product, twice). If both hit, the ray must therefore be
+// within 32 * 2^-24 L of Scarp's surface between the two times. Otherwise, a hit of Embree's that Scarp passes must be
+// a back face, from below; a hit of Scarp's that Embree passes counts as lost by Embree. Scarp must lose none.
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 #include <pmmintrin.h>
@@ -119,7 +118,7 @@ struct RayClass {
   std::function<Ray(const HeightField&, Random&)> make;
 };
 
-// Shortly above the surface at a random place, as rays from hits are.
+// Just above the surface at a random position, like rays from hits.
 dvec3 off_the_ground(const HeightField& field, Random& random) {
   const double x = uniform(random, 1, field.width() - 1), y = uniform(random, 1, field.depth() - 1);
   return {x, y, field.height(x, y).value() + 0.02};
@@ -159,7 +158,7 @@ const std::vector<RayClass>& classes() {
   return all;
 }
 
-TEST(Embree, FindsTheSameHitsOnTheSameTriangles) {
+TEST(Embree, AgreesOnTheSameTriangles) {
   Random random(11);
   std::vector<float> samples;
   for (int row = 0; row < kSide; ++row) {
@@ -197,7 +196,7 @@ TEST(Embree, FindsTheSameHitsOnTheSameTriangles) {
       } else if (hit && (!other.hit || other.t > hit.t)) {
         ++embree_lost;
       } else if (other.hit) {
-        // A touch within Embree's rounding is no hit for certain.
+        // A touch within Embree's rounding need not be a hit.
         const double past = other.t + 0x1p-6 / length(ray.direction);
         const dvec3 p = ray.at(past);
         const auto ground = field.height(p.x, p.y);
@@ -210,7 +209,7 @@ TEST(Embree, FindsTheSameHitsOnTheSameTriangles) {
     std::printf("%-8s same %d, Embree lost %d, Embree's back face first %d, touches %d, Scarp lost %d\n",
                 std::string(rays.name).c_str(), same, embree_lost, back_faces, differing, scarp_lost);
     EXPECT_EQ(scarp_lost, 0) << rays.name;
-    // Embree is a judge only as far as it is right most of the time.
+    // Embree can only be a judge if it is right most of the time.
     EXPECT_LE(embree_lost, kRays / (rays.must_hit ? 10 : 1000)) << rays.name;
     EXPECT_LE(back_faces, kRays / 1000) << rays.name;
     EXPECT_LE(differing, kRays / 1000) << rays.name;

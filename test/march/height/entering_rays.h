@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays that come in under the ground of a bowl, through its border or out of a hole in its side, rise out of it inside
-// and go down again: what each march may answer, by the answers of `exhaustive`.
+// Rays that enter below the ground of a bowl, through its border or out of a hole in its side, rise out of it inside
+// and descend again: the valid answers of each march, from those of `exhaustive`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ inline std::vector<Ray> entering_rays(const HeightField& field, bool from_holes,
     dvec3 origin(from_holes ? 4 : -uniform(random, 1, 20), along, uniform(random, 2, 26));
     if (whole(random, 0, 1) == 1) origin = {origin.y, 64 - origin.x, origin.z};
     const Ray ray{origin, target - origin};
-    // Deep enough under the rim, and coming out between it and the place.
+    // Deep enough below the rim, and leaving the ground between it and the position.
     const double in = from_holes ? 0.0 : std::max(-origin.x / ray.direction.x, (64 - origin.y) / ray.direction.y);
     const dvec3 p = from_holes ? ray.at(2.5 / length(dvec2(ray.direction))) : ray.at(in < 1 ? in + 1e-6 : 1);
     const auto rim = field.height(p.x, p.y);
@@ -61,7 +61,7 @@ inline std::vector<Ray> entering_rays(const HeightField& field, bool from_holes,
 using CastEntering =
     std::function<void(const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits)>;
 
-/// Fails where a march calls such rays lost, or hits where they come in.
+/// Fails if a march loses such rays, or hits where they enter.
 inline void expect_entering_rays_go_on(const HeightMarchEntry& march, const CastEntering& cast) {
   constexpr int kRays = 300;
   for (const bool solid : {false, true}) {
@@ -100,7 +100,7 @@ inline void expect_entering_rays_go_on(const HeightMarchEntry& march, const Cast
           EXPECT_EQ(lost + late, 0);
         }
         EXPECT_LE(lost + early + late, judged / 30);
-        // Out of a hole `lipschitz` cannot tell, and gives up.
+        // After a hole `lipschitz` cannot decide, and gives up.
         if (march.name == "lipschitz" && pierced && !solid) continue;
         EXPECT_GE(right, judged * 9 / 10)
             << lost << " lost, " << early << " early, " << late << " late, " << gave_up << " gave up";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All marches on rays that come in under the ground: they go on, and hit where they later go down through it.
+// All marches on rays that enter below the ground: they continue, and hit where they later descend through it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ std::vector<HeightMarchEntry> marches_that_go_on() {
   return marches;
 }
 
-TEST_P(EnteringRays, GoOn) {
+TEST_P(EnteringRays, ContinueIntoTheField) {
   expect_entering_rays_go_on(GetParam(),
                              [](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
                                const MaxPyramid pyramid(field);
@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Marches, EnteringRays, testing::ValuesIn(marches_that_g
                          [](const auto& of) { return test_name(std::string(of.param.name)); });
 
 // The shaders' text, as C++.
-TEST(EnteringRays, GoOnInSinglePrecision) {
+TEST(EnteringRays, ContinueInSinglePrecision) {
   for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
     expect_entering_rays_go_on(
         find_height_march(name), [&](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
@@ -59,8 +59,8 @@ TEST(EnteringRays, GoOnInSinglePrecision) {
   }
 }
 
-// A tolerance that grows with the distance does not hide where they come out.
-TEST(EnteringRays, GoOnFromFarAway) {
+// A tolerance that grows with the distance does not hide the exit.
+TEST(EnteringRays, ContinueFromFarAway) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid, slope_bound(field)};
@@ -77,8 +77,8 @@ TEST(EnteringRays, GoOnFromFarAway) {
   }
 }
 
-// A ray that begins under the ground of the field keeps the answer that the march documents.
-TEST(EnteringRays, ThatBeginUnderTheGroundKeepTheirAnswers) {
+// A ray that starts below the ground of the field has the documented answer of the march.
+TEST(EnteringRays, KeepDocumentedAnswersWhenStartingBelowGround) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid, slope_bound(field)};

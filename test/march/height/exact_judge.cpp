@@ -20,7 +20,7 @@ struct Corners {
   Rational h00, h10, h01, h11;
 };
 
-// One axis: where the ray is, and the cell it is in, counted over all copies of the field.
+// One axis: the ray's position and its cell, counted over all copies of the field.
 struct Axis {
   Rational origin, direction;
   int cells;
@@ -44,7 +44,7 @@ struct Axis {
   void enter(const Rational& t, int known) {
     cell = known;
     if (wraps) cell += floor_of((at(t) - known) / cells) * cells;
-    // On the far side of the last cell the next copy begins.
+    // The next copy starts at the far side of the last cell.
     if (wraps && at(t) - cell > 1) cell += cells;
   }
   std::optional<Rational> next() const {
@@ -85,7 +85,7 @@ class Caster {
       }
       if (const auto leave = axis->border(true)) t_end_ = t_end_ ? std::min(*t_end_, *leave) : *leave;
     }
-    // An upright ray is followed until it is under all ground.
+    // A vertical ray is followed until it is below all ground.
     if (!t_end_) t_end_ = dz_ < 0 ? std::max(t, (Rational(field_.min_sample()) - 1 - z_) / dz_) : Rational(t + 1);
     if (t > *t_end_) return answer_;
     if (strict_) {
@@ -223,7 +223,7 @@ class Caster {
     piece(h, begin, end);
   }
 
-  // The clearance over a piece is a parabola: three values tell it.
+  // The clearance over a piece is a parabola: three values determine it.
   void piece(const Corners& h, const Rational& begin, const Rational& end) {
     const Rational length = end - begin, middle = (begin + end) / 2;
     const bool half = south_east(middle);

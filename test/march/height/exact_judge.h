@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What a ray meets, in rational arithmetic: no rounding, so ties are ties. For small fields.
+// The hits of a ray in rational arithmetic: no rounding, so ties are exact. For small fields.
 //
 // The chain of cells, what counts as a hit and the order of ties are those that ray.h, height_field.h and
-// doc/dev/numerics.md state; nothing here is shared with the marches. Signs are exact. A root that is no rational is
-// not computed: it is compared with rationals, by signs.
+// doc/dev/numerics.md state; nothing here is shared with the marches. Signs are exact. An irrational root is not
+// computed: it is compared with rationals, by signs.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>

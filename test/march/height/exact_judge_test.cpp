@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Ties: the marches against rational arithmetic, on small fields and rays whose numbers are so round that doubles do
-// not round them. There the answers must be the documented ones, touches, corners and seams included.
+// Ties: the marches against rational arithmetic, on small fields and rays whose numbers are exact in doubles. There the
+// answers must be the documented ones, touches, corners and seams included.
 //
-// Coordinates are multiples of 1/4, cells and directions powers of two; over triangles dx + dy is one, too, or zero, so
-// that the diagonal's time is exact. Only t is rounded, by its last division and square root.
+// Coordinates are multiples of 1/4, cells and directions powers of two; over triangles dx + dy is also a power of two,
+// or zero, so that the diagonal's time is exact. Only t is rounded, by its last division and square root.
 #include "march/height/exact_judge.h"
 
 #include <fmt/format.h>
@@ -131,7 +131,7 @@ bool agree(const ExactAnswer& expected, HitStatus status, const std::vector<Hit>
 
 class Exact : public testing::TestWithParam<Kind> {};
 
-TEST_P(Exact, TiesAreDecidedAsDocumented) {
+TEST_P(Exact, BreaksTiesAsDocumented) {
   Random random(5);
   int bad = 0, hits_seen = 0;
   std::vector<Hit> hits;
@@ -168,15 +168,16 @@ TEST_P(Exact, TiesAreDecidedAsDocumented) {
       }
     }
   }
-  // The rays are aimed well enough to try both.
+  // The rays are aimed so that both occur.
   EXPECT_GT(hits_seen, kRays / 10 * (bad == 0));
 }
 
-// The ray comes over the border on the surface, rises and comes down again, all in its first cell.
-TEST(Exact, BeginsWithATouchAndComesDownInTheSameCell) {
+// The ray enters over the border on the surface, rises and descends again, all in its first cell.
+TEST(Exact, FindsASecondHitInTheCellOfATouch) {
   const HeightField field = HeightField::own<float>({0, 1, 2, 0}, 2, 2);
   const MaxPyramid pyramid(field);
-  // Along the diagonal from the north-east the ground is at 1 - 2 s + 3 s^2, the ray at 1: again on it at s = 2/3.
+  // Along the diagonal from the north-east the ground is at 1 - 2 s + 3 s^2, the ray at 1: on the surface again at s =
+  // 2/3.
   const Ray ray{{2, 2, 1}, {-1, -1, 0}};
   const ExactAnswer exact = cast_exactly(field, ray);
   ASSERT_EQ(exact.hits.size(), 2u);

@@ -20,7 +20,7 @@ namespace {
 using bench::JudgedSweep;
 using bench::JudgedTriangle;
 
-// Of numbers up to 8: some units in the last place.
+// Some units in the last place of numbers up to 8.
 constexpr double kRounding = 0x1p-48;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -36,7 +36,7 @@ struct Moving {
   dvec3 motion;
 };
 
-// From anywhere about the field to anywhere, a part of them aimed at nodes, sides and grazes.
+// Between random positions around the field, some of them aimed at nodes, sides and grazes.
 Moving random_sweep(const HeightField& field, const std::vector<JudgedTriangle>& triangles, Random& random) {
   const auto about = [&] {
     return dvec3(uniform(random, -2, field.width() + 2), uniform(random, -2, field.depth() + 2),
@@ -50,7 +50,7 @@ Moving random_sweep(const HeightField& field, const std::vector<JudgedTriangle>&
   if (triangles.empty() || aim > 2) return moving;
   const JudgedTriangle& t =
       triangles[static_cast<std::size_t>(whole(random, 0, static_cast<int>(triangles.size()) - 1))];
-  // A node, a point of a side, or, so that it grazes it, beside a point of a side by the radius.
+  // A node, a point of a side, or, for a graze, a point off a side by the radius.
   dvec3 target = t[0] + (aim == 0 ? 0.0 : uniform(random, 0, 1)) * (t[1] - t[0]);
   if (aim == 2) target += moving.capsule.radius * direction(random);
   moving.motion = (target - moving.capsule.a) * (whole(random, 0, 1) ? 1.0 : uniform(random, 1, 3));
@@ -60,7 +60,7 @@ Moving random_sweep(const HeightField& field, const std::vector<JudgedTriangle>&
 void expect_no_tunnelling(Surface surface, int parts) {
   Random random(11);
   int contacts = 0, starts = 0;
-  // Judging takes as long as there are triangles.
+  // The time of judging is proportional to the number of triangles.
   const int fewer = parts * parts;
   for (int round = 0; round < cases(400, 60, 12); ++round) {
     const HeightField field = rugged(random, 9, 2, round % 3 ? 0 : 0.2, {.surface = surface});
@@ -82,7 +82,7 @@ void expect_no_tunnelling(Surface surface, int parts) {
       ASSERT_NEAR(length(found->normal), 1, kRounding);
       ASSERT_TRUE(field.cell_heights(found->cell));
       if (found->t == 0) continue;
-      // The point is on the capsule where it is then, and the normal against the motion.
+      // The point is on the capsule at its position then, and the normal is against the motion.
       const double rounding = judged.rounding() + off;
       ASSERT_NEAR(bench::to_segment(found->point, capsule.a + found->t * motion, capsule.b + found->t * motion),
                   capsule.radius, rounding);
@@ -115,20 +115,20 @@ TEST(Sweep, StopsAtThePlane) {
   EXPECT_NEAR(length(ball->point - dvec3(4, 4, 1)), 0, kRounding);
   // From below, its lower side.
   EXPECT_EQ(sweep(target, {{4, 4, -3}, {4, 4, -3}, 1}, {0, 0, 6})->normal, dvec3(0, 0, -1));
-  // An upright capsule, and one that lies.
+  // An upright capsule, and a lying one.
   EXPECT_DOUBLE_EQ(sweep(target, {{4, 4, 3}, {4, 4, 9}, 0.5}, {0, 0, -3})->t, 0.5);
   EXPECT_DOUBLE_EQ(sweep(target, {{2, 4, 3}, {6, 4, 3}, 0.5}, {0, 0, -3})->t, 0.5);
-  // Beside the field, at its border, and too short.
+  // Outside of the field, at its border, and too short.
   EXPECT_FALSE(sweep(target, {{-1, 4, 3}, {-1, 4, 3}, 0.5}, {0, 0, -9}));
   EXPECT_TRUE(sweep(target, {{-0.4, 4, 3}, {-0.4, 4, 3}, 0.5}, {0, 0, -9}));
   EXPECT_FALSE(sweep(target, {{4, 4, 3}, {4, 4, 3}, 0.5}, {0, 0, -1.4}));
-  // It rests, and does not move.
+  // It is at rest.
   EXPECT_EQ(sweep(target, {{4, 4, 1.5}, {4, 4, 1.5}, 0.5}, {1, 0, 0})->t, 0);
   EXPECT_EQ(sweep(target, {{4, 4, 1.2}, {4, 4, 1.2}, 0.5}, dvec3(0.0))->t, 0);
   EXPECT_FALSE(sweep(target, {{4, 4, 2}, {4, 4, 2}, 0.5}, dvec3(0.0)));
 }
 
-TEST(Sweep, OfAPointIsARay) {
+TEST(Sweep, OfAPointMatchesARay) {
   const HeightField field = plane(8, 1);
   const MaxPyramid pyramid(field);
   const auto hit = sweep({&field, &pyramid}, {{3.2, 3.7, 4}, {3.2, 3.7, 4}, 0}, {0.5, 0.25, -6});
@@ -136,7 +136,7 @@ TEST(Sweep, OfAPointIsARay) {
   EXPECT_NEAR(hit->t, 0.5, kRounding);
 }
 
-TEST(ClosestOf, KnowsSegmentsThatAreAlmostParallel) {
+TEST(ClosestOf, HandlesNearlyParallelSegments) {
   Random random(13);
   for (int i = 0; i < cases(100'000, 10'000, 1000); ++i) {
     const dvec3 d = direction(random), across = std::pow(10, uniform(random, -12, 0)) * direction(random);
@@ -157,7 +157,7 @@ TEST(ClosestOf, KnowsSegmentsThatAreAlmostParallel) {
   }
 }
 
-TEST(Sweep, KeepsItsDigitsOverLongWays) {
+TEST(Sweep, StaysPreciseOverLongDistances) {
   const HeightField field = plane(8, 0);
   const MaxPyramid pyramid(field);
   const dvec3 from(4 + 3e6, 4 - 2e6, 1e6), motion = 2.0 * (dvec3(4, 4, 0) - from);
@@ -187,7 +187,7 @@ bool cut_by_box(const JudgedTriangle& triangle, const TurnedBox& box, double wid
   return true;
 }
 
-TEST(Overlap, IsThatOfSomeTriangle) {
+TEST(Overlap, MatchesATestOfAllTriangles) {
   Random random(12);
   int yes = 0, no = 0;
   for (int round = 0; round < cases(600, 60, 12); ++round) {
@@ -214,7 +214,7 @@ TEST(Overlap, IsThatOfSomeTriangle) {
   EXPECT_GT(no, cases(5000, 500, 100));
 }
 
-TEST(Overlap, KnowsBoxesThatTouch) {
+TEST(Overlap, IncludesTouchingBoxes) {
   const HeightField field = plane(8, 1);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
@@ -224,7 +224,7 @@ TEST(Overlap, KnowsBoxesThatTouch) {
   EXPECT_TRUE(overlaps(target, {{4, 4, 1}, {0, 0, 0}}));
 }
 
-TEST(Sweep, RefusesWhatIsNoCapsule) {
+TEST(Sweep, RejectsInvalidCapsules) {
   const HeightField field = plane(8, 1);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The marches that take samples on a Vulkan device, beside their text as C++: the same points, also along rays that are
+// The sampling marches on a Vulkan device, compared with their text as C++: the same points, also along rays that are
 // clipped at the highest sample.
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ glsl::ScarpHit march_text(const glsl::ScarpField& field, const glsl::ScarpRay& r
   return hit.status == glsl::kScarpDoubtful ? glsl::scarp_sampled(field, ray, settings) : hit;
 }
 
-TEST_P(HeightMarchesOnDevice, TakeThePointsOfTheirText) {
+TEST_P(HeightMarchesOnDevice, SampleTheSamePointsAsTheCpu) {
   const HeightField field = test::hills(kHillsSide, kHillsSide, Surface::bilinear);
   const MaxPyramid pyramid(field);
   glsl::host_field = &field;
@@ -69,7 +69,7 @@ TEST_P(HeightMarchesOnDevice, TakeThePointsOfTheirText) {
     const Hit hit = hit_from_device(rays[i], prepared, expected);
     EXPECT_EQ(blocked[i], static_cast<bool>(hits[i]));
     met += static_cast<bool>(hits[i]);
-    // Rounding of the device may take a ray to other points.
+    // Rounding on the device may lead a ray to other points.
     others += hits[i].status != hit.status || costs[i].steps != expected.steps;
   }
   EXPECT_GT(met, kRaysAlongHills / 4);
@@ -77,7 +77,7 @@ TEST_P(HeightMarchesOnDevice, TakeThePointsOfTheirText) {
 }
 
 // Beyond the highest sample there is nothing.
-TEST_P(HeightMarchesOnDevice, EndAtTheTopOnRequest) {
+TEST_P(HeightMarchesOnDevice, StopAboveTheHighestSampleOnRequest) {
   const HeightField field = test::hills(kHillsSide, kHillsSide, Surface::bilinear);
   std::vector<Ray> rays = rays_along(field);
   for (Ray& ray : rays) ray.direction.z = std::abs(ray.direction.z) + 0.4;
@@ -107,7 +107,7 @@ TEST_P(HeightMarchesOnDevice, EndAtTheTopOnRequest) {
     EXPECT_EQ(clipped_hits[i].status, hits[i].status);
     if (!hits[i]) continue;
     ++met;
-    // Rounding at the border is that of another end.
+    // Rounding at the border is like that of a different end.
     EXPECT_NEAR(clipped_hits[i].t, hits[i].t, 1e-3);
   }
   EXPECT_EQ(clipped_costs[0].steps, 0u);

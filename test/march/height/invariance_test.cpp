@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What must not change an answer: which way the field lies, its scale, the length of the direction, where a range is
-// split. Coordinates are so round that signs are exact, so ties have to come out alike, too.
+// Answers must not depend on the orientation of the field, its scale, the length of the direction, or the splitting of
+// a range. Coordinates are round enough that signs are exact, so ties must be equal, too.
 //
-// A mirror puts the diagonals of triangles the other way, so over triangles only half a turn and the transpose hold.
+// Mirroring flips the diagonals of triangles, so over triangles only half a turn and the transpose apply.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,7 +73,7 @@ void expect_same(const Hit& a, const Hit& b) {
 Case mirrored(Case c, int axis) {
   const int samples = axis == 0 ? c.cols : c.rows;
   const bool periodic = c.settings.wrap == Wrap::periodic;
-  // Of a periodic field the first sample stays; else first and last change places.
+  // In a periodic field the first sample stays; otherwise first and last are swapped.
   const auto from = [&](int i) { return periodic ? (samples - i) % samples : samples - 1 - i; };
   Case m = c;
   for (int row = 0; row < c.rows; ++row) {
@@ -155,7 +155,7 @@ TEST_P(Invariance, TranslationByWholeCellsAndPeriods) {
   });
 }
 
-TEST_P(Invariance, ScalesByPowersOfTwoChangeNoBit) {
+TEST_P(Invariance, PowerOfTwoScalesAreBitIdentical) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     Case scaled = c;
     scaled.settings.cell_x = std::ldexp(1.0, whole(random, -9, 9));
@@ -173,9 +173,9 @@ TEST_P(Invariance, ScalesByPowersOfTwoChangeNoBit) {
   });
 }
 
-TEST_P(Invariance, TCountsInLengthsOfTheDirectionToTheLastBit) {
+TEST_P(Invariance, TScalesExactlyWithTheDirection) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
-    // Far enough for the lengths that a march scales itself.
+    // Far enough for the lengths that marches rescale.
     const int power = whole(random, -700, 700);
     Case longer = c;
     longer.direction = c.direction * std::ldexp(1.0, power);
@@ -188,14 +188,14 @@ TEST_P(Invariance, TCountsInLengthsOfTheDirectionToTheLastBit) {
   });
 }
 
-TEST_P(Invariance, ASplitRangeFindsTheSameFirstHit) {
+TEST_P(Invariance, SplitRangeFindsTheSameFirstHit) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     Case first = c, second = c;
     first.t_max = second.t_min = std::min(c.t_max, whole(random, 0, 64) / 8.0);
     Hit found = closest(first);
     if (!found) {
       found = closest(second);
-      // Split where it comes out of the ground, the ray begins with a touch.
+      // Split where it leaves the ground, the ray starts with a touch.
       if (found && found.t == second.t_min && !(hit && hit.t == found.t)) return;
     }
     ASSERT_EQ(hit.status == HitStatus::hit, found.status == HitStatus::hit);
@@ -203,14 +203,14 @@ TEST_P(Invariance, ASplitRangeFindsTheSameFirstHit) {
   });
 }
 
-TEST_P(Invariance, ALaterStartNeverFindsAnEarlierHit) {
+TEST_P(Invariance, LaterStartNeverFindsAnEarlierHit) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
     Case later = c;
     later.t_min = std::min(c.t_max, whole(random, 0, 64) / 8.0);
     const Hit found = closest(later);
     if (!found) return;
     ASSERT_GE(found.t, later.t_min);
-    // But for a touch where the later ray begins, on its way out of the ground.
+    // Except for a touch where the later ray starts, on its way out of the ground.
     if (found.t == later.t_min) return;
     ASSERT_TRUE(hit);
     ASSERT_GE(found.t, hit.t - 0x1p-48 * (1 + hit.t));
@@ -227,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Invariance,
                          });
 
 // Where all cells are planes, both surfaces are one.
-TEST(Surfaces, AgreeWhereCellsArePlanes) {
+TEST(Surfaces, AgreeOnPlanarCells) {
   Random random(7);
   int hits = 0;
   for (int i = 0; i < kCases; ++i) {
@@ -250,8 +250,8 @@ TEST(Surfaces, AgreeWhereCellsArePlanes) {
     hits += bilinear.status == HitStatus::hit;
     ASSERT_EQ(bilinear.status, triangles.status);
     if (!bilinear) continue;
-    // Clearances are off by 16 u of what goes into them (numerics.md), at most 2^7 here; t by that over the speed at
-    // which the ray closes in, either way.
+    // Clearances are off by 16 u of their inputs (numerics.md), at most 2^7 here; t by that over the speed at which the
+    // ray approaches, either way.
     const HeightField field = c.field();
     const dvec2 slope = field.gradient(bilinear.cell, bilinear.u, bilinear.v);
     const double closing = std::abs(c.direction.z - slope.x * c.direction.x + slope.y * c.direction.y);

@@ -26,7 +26,7 @@ const int kRaysPerPair = cases(10'000, 1000, 16);
 const int kRays = cases(100'000, 10'000, 400);
 constexpr int kRaysPerField = 500;
 
-// Returns how many of the rays vectors decide.
+// Returns the number of rays that vectors decide.
 int compare(const HeightTarget& target, const std::vector<Ray>& rays, const std::string& what) {
   if (!max_mip::looks_ahead(target)) return 0;
   int decided = 0;
@@ -56,7 +56,7 @@ int compare_on_all(const HeightTarget& target, const std::vector<Ray>& rays, con
   return decided;
 }
 
-TEST(MaxMipAhead, AnswersAsTheScalarWalkDoes) {
+TEST(MaxMipAhead, MatchesTheScalarWalk) {
   Random random(91);
   for (const FieldKind& fields : spiteful_fields()) {
     for (int part = 0; part < kRaysPerPair; part += kRaysPerField) {
@@ -90,12 +90,12 @@ TEST(MaxMipAhead, FollowsRaysAlongHills) {
     const int decided = compare_on_all({&field, &pyramid}, rays, "hills");
     if (HasFailure()) return;
     if (!max_mip::looks_ahead({&field, &pyramid})) GTEST_SKIP() << "vectors of this machine are too short";
-    // Only rays that pass the ground by less than the margins remain open: far fewer than half.
+    // Only rays that pass the ground within the margins remain undecided: far fewer than half.
     EXPECT_GT(decided, kRays / 2);
   }
 }
 
-// From nodes, edges and points of cells, and from outside through them; above the ground by less than floats can tell,
+// From nodes, edges and points of cells, and from outside through them; above the ground by less than float precision,
 // or below it; along axes and diagonals; over ground that is rough from sample to sample.
 template <class T>
 void rough_ground(Random& random, double relief, int cols, int rows) {
@@ -128,7 +128,7 @@ void rough_ground(Random& random, double relief, int cols, int rows) {
   }
   compare_on_all({&field, &pyramid}, rays, "relief " + std::to_string(relief));
 }
-TEST(MaxMipAhead, BeginsCloseAboveRoughGround) {
+TEST(MaxMipAhead, StartsJustAboveRoughGround) {
   Random random(93);
   for (const double relief : {0.5, 40.0, 4000.0}) {
     rough_ground<float>(random, relief, 65, 65);
@@ -139,7 +139,7 @@ TEST(MaxMipAhead, BeginsCloseAboveRoughGround) {
 }
 
 // Nearly level rays through the highest node, and others that nearly run along its lines.
-TEST(MaxMipAhead, TouchesOfTheHighestSample) {
+TEST(MaxMipAhead, TouchesTheHighestSample) {
   Random random(94);
   const int side = 17;
   std::vector<float> samples(side * side, 0.f);
@@ -157,7 +157,7 @@ TEST(MaxMipAhead, TouchesOfTheHighestSample) {
   compare_on_all({&field, &pyramid}, rays, "touches");
 }
 
-TEST(MaxMipAhead, UnusualNumbers) {
+TEST(MaxMipAhead, HandlesUnusualNumbers) {
   const HeightField field = hills(129, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
   compare_on_all({&field, &pyramid}, rays_of_unusual_numbers(field), "unusual numbers");

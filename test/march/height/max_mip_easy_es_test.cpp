@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy as it is pasted: the installed text over two textures, run as GLSL ES 3.0, by the bound of its C++.
+// max-mip-easy as pasted into a shader: the installed text over two textures, run as GLSL ES 3.0, by the bound of its
+// C++ text.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +50,7 @@ class MaxMipEasyAsEs : public EsTest {
   }
 };
 
-TEST_F(MaxMipEasyAsEs, AnswersAsARayDisplacedByTheBound) {
+TEST_F(MaxMipEasyAsEs, MatchesARayDisplacedByTheBound) {
   int hits = 0;
   std::vector<FieldKind> kinds = spiteful_fields();
   kinds.push_back({"hills", [](Random&) { return hills(700, 900, Surface::bilinear); }});

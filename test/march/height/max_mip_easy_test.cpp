@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy: the shader text as C++ and the row of the table, by the bound that it is documented with.
+// max-mip-easy: the shader text as C++ and the row of the table, by its documented bound.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::size_t> plain_kinds(const std::vector<FieldKind>& kinds) {
   return plain;
 }
 
-// As the text asks for.
+// As the text requires.
 bool is_within_limits(glm::vec3 origin, glm::vec3 direction) {
   constexpr float kLimit = 1e6f;
   const auto longest = [](glm::vec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
@@ -52,7 +52,7 @@ EasyAnswer answer_of(const Ground::EasyHit& hit) {
   return {hit.hit, hit.below, double{hit.t}, {hit.cell.x, hit.cell.y}, double{hit.place.x}, double{hit.place.y}};
 }
 
-// Casts a ray of floats, closest and any, and with operations reordered; returns what is wrong.
+// Casts a ray of floats, closest and any hit, and with operations reordered; returns the errors.
 std::string cast(const HeightField& field, const MaxPyramid& pyramid, glm::vec3 origin, glm::vec3 direction,
                  float t_max, double* worst = nullptr) {
   Ground ground(field, pyramid);
@@ -65,7 +65,7 @@ std::string cast(const HeightField& field, const MaxPyramid& pyramid, glm::vec3 
   return objection;
 }
 
-// Calls check(field, pyramid, ray, words) for rays of all kinds over all fields that the march takes.
+// Calls check(field, pyramid, ray, words) for rays of all kinds over all fields that the march supports.
 template <class Check>
 void for_each_ray(const Check& check) {
   for (const bool wide : {false, true}) {
@@ -90,7 +90,7 @@ void for_each_ray(const Check& check) {
   }
 }
 
-TEST(MaxMipEasy, AnswersAsARayDisplacedByTheBound) {
+TEST(MaxMipEasy, MatchesARayDisplacedByTheBound) {
   double worst = 0;
   int rays = 0;
   for_each_ray([&](const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, const std::string& words) {
@@ -106,7 +106,7 @@ TEST(MaxMipEasy, AnswersAsARayDisplacedByTheBound) {
 }
 
 // With the statuses, walls and rays from the surface that a shader does not have.
-TEST(MaxMipEasy, TheMarchOfTheTableDoes) {
+TEST(MaxMipEasy, ListedMarchMatchesARayDisplacedByTheBound) {
   int from_surface = 0;
   for_each_ray([&](const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, const std::string& words) {
     const HeightTarget target{&field, &pyramid};
@@ -179,8 +179,8 @@ TEST(MaxMipEasy, NoRayIsLostBetweenCells) {
   EXPECT_EQ(wrong, 0);
 }
 
-// Closed: what stands still on the last line is over the last cell.
-TEST(MaxMipEasy, TheBorderBelongsToTheField) {
+// Closed: a ray that does not move along the axis on the last line is over the last cell.
+TEST(MaxMipEasy, IncludesTheBorder) {
   const HeightField field = HeightField::own(std::vector<float>(7 * 5, 2.0f), 7, 5);
   const MaxPyramid pyramid(field);
   Ground ground(field, pyramid);
@@ -199,7 +199,7 @@ TEST(MaxMipEasy, TheBorderBelongsToTheField) {
 }
 
 // Over a plane no ray along it or up from it is in the shadow of its own start.
-TEST(MaxMipEasy, NoRayHitsWhereItStarts) {
+TEST(MaxMipEasy, NeverHitsWhereARayStarts) {
   Random random(6);
   constexpr int kCols = 300, kRows = 200, kPlanes = 10;
   for (int plane = 0; plane < kPlanes; ++plane) {
@@ -225,7 +225,7 @@ TEST(MaxMipEasy, NoRayHitsWhereItStarts) {
   }
 }
 
-TEST(MaxMipEasy, ExaminesAsFewBlocksAsMaxMip) {
+TEST(MaxMipEasy, VisitsAsFewBlocksAsMaxMip) {
   const HeightField field = hills(1000, 1500, Surface::bilinear);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
@@ -243,7 +243,7 @@ TEST(MaxMipEasy, ExaminesAsFewBlocksAsMaxMip) {
   EXPECT_LT(static_cast<double>(easy_steps), 1.1 * static_cast<double>(steps));
 }
 
-TEST(MaxMipEasy, NormalsAreThoseOfTheSurface) {
+TEST(MaxMipEasy, NormalsMatchTheSurface) {
   Random random(7);
   const HeightField field = hills(40, 30, Surface::bilinear);
   const MaxPyramid pyramid(field);
@@ -259,8 +259,8 @@ TEST(MaxMipEasy, NormalsAreThoseOfTheSurface) {
   }
 }
 
-// Rays that come in below the ground stop at once.
-TEST(MaxMipEasy, RaysFromBelowStop) {
+// Rays that enter below the ground stop at once.
+TEST(MaxMipEasy, StopsRaysFromBelow) {
   for (const bool solid : {false, true}) {
     const HeightField field = bowl_field(false, solid);
     const MaxPyramid pyramid(field);
@@ -277,7 +277,7 @@ TEST(MaxMipEasy, RaysFromBelowStop) {
   }
 }
 
-TEST(MaxMipEasy, OtherFieldsAreRefused) {
+TEST(MaxMipEasy, RejectsUnsupportedFields) {
   const float hole = std::numeric_limits<float>::quiet_NaN();
   const auto refused = [](float last, const HeightFieldSettings& settings) {
     const HeightField field = HeightField::own<float>({1, 2, 3, 4, 5, last}, 3, 2, settings);
@@ -294,8 +294,8 @@ TEST(MaxMipEasy, OtherFieldsAreRefused) {
   EXPECT_EQ(refused(6, {.wrap = Wrap::periodic}), takes + "wraps (use max-mip)");
 }
 
-// It is there to be pasted.
-TEST(MaxMipEasy, TheTextIsShortAndStandsAlone) {
+// The text is meant for pasting.
+TEST(MaxMipEasy, SourceIsShortAndSelfContained) {
   std::ifstream file(SCARP_SOURCE_DIR "/scarp/march/height/max_mip_easy.glsl.h");
   int lines = 0;
   for (std::string line; std::getline(file, line); ++lines) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The vectors answer as the scalar walk does, bit for bit: every kind of field and ray of the oracle's suite, on every
-// instruction set that this machine has, in batches of odd sizes, with each idea left out.
+// instruction set that this machine has, in batches of odd sizes, with each optimisation disabled.
 #include "scarp/march/height/max_mip_simd.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ const int kRaysPerSet = cases(3000, 1000, 25);
 const int kCameras = cases(60, 15, 1);
 const int kFans = cases(120, 30, 1);
 const std::size_t kBatchSizes = static_cast<std::size_t>(cases(3, 3, 1));
-// In builds with sanitizers every 17th, for memory that a group of rays overruns.
+// Every 17th in builds with sanitizers, to find out-of-bounds accesses of a group of rays.
 const std::size_t kUnusualStride = static_cast<std::size_t>(cases(1, 1, 17));
 #ifdef NDEBUG
 constexpr int kNodesApart = 1;
@@ -76,7 +76,7 @@ std::vector<Hit> scalar(const HeightTarget& target, const std::vector<Ray>& rays
   return hits;
 }
 
-TEST(MaxMipSimd, AnswersAsTheScalarWalkDoesBitForBit) {
+TEST(MaxMipSimd, MatchesTheScalarWalkBitForBit) {
   Random random(71);
   for (const FieldKind& fields : spiteful_fields()) {
     for (int part = 0; part < kRaysPerPair; part += kRaysPerField) {
@@ -114,7 +114,7 @@ HeightField hills(Surface surface, Kind kind, Random& random) {
   return HeightField::own(std::move(samples), cols, rows, settings);
 }
 
-// As renderers do that have no rays from the surface: set off by less than the margin of floats, a quarter of a code.
+// Like renderers without rays from the surface: offset by less than the margin of floats, a quarter of a code.
 constexpr double kSetOff = 1e-4;  // metres
 Ray next_to_the_ground(const Ray& on_surface) {
   Ray ray = on_surface;
@@ -123,7 +123,8 @@ Ray next_to_the_ground(const Ray& on_surface) {
   return ray;
 }
 
-// Rays as renderers ask them: from a camera, from the surface to a sun and from next to it, from anywhere to anywhere.
+// Typical rays of renderers: from a camera, from the surface to a sun and from just off it, and between random
+// positions.
 std::vector<Ray> usual_rays(const HeightTarget& target, Random& random, int count = kUsualRays) {
   const HeightField& field = *target.field;
   std::vector<Ray> rays;
@@ -150,7 +151,7 @@ std::vector<Ray> usual_rays(const HeightTarget& target, Random& random, int coun
   return rays;
 }
 
-TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
+TEST(MaxMipSimd, MatchesForEveryInstructionSetBatchSizeAndStrategy) {
   Random random(72);
   const std::vector<std::int64_t> sets = instruction_sets();
   ASSERT_FALSE(sets.empty());
@@ -187,7 +188,7 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
 }
 
 // More levels than a vector has lanes.
-TEST(MaxMipSimd, VeryLongFields) {
+TEST(MaxMipSimd, HandlesVeryLongFields) {
   const int cols = 131'073, rows = 3, wall = 100'000;
   std::vector<float> samples(std::size_t{cols} * rows, 0.f);
   for (int row = 0; row < rows; ++row) samples[static_cast<std::size_t>(row) * cols + wall] = 100;
@@ -206,9 +207,9 @@ TEST(MaxMipSimd, VeryLongFields) {
   }
 }
 
-// Starts beside the cell that they are said to be in, by much and by less than a millionth of a cell: over ground above
-// and below 0, for a wrong start looks right where 0 is under the ground.
-TEST(MaxMipSimd, StartsBesideTheirCell) {
+// Starts outside of their stated cell, by much and by less than a millionth of a cell: over ground above and below 0,
+// because a wrong start looks right if 0 is below the ground.
+TEST(MaxMipSimd, HandlesStartsBesideTheirCell) {
   Random random(76);
   for (const double base : {-100.0, 100.0}) {
     const int side = 65;
@@ -238,7 +239,7 @@ TEST(MaxMipSimd, StartsBesideTheirCell) {
 }
 
 // Nearly level rays through the highest node: within rounding they are as high as it is long before.
-TEST(MaxMipSimd, TouchesOfTheHighestSample) {
+TEST(MaxMipSimd, TouchesTheHighestSample) {
   Random random(77);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const int side = 17;
@@ -261,7 +262,7 @@ TEST(MaxMipSimd, TouchesOfTheHighestSample) {
 
 // A shadow map's rays: from nodes, points of edges and others, by little above the ground or in it, along diagonals,
 // axes and other ways, over ground that is rough from sample to sample: parabolas that dip between the ends of a cell.
-TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
+TEST(MaxMipSimd, StartsJustAboveRoughGround) {
   Random random(79);
   for (const double relief : {0.5, 40.0, 4000.0}) {
     const int side = 65;
@@ -295,8 +296,8 @@ TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
   }
 }
 
-// Rays that begin by less than floats can tell before a line that they cross late or never, and climb with the ground.
-TEST(MaxMipSimd, BeginsJustBeforeALine) {
+// Rays that start within float precision in front of a line, cross it late or never, and climb with the ground.
+TEST(MaxMipSimd, StartsJustBeforeAGridLine) {
   const int side = 17;
   std::vector<float> samples;
   for (int i = 0; i < side * side; ++i) samples.push_back(static_cast<float>(side - 1 - i / side));
@@ -320,7 +321,7 @@ TEST(MaxMipSimd, BeginsJustBeforeALine) {
 }
 
 // A shadow map's rays: from nodes to a sun in the north-west, or in the south.
-TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
+TEST(MaxMipSimd, HandlesRaysFromNodesInVectors) {
   Random random(80);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
   const MaxPyramid pyramid(field);
@@ -344,7 +345,7 @@ TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
   }
 }
 
-TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
+TEST(MaxMipSimd, HandlesRaysFromNearTheGroundInVectors) {
   Random random(75);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
   const MaxPyramid pyramid(field);
@@ -361,15 +362,15 @@ TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
     closest_hits_max_mip_simd(target, rays, hits, options);
     return static_cast<double>(take_vector_stats().handed_over) / static_cast<double>(rays.size());
   };
-  // Of two questions per ray. Left to the scalar walk is what hits in the first cell.
+  // Per two queries of each ray. Rays that hit in the first cell are left to the scalar walk.
   const double in_floats = handed_over({.doubles = false}), in_doubles = handed_over({});
   EXPECT_GT(in_floats, 1.0);
   EXPECT_LT(in_doubles, in_floats / 2);
 }
 
-// Copies of a ground that wraps round are walked over by the vectors, and what lies on their seams is met: rays along
-// seams, through corners of copies, and far away, where the scalar walk takes over.
-TEST(MaxMipSimd, EndlessGround) {
+// Vectors traverse copies of a wrapped field, and hit ground on their seams: rays along seams, through corners of
+// copies, and far away, where the scalar walk takes over.
+TEST(MaxMipSimd, HandlesWrappedFields) {
   Random random(78);
   const HeightField field = hills<float>(Surface::bilinear, Kind::endless, random);
   const MaxPyramid pyramid(field);
@@ -391,13 +392,13 @@ TEST(MaxMipSimd, EndlessGround) {
   compare(target, rays, scalar(target, rays), rays.size(), {}, "seams");
   const VectorStats stats = take_vector_stats();
   EXPECT_GT(stats.block_steps, rays.size());
-  // Of two questions per ray: rays along an axis and next to corners are in doubt.
+  // Per two queries of each ray: rays along an axis and next to corners are in doubt.
   EXPECT_LT(stats.handed_over, rays.size());
 }
 
-// Of rays that fall, or climb, so steeply that all happens in front of a seam which a rounded place is already behind:
-// the ray below is through the ground at t = 7.75 and at the seam at t = 8. And at u = -0, which is 0 and stays -0.
-TEST(MaxMipSimd, BeginsNextToASeam) {
+// Rays that fall or climb so steeply that they hit in front of a seam when a rounded position is already behind it: the
+// ray below is through the ground at t = 7.75 and at the seam at t = 8. And at u = -0, which equals 0 and stays -0.
+TEST(MaxMipSimd, StartsNextToASeam) {
   Random random(79);
   const int side = 128;
   std::vector<std::int16_t> samples(std::size_t{side} * side, 15);
@@ -435,7 +436,7 @@ TEST(MaxMipSimd, BeginsNextToASeam) {
   EXPECT_EQ(bits(hit.u), bits(march_max_mip(plain_target, at_border).u));
 }
 
-// As a camera asks, which looks down at the field from somewhere: 8 x 8 pixels after one another.
+// Rays of a camera that looks down at the field: 8 x 8 pixels after one another.
 std::vector<Ray> tiles_of_a_camera(const HeightField& field, Random& random) {
   const dvec3 eye{uniform(random, -200, field.width() + 200), uniform(random, -200, field.depth() + 200),
                   uniform(random, 300, 900)};
@@ -456,7 +457,7 @@ std::vector<Ray> tiles_of_a_camera(const HeightField& field, Random& random) {
   return rays;
 }
 
-TEST(MaxMipSimd, BeamsLoseNothing) {
+TEST(MaxMipSimd, BeamsLoseNoHits) {
   Random random(74);
   std::map<std::string, std::uint64_t> in_beams;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
@@ -476,7 +477,7 @@ TEST(MaxMipSimd, BeamsLoseNothing) {
       }
     }
   }
-  // Else there was nothing to lose.
+  // Otherwise there was nothing to lose.
   for (const auto& [name, rays] : in_beams) EXPECT_GT(rays, 0u) << name;
 }
 
@@ -492,7 +493,7 @@ std::vector<Ray> fans(const HeightField& field, Random& random) {
     const double beside = fan % 8 == 7 ? 3 : 0;
     dvec3 eye{pick(-beside, field.width() + beside), pick(-beside, field.depth() + beside), 0};
     eye.z = field.height(eye.x, eye.y).value_or(400) + std::exp2(uniform(random, -20, 6));
-    // Level rays by little below a peak, which only an exact maximum does not pass.
+    // Level rays slightly below a peak: only an exact maximum does not let them pass.
     const bool level = fan % 8 == 5;
     dvec3 peak = eye;
     if (level) {
@@ -537,7 +538,7 @@ std::vector<Ray> fans(const HeightField& field, Random& random) {
   return rays;
 }
 
-TEST(MaxMipSimd, RaysThatGoTogetherLoseNothing) {
+TEST(MaxMipSimd, CoherentRaysLoseNoHits) {
   Random random(82);
   std::map<std::string, std::uint64_t> together;
   for (const Kind kind : {Kind::plain, Kind::endless}) {
@@ -566,7 +567,7 @@ TEST(MaxMipSimd, RaysThatGoTogetherLoseNothing) {
 }
 
 // Each among rays that fall in from outside, which form beams.
-TEST(MaxMipSimd, UnusualNumbers) {
+TEST(MaxMipSimd, HandlesUnusualNumbers) {
   const HeightField field = test::hills(129, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
   std::vector<Ray> rays;
@@ -591,7 +592,7 @@ TEST(MaxMipSimd, UnusualNumbers) {
   }
 }
 
-// Else the vectors could hand over all rays and be right.
+// Otherwise the vectors could hand over all rays and still be right.
 TEST(MaxMipSimd, HandsOverFewRays) {
   Random random(73);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
@@ -609,8 +610,8 @@ TEST(MaxMipSimd, HandsOverFewRays) {
   EXPECT_LT(take_vector_stats().handed_over, rays.size() / 2);
 }
 
-// Nor those that end in the cell that they begin in, which floats can tell where the ground is gentle.
-TEST(MaxMipSimd, HandsOverFewRaysThatEndWhereTheyBegin) {
+// Nor those that end in their first cell, which floats can decide on gentle ground.
+TEST(MaxMipSimd, HandsOverFewRaysThatEndInTheirFirstCell) {
   Random random(74);
   constexpr int kSide = 33;
   std::vector<float> samples(kSide * kSide);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// max-mip where the answer is known: touches, leaks, starts, ends; and the symmetries that any march must have.
+// max-mip with known answers: touches, leaks, starts, ends; and the symmetries that any march must have.
 #include "scarp/march/height/max_mip.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ Terrain hills() {
   return {HeightField::own(samples, 257, 193)};
 }
 
-TEST(MaxMip, HitsAPlaneWhereItIs) {
+TEST(MaxMip, HitsAPlane) {
   const Hit hit = flat().cast({1.25, 3.5, 10}, {0.5, 0.25, -2});
   ASSERT_TRUE(hit);
   EXPECT_DOUBLE_EQ(hit.t, 4);
@@ -56,13 +56,13 @@ TEST(MaxMip, HitsAPlaneWhereItIs) {
   EXPECT_DOUBLE_EQ(hit.v, 0.5);
 }
 
-TEST(MaxMip, CountsTInLengthsOfTheDirection) {
+TEST(MaxMip, MeasuresTInLengthsOfTheDirection) {
   EXPECT_DOUBLE_EQ(flat().cast({1, 1, 10}, {0, 1, -16}).t, 0.5);
   EXPECT_DOUBLE_EQ(flat().cast({1, 1, 10}, {0, 0x1p-900, -0x1p-896}).t, 0x1p899);
   EXPECT_DOUBLE_EQ(flat().cast({1, 1, 10}, {0, 0x1p900, -0x1p904}).t, 0x1p-901);
 }
 
-TEST(MaxMip, HitsEveryNodeFromAboveWhereverTheRayComesFrom) {
+TEST(MaxMip, HitsEveryNodeFromAnyDirectionAbove) {
   // Rays aimed at nodes slip through engines that test triangles one by one. Here each must hit, at the node.
   const Terrain terrain = hills();
   Random random(3);
@@ -73,12 +73,12 @@ TEST(MaxMip, HitsEveryNodeFromAboveWhereverTheRayComesFrom) {
     const dvec3 offset{whole(random, -6, 6), whole(random, -6, 6), 60};
     const Hit hit = terrain.cast(node + offset, -offset, 0, 1.25);
     ASSERT_TRUE(hit) << col << ", " << row;
-    // Clearances are off by 16 u times what goes into them (numerics.md), and the ray closes in by at least 20 m per t.
+    // Clearances are off by 16 u times their inputs (numerics.md), and the ray approaches by at least 20 m per t.
     EXPECT_NEAR(hit.t, 1, 16 * 0x1p-53 * (2 * 75 + 2 * (257 + 193) * 30) / 20);
   }
 }
 
-TEST(MaxMip, CountsATouchOfACrestAsAHit) {
+TEST(MaxMip, ReportsATouchOfACrestAsAHit) {
   // A ridge along the column 3; the ray is level with it and crosses.
   std::vector<float> samples(64, 0);
   for (int row = 0; row < 8; ++row) samples[static_cast<std::size_t>(8 * row + 3)] = 5;
@@ -91,7 +91,7 @@ TEST(MaxMip, CountsATouchOfACrestAsAHit) {
   EXPECT_EQ(ridge.cast({-1, 2.5, 5.000001}, {1, 0, 0}).status, HitStatus::miss);
 }
 
-TEST(MaxMip, SeesADipInsideASaddleCell) {
+TEST(MaxMip, FindsADipInsideASaddleCell) {
   // Corners 0 and 4 crosswise: along the high diagonal the surface is a valley of height 4 - 8 u (1 - u), lowest 2;
   // along the low diagonal a hill up to 2. A ray over the hill at 1.5 is above at both ends of the cell and below in
   // between.
@@ -105,12 +105,12 @@ TEST(MaxMip, SeesADipInsideASaddleCell) {
   EXPECT_FALSE(march_max_mip_bisect(target, {{0, 0, 1.5}, {1, 1, 0}})) << "the paper's search looks at the ends alone";
 }
 
-TEST(MaxMip, PassesUpwardsThroughTheSheet) {
+TEST(MaxMip, IgnoresTheSurfaceFromBelow) {
   EXPECT_EQ(flat().cast({2, 2, -5}, {0.1, 0, 1}).status, HitStatus::below);
   EXPECT_EQ(flat().cast({2, 2, -5}, {0, 0, 1}).status, HitStatus::below);
 }
 
-TEST(MaxMip, HitsAfterComingOutOfTheGround) {
+TEST(MaxMip, HitsAfterEmergingFromTheGround) {
   // Out of a hill, over a valley, into the next hill.
   const Terrain terrain{HeightField::own<float>({5, 0, 0, 5, 5, 0, 0, 5}, 4, 2)};
   const Hit hit = terrain.cast({0, 0.5, 2.5}, {1, 0, 0});
@@ -118,7 +118,7 @@ TEST(MaxMip, HitsAfterComingOutOfTheGround) {
   EXPECT_DOUBLE_EQ(hit.t, 2.5);
 }
 
-TEST(MaxMip, MissesBeforeAndAfterTheRaysRange) {
+TEST(MaxMip, MissesOutsideTheRayRange) {
   EXPECT_EQ(flat().cast({1, 1, 10}, {0, 1, -4}, 0, 1.999).status, HitStatus::miss);
   EXPECT_TRUE(flat().cast({1, 1, 10}, {0, 1, -4}, 0, 2)) << "the range is closed";
   EXPECT_TRUE(flat().cast({1, 1, 10}, {0, 1, -4}, 2, 3)) << "the range is closed";
@@ -126,7 +126,7 @@ TEST(MaxMip, MissesBeforeAndAfterTheRaysRange) {
   EXPECT_TRUE(flat().cast({1, 1, -2}, {0, -1, -2}, -4, 0)) << "t may be negative";
 }
 
-TEST(MaxMip, CountsTInTheLengthOfExtremeDirectionsAsTheOracleDoes) {
+TEST(MaxMip, MatchesTheOracleForExtremeDirections) {
   const Terrain terrain = hills();
   const HeightTarget target{&terrain.field, &terrain.pyramid};
   Ray ray{{20.3, 30.7, 40}, {0.75, 0.5, -0.25}};
@@ -141,7 +141,7 @@ TEST(MaxMip, CountsTInTheLengthOfExtremeDirectionsAsTheOracleDoes) {
   }
 }
 
-TEST(MaxMip, HitsTheBorderFromAboveWhateverTheCellSize) {
+TEST(MaxMip, HitsTheBorderFromAboveForAnyCellSize) {
   std::mt19937 random(3);
   for (int i = 0; i < 2000; ++i) {
     HeightFieldSettings settings;
@@ -162,7 +162,7 @@ TEST(MaxMip, HitsTheBorderFromAboveWhateverTheCellSize) {
   }
 }
 
-TEST(MaxMip, DoesNotFollowARayBeyondTheBorder) {
+TEST(MaxMip, StopsAtTheBorder) {
   // 6 x 6 cells under blocks of 8: a ray that has left at the border runs on inside the block.
   std::vector<float> samples(49, 0);
   for (int row = 0; row < 7; ++row) samples[static_cast<std::size_t>(7 * row + 5)] = 100;
@@ -171,7 +171,7 @@ TEST(MaxMip, DoesNotFollowARayBeyondTheBorder) {
   EXPECT_EQ(terrain.cast({0, 5.9, 50}, {0.1, 1, 0}).status, HitStatus::miss);
 }
 
-TEST(MaxMip, PassesThroughHolesAndHitsBehindThem) {
+TEST(MaxMip, PassesThroughHoles) {
   const Terrain terrain{HeightField::own<float>({0, 0, kNaN, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 6, 2)};
   EXPECT_EQ(terrain.cast({2, 0.5, 1}, {0, 0, -1}).status, HitStatus::miss);
   EXPECT_EQ(terrain.cast({1.5, 0.5, 1}, {0, 0, -1}).status, HitStatus::miss);
@@ -182,8 +182,8 @@ TEST(MaxMip, PassesThroughHolesAndHitsBehindThem) {
   EXPECT_FALSE(terrain.cast({1.25, 0.5, 1}, {1, 0, -2})) << "goes under the sheet through the hole";
 }
 
-TEST(MaxMip, DoesNotHitThePlaneOnWhichARayStarts) {
-  // Any direction in a tilted plane, from anywhere on it: rounding must not be taken for ground.
+TEST(MaxMip, DoesNotHitThePlaneARayStartsOn) {
+  // Any direction in a tilted plane, from any point of it: rounding must not look like ground.
   std::vector<float> samples;
   for (int row = 0; row < 40; ++row) {
     for (int col = 0; col < 40; ++col) samples.push_back(static_cast<float>(0.5 * col + 0.25 * row));
@@ -209,9 +209,9 @@ TEST(MaxMip, DoesNotHitThePlaneOnWhichARayStarts) {
   }
 }
 
-TEST(MaxMip, TellsWhereARayFromALineOfItsPlaneFallsFromIt) {
-  // On a line between cells, which by rounding it has left before it begins, and falling by 10^-9 per metre: a height
-  // that ran ahead of the clamped place by 10^-11 would be a hit millimetres late. From the run of 10^9 rays.
+TEST(MaxMip, LocatesDescentFromAGridLineAccurately) {
+  // On a line between cells, which by rounding it has left before its start, and falling by 10^-9 per metre: a height
+  // 10^-11 ahead of the clamped position would make the hit millimetres late. From the run of 10^9 rays.
   std::vector<float> samples;
   for (int row = 0; row < 48; ++row) {
     for (int col = 0; col < 64; ++col)
@@ -282,25 +282,25 @@ Ray any_ray(const HeightField& field) {
   return {from, point() - from};
 }
 
-RC_GTEST_PROP(MaxMip, ALaterStartFindsNoEarlierHitAndLosesNone, ()) {
+RC_GTEST_PROP(MaxMip, LaterStartNeitherFindsEarlierHitsNorLosesAny, ()) {
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);
   const Hit first = terrain.cast(ray);
   ray.t_min = *rc::gen::inRange(0, 1000) * 1e-3;
   const Hit later = terrain.cast(ray);
-  // Of a clearance (numerics.md), for rays of any_ray().
+  // Rounding of a clearance (numerics.md), for rays of any_ray().
   const double rounding = 16 * 0x1p-53 * (2 * 60 + 4 * (257 + 193) * 30);
   if (first && first.t > ray.t_min) {
-    // Whether it begins beside the field, above the ground or below it (to rise before that hit), the ray still has it
-    // before it. Only where it begins on the ground as far as two clearances can tell, that here and the march's, it
-    // may be seen on either side.
+    // Whether the ray starts outside of the field, above the ground or below it (and rises before that hit), the hit is
+    // still ahead. Only if it starts on the ground within the rounding of two clearances, that here and the march's, it
+    // may be on either side.
     const dvec3 start = ray.at(ray.t_min);
     const std::optional<double> ground = terrain.field.height(start.x, start.y);
     if (!ground || std::abs(start.z - *ground) > 2 * rounding) RC_ASSERT(later);
   }
   if (later) {
     RC_ASSERT(later.t >= ray.t_min);
-    // Either root may be off by the rounding of a clearance over the speed at which the ray closes in.
+    // Either root may be off by the rounding of a clearance over the speed at which the ray approaches.
     const dvec2 slope = terrain.field.gradient(later.cell, later.u, later.v);
     const double closing = std::abs(ray.direction.z - slope.x * ray.direction.x - slope.y * ray.direction.y);
     if (first) RC_ASSERT((first.t - later.t) * closing <= 2 * rounding);
@@ -310,7 +310,7 @@ RC_GTEST_PROP(MaxMip, ALaterStartFindsNoEarlierHitAndLosesNone, ()) {
 
 TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
   // An odd number of rows: the last blocks are narrower than their fellows. Towards lower rows and through a node of
-  // the seam, at which the ray also comes into the next column. The cell behind it must not be left out.
+  // the seam, at which the ray also comes into the next column. The cell behind it must not be skipped.
   constexpr int kSide = 7;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     std::vector<float> samples(kSide * kSide, 0);
@@ -325,8 +325,8 @@ TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
   }
 }
 
-TEST(MaxMip, CountsAWayOutAtANodeAsNoHit) {
-  // Through the ground and out again at a node, where the clearance is zero but for rounding: one hit each.
+TEST(MaxMip, DoesNotReportAnExitAtANode) {
+  // Through the ground and out again at a node, where the clearance is zero except for rounding: one hit each.
   Random random(5);
   std::vector<float> samples;
   for (int i = 0; i < 65 * 65; ++i) samples.push_back(static_cast<float>(uniform(random, 0, 6)));
@@ -342,7 +342,7 @@ TEST(MaxMip, CountsAWayOutAtANodeAsNoHit) {
     ray.t_max = 2;
     ASSERT_EQ(all_hits_max_mip(target, ray, hits), HitStatus::hit);
     for (const Hit& hit : hits) {
-      // Just before each hit the ray is above the ground, by more than what it falls in that time.
+      // Just before each hit the ray is above the ground, by more than its fall in that time.
       const dvec3 before = ray.at(hit.t - 0x1p-16);
       const auto ground = terrain.field.height(before.x, before.y);
       ASSERT_TRUE(!ground || before.z > *ground) << "hit at " << hit.t << " from below, at node " << col << ", " << row;
@@ -350,7 +350,7 @@ TEST(MaxMip, CountsAWayOutAtANodeAsNoHit) {
   }
 }
 
-RC_GTEST_PROP(MaxMip, EndsWhereItHits, ()) {
+RC_GTEST_PROP(MaxMip, RespectsTMaxAroundTheHit, ()) {
   // Cut short before the hit, the ray misses; cut right behind it, it hits at the same place.
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);

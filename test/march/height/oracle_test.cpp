@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Every march of the table against the exhaustive one, on spiteful fields and rays.
 //
-// Two correct programs may round differently. What they may differ in is bounded: a ray moved by the rounding of its
-// own coordinates (numerics.md: delta) is as good as the ray itself. So an exact march must agree with the judge, or,
-// where it does not, pass no hit that the ray and all its neighbours within delta have for certain, and a hit of its
-// own must lie on the surface and not on the way out of the ground. How often neighbours had to be asked is counted, so
-// that this cannot become a way out.
+// Two correct programs may round differently, but the difference is bounded: a ray moved by the rounding of its own
+// coordinates (numerics.md: delta) is as good as the ray itself. An exact march must therefore agree with the judge. If
+// it does not, it must pass no hit that the ray and all its neighbours within delta certainly have, and its own hit
+// must be on the surface and not on the way out of the ground. The use of neighbours is counted, so that it cannot
+// become a loophole.
 //
-// Lists of all hits are judged alike: equal ones are right; where they differ, each hit has to lie where one can be,
-// and between one hit and the next none may be passed that all neighbours have. What may differ, then, is a touch and
-// whether it is told from passing through twice.
+// Lists of all hits are judged alike: equal ones are right; where they differ, each hit must be at a possible position,
+// and between one hit and the next none may be passed that all neighbours have. The lists may thus differ in touches,
+// and in whether a touch counts as passing through twice.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -33,10 +33,10 @@
 namespace scarp::test {
 namespace {
 
-// Under the sanitizers eight fields per pair: they look for what marches do to memory, which repeats with each ray.
+// Eight fields per pair under the sanitizers, which check memory accesses; these repeat with each ray.
 const int kRaysPerPair = cases(100'000, 10'000, 700);
 constexpr int kRaysPerField = 250;
-// Marches that promise nothing are only asked to stay in the ray's range.
+// Marches without a guarantee must only stay in the ray's range.
 constexpr int kRaysPerApproximation = 20;
 
 // Unit roundoff, and the number of roundings that numerics.md counts on the way from a world coordinate to a sign.
@@ -74,7 +74,7 @@ class Judge {
     for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(ray.direction[axis], -exponent_);
     ray_.t_min = std::ldexp(ray.t_min, exponent_);
     ray_.t_max = std::ldexp(ray.t_max, exponent_);
-    // The closest hit is the first of all of them: each is asked for once.
+    // The closest hit is the first of all hits: each is queried once.
     const HitStatus status = all_hits_exhaustive({&field, nullptr}, ray_, expected_);
     if (!expected_.empty()) nominal_ = expected_.front();
     nominal_.status = status;
@@ -148,8 +148,8 @@ class Judge {
     return false;
   }
 
-  // Whether who follows a ray and first tells of a hit at `reached` passes none that the ray and its neighbours have
-  // for certain.
+  // Whether a march whose first reported hit is at `reached` passes no hit that the ray and its neighbours certainly
+  // have.
   bool passes_nothing(Ray ray, double reached) const {
     const double latest = reached - slack(std::isfinite(reached) ? reached : 0);
     for (;;) {
@@ -184,7 +184,7 @@ class Judge {
     }
   }
 
-  // The same for who tells of none. It is below where the ray visibly comes in so, and only there.
+  // The same for a march that reports no hit. The status is `below` only if the ray visibly enters below the ground.
   bool ends_without(HitStatus status) const {
     if (!passes_nothing(ray_, HUGE_VAL)) return false;
     const int side = ray_.start == RayStart::on_surface ? 1 : side_at_entry();
@@ -204,12 +204,12 @@ class Judge {
 
   // The ray moved by up to delta.
   Ray neighbour(Ray ray, Random& random) const {
-    // All magnitudes alike: a ray that grazes a corner of the field asks for shifts of unlike size.
+    // Magnitudes differ: a ray that grazes a corner of the field needs shifts of unequal size.
     const auto shift = [&] { return std::ldexp(uniform(random, -1, 1) * delta(), -whole(random, 0, 6)); };
     if (ray.start == RayStart::free) {
       for (int axis = 0; axis < 3; ++axis) ray.origin[axis] += shift();
     } else {
-      // The start is on the surface by definition; where on it, and the direction, is what rounding moves.
+      // The start is on the surface by definition; rounding moves its position on it, and the direction.
       for (int axis = 0; axis < 2; ++axis) ray.origin[axis] += shift();
       const double extent = std::max(field_.settings().cell_x, field_.settings().cell_y);
       for (int axis = 0; axis < 3; ++axis) ray.direction[axis] += shift() / extent;
@@ -227,7 +227,7 @@ class Judge {
     return delta() * (1 + relief / to.cell_x + relief / to.cell_y);
   }
 
-  // How far the ray is above the surface of the hit's cell.
+  // Height of the ray above the surface of the hit's cell.
   double clearance(const CellHeights& h, const Hit& hit, double t) const {
     return ray_.at(t).z - field_.height_from_sample(height_in_cell(field_.settings().surface, h, hit.u, hit.v));
   }
@@ -236,7 +236,8 @@ class Judge {
     const double off = std::abs(clearance(h, hit, t));
     return off <= rounding(h) || (is_at_rim(ray_.at(t)) && off <= 2 * at_rim(h, t));
   }
-  // What numerics.md lets a march take for a touch where the ray crosses a rim, metres: of the line that it crosses.
+  // Distance in metres that a march may treat as a touch where the ray crosses a rim (numerics.md), for the line that
+  // it crosses.
   double at_rim(const CellHeights& h, double t) const {
     const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
     const GridRay local = field_.grid_from_world(ray_);
@@ -255,8 +256,8 @@ class Judge {
     return field_.settings().solid && begins_at(t) && clearance(h, hit, t) <= rounding(h);
   }
 
-  // Where a ray first comes down through the surface from visibly above it. A rise by no more than rounding is none.
-  // Where the ray keeps to the surface, it begins anew after ever longer steps, up to a sixteenth of a cell.
+  // Where a ray first descends through the surface from visibly above it. A rise within rounding does not count. Where
+  // the ray stays on the surface, the search restarts after increasing steps, up to a sixteenth of a cell.
   double first_certain_hit(Ray ray, double enough) const {
     for (double step = 1;; step = std::min(2 * step, 0x1p16)) {
       const Hit hit = march_exhaustive({&field_, nullptr}, ray);
@@ -280,13 +281,13 @@ class Judge {
     return true;
   }
 
-  // Just before t: a millionth of a cell, far beyond rounding, far below anything that the surface does.
+  // Just before t: a millionth of a cell, far more than rounding, far less than any feature of the surface.
   double just_before(double t) const {
     return t - 0x1p-20 * std::min(field_.settings().cell_x, field_.settings().cell_y) / length(ray_.direction);
   }
 
-  // Whether the ray comes into being at t: at its start, over the border, out of a hole (that may be touched at a
-  // corner only). A touch there is a hit, and one that a shift of any size turns into something else.
+  // Whether the ray appears at t: at its start, over the border, out of a hole (which may be touched only at a corner).
+  // A touch there is a hit, which a shift of any size may change.
   bool begins_at(double t) const {
     if (just_before(t) < ray_.t_min) return true;
     const dvec3 before = ray_.at(just_before(t));
@@ -308,8 +309,8 @@ class Judge {
              field_.height(p.x - dx, p.y + dy) && field_.height(p.x + dx, p.y + dy));
   }
 
-  // On which side the ray was before t, as soon as it can be told from rounding: 1 above, -1 below (then t is a way out
-  // of the ground and no hit), 0 it cannot be told, or not from `from` on.
+  // Side of the ray before t, once it exceeds rounding: 1 above, -1 below (then t is a way out of the ground and not a
+  // hit), 0 undecided, or not decided after `from`.
   int side_before(double t, double from) const {
     for (double cells = 0x1p-20; cells < 1; cells *= 4) {
       const double before = t - cells * (t - just_before(t)) * 0x1p20;
@@ -320,7 +321,7 @@ class Judge {
     return 0;
   }
 
-  // On which side the ray comes over the field, or begins there; 0 where it cannot be told, or over a hole.
+  // Side on which the ray enters or starts over the field; 0 if undecided, or over a hole.
   int side_at_entry() const {
     double t = ray_.t_min;
     if (!field_.wraps()) {
@@ -330,7 +331,7 @@ class Judge {
         if (d != 0) t = std::max(t, std::min(-o / d, (size[axis] - o) / d));
       }
     }
-    // A few steps further in, to be over it for certain.
+    // A few steps further in, to be certainly over it.
     t += 4 * (t - just_before(t));
     const dvec3 p = ray_.at(t);
     return t <= ray_.t_max && !is_at_rim(p) && !is_at_rim(ray_.at(std::max(ray_.t_min, t - 8 * (t - just_before(t)))))
@@ -338,8 +339,8 @@ class Judge {
                : 0;
   }
 
-  // On which side of the surface the ray is at t; 0 where that is not visible, or what the surface rises within some
-  // cells could change it. Marches may tell a rise from rounding by the relief of the whole field.
+  // Side of the surface on which the ray is at t; 0 if that is not visible, or if the rise of the surface within some
+  // cells could change it. Marches may distinguish a rise from rounding by the relief of the whole field.
   int side(double t, double cells) const {
     const dvec3 p = ray_.at(t);
     const auto place = field_.place(p.x, p.y);
@@ -369,7 +370,7 @@ class Judge {
 
 class Oracle : public testing::TestWithParam<Pair> {};
 
-TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
+TEST_P(Oracle, ExactMarchesMatchTheOracle) {
   const FieldKind& fields = spiteful_fields()[GetParam().field];
   const RayKind& kind = spiteful_rays()[GetParam().ray];
   Random random(1000 * GetParam().field + GetParam().ray);
@@ -417,7 +418,7 @@ TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
   }
   RecordProperty("hits", hit_count);
   RecordProperty("asked_neighbours", asked);
-  // Rays that were not aimed at anything meet a rounding tie once in a blue moon.
+  // Rays that are not aimed at anything rarely meet a rounding tie.
   if (kind.name == "random" || kind.name == "from above") {
     EXPECT_LE(asked, kRaysPerPair / 1000);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The marches on a Vulkan device, on the oracle's fields and rays: their answers are what single precision allows
-// (RoundingJudge), any-hit agrees with closest-hit, and validation has nothing to say.
+// The marches on a Vulkan device, on the oracle's fields and rays: their answers are within single precision
+// (RoundingJudge), any-hit agrees with closest-hit, and validation is silent.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ namespace {
 const int kRaysPerKind = cases(200, 50, 25);
 constexpr int kFieldsPerKind = 2;
 
-// Compiling a march for lavapipe takes longer than running it: once for all fields.
+// Compiling a march for lavapipe takes longer than running it, so this happens once for all fields.
 DeviceQueries& queries(std::string_view march) {
   static std::map<std::string_view, DeviceQueries> all;
   const auto found = all.find(march);
@@ -88,7 +88,7 @@ void check(const Device& device, const FieldKind& fields, const std::vector<RayK
 
 class ParityOnDevice : public OnDevice, public testing::WithParamInterface<std::size_t> {};
 
-TEST_P(ParityOnDevice, AnswersAreThoseOfTheSurface) {
+TEST_P(ParityOnDevice, AnswersMatchTheSurface) {
   Random random(GetParam());
   for (int i = 0; i < kFieldsPerKind; ++i) {
     check(device(), spiteful_fields()[GetParam()], spiteful_rays(), kRaysPerKind, random);
@@ -97,7 +97,7 @@ TEST_P(ParityOnDevice, AnswersAreThoseOfTheSurface) {
 
 class ParityAcrossTiles : public OnDevice {};
 
-TEST_F(ParityAcrossTiles, AnswersAreThoseOfTheSurface) {
+TEST_F(ParityAcrossTiles, AnswersMatchTheSurface) {
   Random random(1);
   for (const FieldKind& fields : wide_fields()) check(device(), fields, rays_across_tiles(), kRaysPerKind / 2, random);
 }
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Spiteful, ParityOnDevice, testing::ValuesIn(all_fields(
 
 class QueriesOnDevice : public OnDevice {};
 
-TEST_F(QueriesOnDevice, FollowRaysThatComeInUnderTheGround) {
+TEST_F(QueriesOnDevice, FollowRaysThatEnterBelowGround) {
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     expect_entering_rays_go_on(march,
@@ -124,8 +124,8 @@ TEST_F(QueriesOnDevice, FollowRaysThatComeInUnderTheGround) {
   }
 }
 
-// A shrink factor that the slope does not prove: what is under the ground is a hit, not lost.
-TEST_F(QueriesOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
+// A shrink factor that the slope does not justify: positions below the ground are hits, not losses.
+TEST_F(QueriesOnDevice, HitBelowGroundWithALargeShrinkFactor) {
   const HeightField field = waves();
   const DeviceGround ground(device(), field);
   MarchSettings settings;
@@ -138,8 +138,8 @@ TEST_F(QueriesOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
   expect_hits_under_the_ground(field, rays, hits);
 }
 
-// A ray that does not move along an axis, or hardly, on the rim of a hole: ground on either side of the line is met.
-TEST_F(QueriesOnDevice, HitRimsOfHolesThatRaysRunAlong) {
+// A ray that does not move along an axis, or hardly, on the rim of a hole: it hits ground on either side of the line.
+TEST_F(QueriesOnDevice, HitHoleRimsThatRaysRunAlong) {
   constexpr int kNodes = 24;
   constexpr double kRelief = 5, kLeastFall = 0.1;
   // Floats place a hit to 2^-18 of a cell (max_mip_lean.glsl.h), over which the ground rises by the relief at most.
@@ -203,7 +203,7 @@ TEST_F(QueriesOnDevice, RefineTheirHits) {
   }
 }
 
-TEST_F(QueriesOnDevice, SlicesDoNotShow) {
+TEST_F(QueriesOnDevice, AreUnaffectedBySlicing) {
   Random random(3);
   const HeightField field = spiteful_fields()[4].make(random);
   const DeviceGround ground(device(), field);
@@ -215,7 +215,7 @@ TEST_F(QueriesOnDevice, SlicesDoNotShow) {
   DeviceQueries sliced(device(), find_height_march("max-mip"), {}, {.rays_at_once = 77});
   whole.closest_hits({&field, &ground}, rays, hits, costs);
   sliced.closest_hits({&field, &ground}, rays, other, none);
-  // 13 slices; a second pass each, if rays in it begin below the ground.
+  // 13 slices; a second pass each, if rays in it start below the ground.
   EXPECT_LE(whole.passes().size(), 2u);
   EXPECT_GE(sliced.passes().size(), 13u);
   EXPECT_LE(sliced.passes().size(), 26u);
@@ -233,7 +233,7 @@ TEST_F(QueriesOnDevice, SlicesDoNotShow) {
 }
 
 // Marches that are interrupted every few turns.
-TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
+TEST_F(QueriesOnDevice, AreUnaffectedByInterruptions) {
   constexpr int kFewTurns = 5, kFewSteps = 60, kFewRays = 4;
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kFewSteps;
@@ -284,9 +284,9 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
   EXPECT_GT(more_runs, 5);
 }
 
-// Longer than lavapipe lets a loop be: over a slope along the ray, close above it for 100,000 cells, then against a
-// wall. Of holes there is one, far from the ray, so that `lipschitz` climbs through all levels at each step.
-TEST_F(QueriesOnDevice, LongMarchesEnd) {
+// Longer than lavapipe's limit for loops: over a slope along the ray, just above it for 100,000 cells, then against a
+// wall. One hole, far from the ray, makes `lipschitz` climb through all levels at each step.
+TEST_F(QueriesOnDevice, FinishLongMarches) {
   constexpr int kCols = 100'001;
   constexpr float kNodata = -1;
   const auto ground_at = [](int col, int row) {
@@ -304,8 +304,9 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
   const DeviceTarget target{&field, &ground, slope_bound(field)};
   // In the row of cells between heights of 4 and 0, where the ground is 1.
   const Ray ray{{10.5, 2.25, 1.5}, {1, 0, 0}};
-  // Steps are no shorter than floats are apart 100,000 metres away, and hits are told at less clearance than that.
-  constexpr double kLeastStep = 1e-6;  // of the way: a tenth of a metre
+  // Steps are no shorter than the spacing of floats at 100,000 metres, and hits are reported at a smaller clearance
+  // than that.
+  constexpr double kLeastStep = 1e-6;  // of the distance: a tenth of a metre
   MarchSettings settings;
   constexpr int kManySteps = 10'000'000;
   settings.naive = {.min_step = kLeastStep, .tolerance = kLeastStep / 10, .max_steps = kManySteps};
@@ -330,7 +331,7 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
   }
 }
 
-TEST_F(QueriesOnDevice, SayWhatIsWrong) {
+TEST_F(QueriesOnDevice, ReportErrors) {
   const HeightField field = HeightField::own(std::vector<float>(16, 1.0F), 4, 4);
   const DeviceGround ground(device(), field);
   EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_height_march("exhaustive")); }),
@@ -353,7 +354,7 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("naive"), settings); }), "");
 }
 
-TEST(Marches, ThoseOfTheTableRunOnDevices) {
+TEST(Marches, ListedForDevicesRunThere) {
   for (const HeightMarchEntry& march : height_marches()) {
     EXPECT_EQ(march.gpu, device_march_names().find(std::string(march.name)) != std::string::npos) << march.name;
   }
@@ -369,7 +370,7 @@ constexpr std::uint32_t kSamplingShader[] = {
 #include "scarp/march/height/height_marches_second.comp.inc"
 };
 
-TEST(BatchLayout, IsThatOfTheShaders) {
+TEST(BatchLayout, MatchesTheShaders) {
   using glsl::RayBatch;
   EXPECT_TRUE(is_laid_out_like<glsl::RayBlock>(kShader));
   EXPECT_TRUE(is_laid_out_like<glsl::HitBlock>(kShader));

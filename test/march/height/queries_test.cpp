@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Batches answer as single rays do, on all threads; and what rays from outside are refused for.
+// Batches return the answers of single rays, on all threads; and errors for invalid rays.
 #include "scarp/march/height/queries.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ constexpr int kRaysPerPair = 60;
 constexpr int kRaysPerPair = 15;
 #endif
 
-TEST(Queries, ABatchAnswersAsItsRaysDo) {
+TEST(Queries, BatchMatchesSingleRays) {
   Random random(5);
   for (const FieldKind& fields : spiteful_fields()) {
     const HeightField field = fields.make(random);
@@ -57,7 +57,7 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
   }
 }
 
-TEST(Queries, SpansOfOneLengthAreAskedFor) {
+TEST(Queries, RejectSpansOfDifferentLengths) {
   const HeightField field = HeightField::own<float>({1, 2, 3, 4}, 2, 2);
   const MaxPyramid pyramid(field);
   const std::vector<Ray> rays(3);
@@ -67,7 +67,7 @@ TEST(Queries, SpansOfOneLengthAreAskedFor) {
   EXPECT_THROW(occluded({&field, &pyramid}, rays, blocked), Error);
 }
 
-TEST(Queries, RaysFromOutsideAreChecked) {
+TEST(Queries, ValidateCallerRays) {
   const float hole = std::numeric_limits<float>::quiet_NaN();
   const HeightField field = HeightField::own<float>({1, 2, hole, 3, 4, 5}, 3, 2);
   const HeightField wrapped = HeightField::own<float>({1, 2, 3, 4}, 2, 2, {.wrap = Wrap::periodic});
@@ -98,7 +98,7 @@ TEST(Queries, RaysFromOutsideAreChecked) {
   EXPECT_TRUE(refused(field, from(2)));
 }
 
-TEST(Queries, AnyHitLooksAheadAndAgreesWithTheClosestHit) {
+TEST(Queries, AnyHitLooksAheadAndAgreesWithClosestHit) {
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const HeightField field = hills(1025, 769, surface);
     const MaxPyramid pyramid(field);
@@ -107,7 +107,7 @@ TEST(Queries, AnyHitLooksAheadAndAgreesWithTheClosestHit) {
     int hits = 0, far = 0;
     for (int i = 0; i < 50'000; ++i) {
       Ray ray = along_hills(field, random, i % 2);
-      // Some end just before what stops them, or just behind.
+      // Some end just in front of their hit, or just behind it.
       const Hit first = march_max_mip(target, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
       const Hit hit = march_max_mip(target, ray);
@@ -120,7 +120,7 @@ TEST(Queries, AnyHitLooksAheadAndAgreesWithTheClosestHit) {
   }
 }
 
-// A field that no cache holds: large batches over it are answered in another order.
+// A field larger than any cache: large batches over it are reordered.
 HeightField large() {
   const int cols = 4200, rows = 2100;
   std::vector<std::int16_t> samples;
@@ -140,7 +140,7 @@ std::vector<Ray> anywhere(const HeightField& field, std::size_t count, Random& r
   return rays;
 }
 
-TEST(Queries, AnswersStandWhereTheirRaysStandWhateverTheOrder) {
+TEST(Queries, AnswersKeepTheOrderOfTheRays) {
   const HeightField field = large();
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
@@ -163,7 +163,7 @@ TEST(Queries, AnswersStandWhereTheirRaysStandWhateverTheOrder) {
   }
   EXPECT_GT(found, 5000);
 
-  // Each ray once; and, in the new order, there is nothing left to put in order.
+  // Each ray once; and the new order is a fixed point.
   std::vector<Ray> ordered;
   for (const std::uint32_t i : order) ordered.push_back(rays[i]);
   EXPECT_TRUE(ground_order(field, ordered).empty());
@@ -171,7 +171,7 @@ TEST(Queries, AnswersStandWhereTheirRaysStandWhateverTheOrder) {
   for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
-TEST(Queries, IsLeftInItsOrderWhereAnotherIsNotWorthIt) {
+TEST(Queries, DoNotReorderSmallBatches) {
   const HeightField field = large();
   Random random(24);
   EXPECT_TRUE(ground_order(field, anywhere(field, 100, random)).empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rims of holes, borders and nodes belong to the ground, however a ray meets them; and the end of a ray changes no hit.
+// Rims of holes, borders and nodes belong to the ground for rays in any direction; and the end of a ray changes no hit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ void expect_hits(const HeightTarget& target, const Ray& ray, double t) {
   EXPECT_TRUE(occluded_max_mip(target, ray));
 }
 
-TEST(Rims, AreTouchedOnTheWayOut) {
+TEST(Rims, AreHitOnTheWayOut) {
   const HeightField flat = HeightField::own(std::vector<float>(17 * 17), 17, 17);
   const MaxPyramid pyramid(flat);
   expect_hits({&flat, &pyramid}, {{9.84375, -3.03125, 27.359375}, {6.15625, 7.03125, -27.359375}}, 1);
@@ -54,7 +54,7 @@ class RimsOfHoles : public testing::Test {
   HeightField field_ = HeightField::own(std::vector<float>(4), 2, 2);
 };
 
-TEST_F(RimsOfHoles, AreMetByUprightRaysAndHeights) {
+TEST_F(RimsOfHoles, AreHitByVerticalRaysAndHeights) {
   int met = 0;
   on_fields([&](const HeightTarget& target, const std::vector<float>& samples) {
     for (int row = 0; row < kSide; ++row) {
@@ -75,7 +75,7 @@ TEST_F(RimsOfHoles, AreMetByUprightRaysAndHeights) {
   EXPECT_GT(met, 500);
 }
 
-TEST_F(RimsOfHoles, AreMetByRaysAlongLines) {
+TEST_F(RimsOfHoles, AreHitByRaysAlongGridLines) {
   int met = 0;
   on_fields([&](const HeightTarget& target, const std::vector<float>& samples) {
     for (int row = 0; row + 1 < kSide; ++row) {
@@ -93,7 +93,7 @@ TEST_F(RimsOfHoles, AreMetByRaysAlongLines) {
 }
 
 // Where the ground touches a ray in a node alone.
-TEST_F(RimsOfHoles, AreMetInTheirNodes) {
+TEST_F(RimsOfHoles, AreHitAtTheirNodes) {
   Random random(4);
   int met = 0;
   on_fields([&](const HeightTarget& target, const std::vector<float>& samples) {
@@ -112,8 +112,8 @@ TEST_F(RimsOfHoles, AreMetInTheirNodes) {
   EXPECT_GT(met, 500);
 }
 
-// t_max is closed: asked again up to its own t, a ray has the same hit, and up to any earlier t none.
-TEST(Ends, ChangeNoHit) {
+// t_max is inclusive: cut at the t of its hit, a ray has the same hit, and cut at any earlier t none.
+TEST(Ends, DoNotChangeHits) {
   Random random(5);
   int hits = 0;
   for (int i = 0; i < 20; ++i) {

@@ -10,9 +10,9 @@ namespace scarp::test {
 namespace {
 
 constexpr double kFloat = 0x1p-24;
-// What numerics.md counts, rounded up to a power of two.
+// Number of roundings (numerics.md), rounded up to a power of two.
 constexpr double kRoundings = 16;
-// Of the ray from world coordinates on, as for the marches in double.
+// Roundings of the ray from world coordinates, as for the marches in double.
 constexpr double kWorldRoundings = 32;
 // A value with an error of delta is compared with a bound of delta.
 constexpr double kCertain = 2;
@@ -49,7 +49,7 @@ RoundingJudge::RoundingJudge(const HeightField& field, const Ray& ray, double ti
     if (begin_ - first <= 4 * sideways(begin_)) may_be_from_outside_ = true;
   }
   if (std::isinf(end_)) {
-    // Upright: until nothing more is met.
+    // Vertical: until no more hits are possible.
     const double relief = field.max_sample() - field.min_sample() + 1;
     end_ = begin_ +
            (std::abs(origin_.z + direction_.z * begin_ - field.min_sample()) + 2 * relief) / std::abs(direction_.z);
@@ -100,7 +100,7 @@ bool RoundingJudge::is_ground(int col, int row) const {
 
 CellHeights RoundingJudge::heights(int col, int row) const { return field_.cell_heights(within(col, row)).value(); }
 
-// How far heights differ round a cell.
+// Range of heights around a cell.
 double RoundingJudge::relief(int col, int row) const {
   double most = start_relief_;
   for (int c = col - 1; c <= col + 1; ++c) {
@@ -118,7 +118,7 @@ double RoundingJudge::clearance(int col, int row, double t) const {
   return origin_.z + direction_.z * t - height_in_cell(field_.settings().surface, heights(col, row), u, v);
 }
 
-// Cells by which a march may be off beside the ray's true way.
+// Sideways error of a march from the true ray, in cells.
 double RoundingJudge::sideways(double t) const {
   const double way = std::min(std::abs(direction_.x * (t - begin_)) + std::abs(direction_.y * (t - begin_)), 2 * tile_);
   const double world = std::abs(origin_.x) + std::abs(direction_.x * t) + std::abs(origin_.y) +
@@ -129,7 +129,7 @@ double RoundingJudge::sideways(double t) const {
 double RoundingJudge::delta(int col, int row, double t) const {
   const double steep = relief(col, row);
   const double flat = std::max(std::abs(direction_.x), std::abs(direction_.y));
-  // A march takes the bound of where it leaves the cell.
+  // A march uses the bound at its exit from the cell.
   if (flat > 0) t += 1 / flat;
   const double s = std::min(t - begin_, flat > 0 ? tile_ / flat : HUGE_VAL);
   const double world = std::abs(origin_.z) + std::abs(direction_.z * t) +
@@ -139,8 +139,8 @@ double RoundingJudge::delta(int col, int row, double t) const {
          kWorldRoundings * world_unit_ * world;
 }
 
-// Whether a ray from the surface comes truly below it at t or on the rest of the cell there: its march takes off the
-// whole bound.
+// Whether a ray from the surface is truly below it at t or on the rest of the cell there: its march subtracts the whole
+// bound.
 bool RoundingJudge::comes_below(double t, double off) const {
   for (const Event& event : events_) {
     if (event.t < t - off) continue;
@@ -150,8 +150,8 @@ bool RoundingJudge::comes_below(double t, double off) const {
   return false;
 }
 
-// Whether a piece of the ray in a cell comes within sideways rounding of a hole or border; or, border_only, keeps as
-// near as that to the border.
+// Whether a piece of the ray in a cell is within sideways rounding of a hole or border; or, border_only, stays that
+// close to the border.
 bool RoundingJudge::near(int col, int row, double begin, double end, bool border_only) const {
   const double e = 2 * std::max(sideways(begin), sideways(end));
   for (int dc = -1; dc <= 1; ++dc) {
@@ -169,7 +169,7 @@ bool RoundingJudge::near(int col, int row, double begin, double end, bool border
   return false;
 }
 
-// Whether a piece of the ray in a hole keeps to the rim of the ground beside it.
+// Whether a piece of the ray in a hole stays on the rim of the ground beside it.
 bool RoundingJudge::runs_along_ground(int col, int row, double begin, double end) const {
   const double e = 2 * std::max(sideways(begin), sideways(end));
   const auto keeps_to = [&](int axis, double line) {
@@ -216,7 +216,7 @@ void RoundingJudge::add_piece(double begin, double end) {
   add_event(col, row, end, false, begin, end);
 }
 
-// What a march that has told nothing may believe, at `until`.
+// Possible beliefs, at `until`, of a march that has not reported a hit.
 RoundingJudge::Beliefs RoundingJudge::follow(double until) const {
   Beliefs now;
   (strict_ ? now.above : now.unknown) = true;
@@ -226,12 +226,12 @@ RoundingJudge::Beliefs RoundingJudge::follow(double until) const {
     if (event.t > until) break;
     if (event.may_leave) now.gone = true;
     if (event.what == Event::hole) {
-      // Rims are closed: the ray may be taken to be over the ground, on either side of it.
+      // Rims are closed: the ray may be treated as over the ground, on either side of it.
       if (event.along_ground) {
         now.unknown = now.above = now.below = true;
         continue;
       }
-      // One that begins this near to the ground may be taken to begin over it.
+      // A ray that starts this close to the ground may be treated as starting above it.
       if (!event.brief) {
         now.above = now.below = false;
         begun = true;
@@ -248,7 +248,7 @@ RoundingJudge::Beliefs RoundingJudge::follow(double until) const {
       next.below = f <= d;
     }
     if (now.unknown) {
-      // A march may still be about to ask.
+      // A march may still be about to check.
       if (event.touches_hole || event.brief) next.unknown = true;
       const bool outside = begun || from_outside_, may_be_outside = begun || may_be_from_outside_ || event.touches_hole;
       if (f >= -d) next.above = true;
@@ -314,12 +314,12 @@ std::string RoundingJudge::objection(const Hit& hit) const {
     return fmt::format("row {} is off by {}, bound {}", place[1], place[1] - row - hit.v, off);
   const double f = clearance(col, row, t), d = kCertain * delta(col, row, t);
   if (hit.wall ? f > d : std::abs(f) > d) return fmt::format("clearance {} there, bound {}", f, d);
-  // Just before: what lies between is less than the bounds.
+  // Just before: the gap is smaller than the bounds.
   const double speed = std::max(std::abs(direction_.x), std::abs(direction_.y));
   if (strict_ && !hit.wall && speed > 0 && !comes_below(t, off / speed)) return "hits what it starts on";
   const Beliefs before = follow(speed > 0 ? t - off / speed : t);
   if (hit.wall && !before.unknown && !events_.empty() && t > begin_ + off / speed) return "a wall where there is none";
-  // It may have come out since.
+  // It may have left the ground since.
   bool rises = false;
   for (const Event& event : events_) {
     rises = rises || (event.what == Event::ground && event.clearance > 0 && std::abs(event.t - t) * speed <= off);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Judges answers of marches in single precision: what a ray may meet when every clearance is known to a bound only.
+// Judges answers of marches in single precision: the possible hits of a ray if every clearance is known only to a
+// bound.
 //
 // The true clearance along the ray is followed in double, from one extreme to the next. With delta, the bound that
-// doc/dev/numerics.md derives ("Single precision"), a march may take a ray to be above or below the ground wherever the
-// clearance is within 2 delta (delta for the value, delta for what it is compared with), and nowhere else; and it may
-// take a hole, a rim or a border to be there or not only where the ray passes within the sideways bound of it. So the
-// judge keeps the SET of what a march may believe. An answer is wrong when no belief leads to it.
+// doc/dev/numerics.md derives ("Single precision"), a march may treat a ray as above or below the ground wherever the
+// clearance is within 2 delta (delta for the value, delta for the compared value), and nowhere else; and it may see or
+// miss a hole, a rim or a border only where the ray passes within the sideways bound of it. The judge therefore keeps
+// the SET of possible beliefs of a march. An answer is wrong if no belief leads to it.
 #pragma once
 
 #include <cmath>
@@ -18,17 +19,17 @@ namespace scarp::test {
 
 class RoundingJudge {
  public:
-  /// `ray` is valid. `tile` is how many cells a march goes before its numbers begin anew; at most 1,024.
-  /// `world_unit` is the unit roundoff of what clipped the ray to the field.
+  /// `ray` is valid. `tile` is the number of cells after which a march starts a new frame; at most 1,024. `world_unit`
+  /// is the unit roundoff of the code that clipped the ray to the field.
   RoundingJudge(const HeightField& field, const Ray& ray, double tile = 1024, double world_unit = 0x1p-53);
 
-  /// Empty when a march may answer so, else why not.
+  /// Empty if this is a valid answer of a march, otherwise the reason.
   std::string objection(const Hit& hit) const;
-  /// Whether a march may tell of nothing on the way up to t.
+  /// Whether a march may report no hit up to t.
   bool may_pass(double t) const { return !meets_field_ || follow(t * scale_).any(); }
   bool may_miss() const { return may_pass(HUGE_VAL); }
-  /// How far (vertically, metres) the ray is above the surface at t as a march may see it, at least and at most; over
-  /// holes and outside, or where that is not certain, anything.
+  /// Lower and upper bound of the ray's height in metres above the surface at t as a march may compute it; unbounded
+  /// over holes, outside, or where that is not certain.
   struct Bounds {
     double low = -HUGE_VAL, high = HUGE_VAL;
   };
@@ -44,10 +45,10 @@ class RoundingJudge {
     int col, row;
     enum What { ground, hole } what;
     double clearance, delta;
-    bool enters;        // begins a piece of a cell
-    bool touches_hole;  // a hole or border is as near as sideways rounding
+    bool enters;        // starts a piece of a cell
+    bool touches_hole;  // a hole or border is within sideways rounding
     bool along_ground;  // a hole, but the ray runs along its rim
-    bool may_leave;     // the ray may be taken to have left the field here
+    bool may_leave;     // the ray may be treated as having left the field here
     bool brief;         // a piece no longer than sideways rounding
   };
   struct Beliefs {

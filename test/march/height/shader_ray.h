@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray as a shader makes one: begin and direction in floats.
+// A ray as computed by a shader: start and direction in floats.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ struct ShaderRay {
   glsl::vec3 origin, direction;  // in grid units
   double speed = 0;              // cells along the longer axis, per t
   float end = 0;                 // in cells along that axis
-  Ray ray;                       // the same in the world, but for doubles' rounding
+  Ray ray;                       // the same in the world, except for rounding of doubles
 };
 
-/// None for a ray that is upright in floats.
+/// Nullopt for a ray that is vertical in floats.
 inline std::optional<ShaderRay> shader_ray(const HeightField& field, const Ray& made) {
   const GridRay local = field.grid_from_world(made);
   ShaderRay r{glsl::vec3(local.origin), glsl::vec3(local.direction), 0, 0, {}};

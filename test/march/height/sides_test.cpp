@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rules on which hits count: those from below are those of the same ground upside down, and a filter leaves out hits
-// and nothing else.
+// Rules on which hits count: those from below are those of the same ground upside down, and a filter removes hits and
+// nothing else.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::int16_t kNoSample = -32768;
 
-// The same ground, its heights times `sign`. With holes the samples are whole numbers: then the codes of both pyramids
-// bound the same heights.
+// The same ground, its heights times `sign`. With holes the samples are integers: then the codes of both pyramids bound
+// the same heights.
 HeightField turned(const HeightField& field, int sign) {
   HeightFieldSettings settings = field.settings();
   settings.offset *= sign;
@@ -62,7 +62,7 @@ Hit upside_down(Hit hit) {
   return hit;
 }
 
-// Whether of the rays beside this one, as near as rounding, some hit and some do not.
+// Whether some of the rays within rounding of this one hit and some do not.
 bool grazes(const HeightTarget& target, const Ray& ray, double t) {
   const HeightField& field = *target.field;
   const GridRay local = field.grid_from_world(ray);
@@ -100,7 +100,7 @@ void for_all(const NewField& new_field, const Check& check) {
   }
 }
 
-TEST(Sides, BelowIsAboveOfTheGroundUpsideDown) {
+TEST(Sides, BelowMatchesAboveOfTheInvertedField) {
   int hits = 0;
   std::optional<HeightField> field, other_field;
   std::optional<MaxPyramid> pyramid, other_pyramid;
@@ -114,8 +114,8 @@ TEST(Sides, BelowIsAboveOfTheGroundUpsideDown) {
     const Hit hit = march_max_mip_by_rules(target, ray, HitRules{.sides = Sides::below});
     const Hit expected = upside_down(march_max_mip(upside, upside_down(ray)));
     if (hit != expected) {
-      // What the levels of a pyramid decide at the rims of holes: at the time of which line of a node the ray meets it,
-      // and whether a graze within rounding is a touch.
+      // Levels of a pyramid decide at the rims of holes: at the time of which line of a node the ray hits it, and
+      // whether a graze within rounding is a touch.
       ASSERT_GT(field->nodata_count(), 0);
       const GridRay local = field->grid_from_world(ray);
       if (hit && expected) {
@@ -133,7 +133,7 @@ TEST(Sides, BelowIsAboveOfTheGroundUpsideDown) {
   EXPECT_GT(hits, cases(100'000, 5000, 500));
 }
 
-TEST(Sides, BothIsTheEarlierHit) {
+TEST(Sides, BothReturnsTheEarlierHit) {
   int from_below = 0, from_above = 0;
   for_all([](const HeightTarget&) {},
           [&](const HeightTarget& target, const Ray& ray) {
@@ -149,7 +149,7 @@ TEST(Sides, BothIsTheEarlierHit) {
 }
 
 // From hit to hit a ray passes the surface in turn from above and from below.
-TEST(Sides, BothGoesOnFromHitToHit) {
+TEST(Sides, BothAlternatesBetweenSides) {
   Random random(8);
   const HeightField field = test::hills(65, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
@@ -185,13 +185,13 @@ TEST(Sides, BothGoesOnFromHitToHit) {
   EXPECT_GT(passed, cases(5000, 500, 100));
 }
 
-TEST(HitFilters, LeaveOutHitsAndNothingElse) {
+TEST(HitFilters, RemoveOnlyRejectedHits) {
   int accepted = 0, none = 0;
   std::vector<Hit> all;
   for_all([](const HeightTarget&) {},
           [&](const HeightTarget& target, const Ray& ray) {
             all_hits_max_mip(target, ray, all);
-            // Hits in some cells, as a hash decides: of those that remain the first.
+            // Hits in cells selected by a hash; the first of the remaining ones counts.
             const auto counts = [](const Hit& hit) { return (hit.cell.col * 7 + hit.cell.row * 13) % 3 == 0; };
             const HitFilter accept = counts;
             const Hit hit = march_max_mip_by_rules(target, ray, HitRules{.accept = &accept});
@@ -203,7 +203,7 @@ TEST(HitFilters, LeaveOutHitsAndNothingElse) {
               none += !all.empty();
             }
             if (first == all.end() ? !hit : hit == *first) return;
-            // Where a ray touches several cells at once, the filter is asked for each.
+            // Where a ray touches several cells at once, the filter is called for each.
             const GridRay local = target.field->grid_from_world(ray);
             const double node = rounding_of_node_time(*target.field, local, 0);
             const bool beside = std::any_of(all.begin(), all.end(),
@@ -214,7 +214,7 @@ TEST(HitFilters, LeaveOutHitsAndNothingElse) {
   EXPECT_GT(none, 1000);
 }
 
-TEST(HitFilters, AreAskedInUnitsOfTheRay) {
+TEST(HitFilters, ReceiveTInUnitsOfTheRay) {
   const HeightField flat = HeightField::own(std::vector<float>(9 * 9), 9, 9);
   const MaxPyramid pyramid(flat);
   std::vector<double> asked;

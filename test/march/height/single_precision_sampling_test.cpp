@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shader text of the marches that take samples, compiled as C++ with floats: they do what their texts say.
+// The shader text of the sampling marches, compiled as C++ with floats: they follow their documentation.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -86,7 +86,7 @@ Marched marched_as(std::string_view name) {
 
 class SinglePrecisionSampling : public testing::TestWithParam<std::string> {};
 
-TEST_P(SinglePrecisionSampling, KeepsItsRule) {
+TEST_P(SinglePrecisionSampling, FollowsItsStepRule) {
   Counts counts;
   for (const Pair& pair : pairs()) {
     Random random(1000 * pair.field + pair.ray);
@@ -94,12 +94,12 @@ TEST_P(SinglePrecisionSampling, KeepsItsRule) {
       check(marched_as(GetParam()), spiteful_fields()[pair.field], spiteful_rays()[pair.ray], random, counts);
   }
   EXPECT_GT(counts.hits, 100 * kRaysPerField);
-  // Those that start or come in below the ground.
+  // Those that start or enter below the ground.
   EXPECT_LT(counts.doubtful, counts.asked / 2);
 }
 
 // Over several stretches.
-TEST_P(SinglePrecisionSampling, KeepsItsRuleOnLongWays) {
+TEST_P(SinglePrecisionSampling, FollowsItsStepRuleOnLongRays) {
   Counts counts;
   Random random(7);
   for (const FieldKind& fields : wide_fields()) {
@@ -115,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
                          testing::Values("naive", "relaxed", "lipschitz", "fixed-step", "fixed-step, plain"),
                          [](const auto& of) { return test_name(of.param); });
 
-// In a stretch that begins anywhere on a ray, points are where numerics.md says.
-TEST(SinglePrecisionSampling, StretchesBeginAnew) {
+// In a stretch that starts anywhere on a ray, points are where numerics.md says.
+TEST(SinglePrecisionSampling, RestartsMidRay) {
   constexpr int kCols = 131'000, kRays = 4000;
   constexpr double kUnit = 0x1p-24;
   const HeightField field = HeightField::own(std::vector<float>(kCols * 3, 0.0F), kCols, 3);
@@ -187,7 +187,7 @@ TEST(SinglePrecisionSampling, LipschitzStopsAboveTheGround) {
   EXPECT_GT(hits, kRays / 2);
 }
 
-// `lipschitz` over holes: else it would take another step in a block that it has left.
+// `lipschitz` over holes: otherwise it would take another step in a block that it has left.
 TEST(SinglePrecisionSampling, LeavesBlocks) {
   constexpr int kSide = 129, kRays = 4000;
   const HeightField field = HeightField::own(std::vector<float>(kSide * kSide, 0.0F), kSide, kSide);

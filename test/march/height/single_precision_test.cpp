@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shader text of max-mip, compiled as C++ with floats, on the oracle's fields and rays: no GPU is needed to know
-// that its decisions are right. RoundingJudge says what an answer may be.
+// The shader text of max-mip, compiled as C++ with floats, on the oracle's fields and rays: no GPU is needed to verify
+// its decisions. RoundingJudge decides which answers are valid.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ const int kRaysPerPair = cases(2'500, 500, 40);
 const int kWideRays = cases(500, 100, 20);
 constexpr int kRaysPerField = 250;
 
-// Rays that the lean pass has left to the exact text, of all.
+// Number of rays that the lean pass has left to the exact text.
 std::size_t lean_rays = 0, doubtful_rays = 0;
 
 // Both passes of a device.
@@ -44,7 +44,7 @@ glsl::ScarpHit march_lean(const glsl::ScarpField& ground, const glsl::ScarpRay& 
   return glsl::scarp_max_mip(ground, ray, any);
 }
 
-// Casts rays of a kind over fields of a kind; returns how many have another status than in double.
+// Casts rays of a kind over fields of a kind; returns the number of those whose status differs from that in double.
 int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int rays, bool lean) {
   Random random(seed);
   int other_status = 0, bad = 0;
@@ -70,7 +70,7 @@ int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int ra
       other_status += exact.status != hit.status;
       std::string objection = judge.objection(hit);
       if (objection.empty() && blocked != static_cast<bool>(hit)) objection = "any-hit contradicts closest-hit";
-      // The judge must be no stricter than double precision.
+      // The judge must not be stricter than double precision.
       const std::string self = judge.objection(exact);
       if (!self.empty()) objection += " / the march in double: " + self;
       if (objection.empty()) continue;
@@ -84,17 +84,17 @@ int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int ra
 
 class SinglePrecision : public testing::TestWithParam<Pair> {};
 
-TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
+TEST_P(SinglePrecision, MaxMipMatchesTheSurface) {
   const auto [field, ray] = GetParam();
   const RayKind& kind = spiteful_rays()[ray];
   const int others = check(spiteful_fields()[field], kind, 1000 * field + ray, kRaysPerPair, false);
-  // Rays that were not aimed at anything meet a rounding tie once in a blue moon.
+  // Rays that are not aimed at anything rarely meet a rounding tie.
   if (kind.name == "random" || kind.name == "from above") {
     EXPECT_LE(others, std::max(1, kRaysPerPair / 1000));
   }
 }
 
-TEST_P(SinglePrecision, BothPassesDecideAsTheSurfaceDoes) {
+TEST_P(SinglePrecision, BothPassesMatchTheSurface) {
   const auto [field, ray] = GetParam();
   check(spiteful_fields()[field], spiteful_rays()[ray], 1000 * field + ray, kRaysPerPair, true);
   RecordProperty("doubtful", std::to_string(doubtful_rays) + " of " + std::to_string(lean_rays));
@@ -102,8 +102,8 @@ TEST_P(SinglePrecision, BothPassesDecideAsTheSurfaceDoes) {
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, SinglePrecision, testing::ValuesIn(pairs()), name_of_pair);
 
-// Rays that a shader makes: begin and direction in floats, clipped to the field in floats.
-TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
+// Rays computed by a shader: start and direction in floats, clipped to the field in floats.
+TEST(SinglePrecisionFromFloats, MaxMipMatchesTheSurface) {
   for (const FieldKind& fields : spiteful_fields()) {
     for (const std::size_t kind : {0, 1, 2, 3}) {
       Random random(kind);
@@ -131,7 +131,7 @@ TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
   }
 }
 
-TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
+TEST(SinglePrecisionAcrossTiles, MaxMipMatchesTheSurface) {
   for (std::size_t field = 0; field < wide_fields().size(); ++field) {
     for (std::size_t ray = 0; ray < rays_across_tiles().size(); ++ray) {
       for (const bool lean : {false, true})
@@ -142,7 +142,7 @@ TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
 
 // Any-hit looks ahead: it agrees with closest-hit all the same, and reads less. Levels and rising rays have no other
 // early answer.
-TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
+TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithClosestHit) {
   const int kRays = cases(50'000, 10'000, 500);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const HeightField field = hills(2100, 900, surface);
@@ -154,7 +154,7 @@ TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
     std::uint64_t hits = 0, closest_fetches = 0, any_fetches = 0;
     for (int i = 0; i < kRays; ++i) {
       Ray ray = along_hills(field, random, i % 2);
-      // Some end just before what stops them, or just behind.
+      // Some end just in front of their hit, or just behind it.
       const Hit first = march_max_mip({&field, &pyramid}, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
       const DeviceRay prepared = device_ray(field, ray);
@@ -172,8 +172,8 @@ TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
   }
 }
 
-// Level ground as high as every block's minimum: what goes along it from its surface is not under it.
-TEST(SinglePrecisionLookingAhead, GroundThatARayRunsAlongIsNotInItsWay) {
+// Level ground as high as every block's minimum: a ray along it from its surface is not below it.
+TEST(SinglePrecisionLookingAhead, IgnoresGroundThatARayRunsAlong) {
   constexpr int kCols = 2100, kRows = 900;
   std::vector<std::int16_t> samples(std::size_t{kCols} * kRows, 100);
   samples.back() = 200;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fields and rays chosen to hurt: every kind that height-field engines are known to get wrong.
+// Adversarial fields and rays: every kind that height-field engines are known to get wrong.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ using Random = std::mt19937_64;
 double uniform(Random& random, double low, double high);
 int whole(Random& random, int low, int high);  // both ends included
 
-/// What a field has, and what a kind of rays aims at: a sum of these.
+/// Features of a field, and targets of a kind of rays: a sum of these.
 enum Feature : unsigned { kPlain = 0, kHoles = 1, kTriangles = 2, kWraps = 4 };
 
 struct FieldKind {
@@ -26,7 +26,7 @@ struct FieldKind {
   unsigned has = kPlain;
 };
 
-/// Over a field that wraps round the range of all rays has an end.
+/// Over a wrapped field the range of all rays is finite.
 struct RayKind {
   std::string_view name;
   std::function<Ray(const HeightField&, Random&)> make;
@@ -34,17 +34,17 @@ struct RayKind {
 };
 
 const std::vector<FieldKind>& spiteful_fields();
-/// Fields of more than one tile of 1,024 cells, on which marches in single precision begin anew.
+/// Fields of more than one tile of 1,024 cells, on which marches in single precision start a new frame.
 const std::vector<FieldKind>& wide_fields();
 const std::vector<RayKind>& spiteful_rays();
 /// Rays over wide fields: long ways, through nodes and along lines where tiles meet.
 const std::vector<RayKind>& rays_across_tiles();
 
-/// Heights at random up to `most` above or below 0, in 2 to most_side samples per side and cells of 0.3 to 2 m; a share
-/// of the samples are holes. `settings` but for the cells.
+/// Heights at random up to `most` above or below 0, in 2 to most_side samples per side and cells of 0.3 to 2 m; some of
+/// the samples are holes. `settings` except for the cells.
 HeightField rugged(Random& random, int most_side, double most, double hole_share, HeightFieldSettings settings);
 
-/// Hills of several widths: rays along the ground go far before they are stopped, and any-hit looks ahead.
+/// Hills of several widths: rays along the ground go far before they hit, and any-hit looks ahead.
 HeightField hills(int cols, int rows, Surface surface);
 /// A ray along them, from their surface or from some metres about it.
 Ray along_hills(const HeightField& field, Random& random, bool from_surface);

@@ -34,7 +34,7 @@ Ray towards(dvec3 from, dvec3 to) {
 
 double period(const HeightField& f) { return std::max(f.width(), f.depth()); }
 
-// Over a field that wraps round a ray needs an end: some periods beyond t = 1, where most kinds aim.
+// Over a wrapped field a ray needs an end: some periods beyond t = 1, where most kinds aim.
 Ray ended(const HeightField& f, Random& r, Ray ray, double periods = 8) {
   if (!f.wraps() || std::isfinite(ray.t_max)) return ray;
   const double speed = std::max(std::abs(ray.direction.x), std::abs(ray.direction.y));
@@ -43,7 +43,8 @@ Ray ended(const HeightField& f, Random& r, Ray ray, double periods = 8) {
   return ray;
 }
 
-// A point on the surface, in a cell that is no hole, where place(col, row) puts it; nothing if none was found.
+// Sets the origin to a point on the surface, in a cell with ground, at place(col, row); returns false if none was
+// found.
 template <class Place>
 bool on_surface(const HeightField& f, Random& r, Ray& ray, const Place& place) {
   for (int attempt = 0; attempt < 20 && f.has_cells(); ++attempt) {
@@ -70,7 +71,7 @@ bool on_surface(const HeightField& f, Random& r, Ray& ray) {
   });
 }
 
-// The height of the surface (in metres) at a point in grid units; over a hole and outside any height of the field.
+// The height of the surface (in metres) at a point in grid units; over a hole and outside, any height of the field.
 double ground(const HeightField& f, Random& r, double col, double row) {
   const dvec3 p = f.world_from_grid(col, row, 0);
   return f.height(p.x, p.y).value_or(uniform(r, low(f), high(f)));
@@ -81,7 +82,7 @@ dvec3 point(const HeightField& f, Random& r, double col, double row) {
   return p;
 }
 
-// A nodata sample; any one when there is none.
+// A nodata sample; any sample if there is none.
 dvec2 hole(const HeightField& f, Random& r) {
   return f.visit([&](const auto& grid) {
     dvec2 at{whole(r, 0, f.cols() - 1), whole(r, 0, f.rows() - 1)};
@@ -99,7 +100,7 @@ Ray through(const HeightField& f, Random& r, dvec3 to) {
   from.z += uniform(r, -0.2, 1) * tall(f) * whole(r, 0, 1);
   return towards(from, to);
 }
-// Between two points, beginning some lengths before the first.
+// Between two points, starting some lengths before the first.
 Ray along(Random& r, dvec3 from, dvec3 to) {
   Ray ray = towards(from, to);
   ray.origin -= ray.direction * static_cast<double>(whole(r, 0, 4));
@@ -178,7 +179,7 @@ const std::vector<RayKind>& endless_rays() {
          const dvec3 to = whole(r, 0, 1) ? node(f, r) : anywhere_in(f, r);
          const double azimuth = uniform(r, 0, 6.2832), rise = uniform(r, 0, 0.3);
          Ray ray = towards(to + 1e7 * dvec3(std::cos(azimuth), std::sin(azimuth), rise), to);
-         // Between there and here lies nothing, or one copy after the other.
+         // Between the two there is nothing, or one copy after the other.
          if (f.wraps()) ray.t_min = 1 - 4e-7 * period(f), ray.t_max = 1 + 4e-7 * period(f);
          return ray;
        }},
@@ -221,7 +222,7 @@ const std::vector<RayKind>& endless_rays() {
            return dvec2(whole(r, 0, f.cell_cols() - 1) + u / 4.0, whole(r, 0, f.cell_rows() - 1) + v / 4.0);
          };
          if (!on_surface(f, r, ray, place)) return ray;
-         // Along lines, diagonals and anything else; in the surface, a little out of it, or level.
+         // Along lines, diagonals and anything else; in the surface, slightly off it, or level.
          const double azimuth = uniform(r, 0, 6.2832);
          dvec2 d{std::cos(azimuth), std::sin(azimuth)};
          if (whole(r, 0, 2))

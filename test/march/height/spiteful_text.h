@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spiteful fields and rays in pairs, for tests that run once for each pair; and rays and hits as text, for failures.
+// Adversarial fields and rays in pairs, for tests that run once for each pair; and rays and hits as text, for failures.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ struct Pair {
   std::size_t field, ray;
 };
 
-/// All rays over all fields that have what they aim at.
+/// All rays over all fields that have their targets.
 inline std::vector<Pair> pairs() {
   std::vector<Pair> pairs;
   for (std::size_t field = 0; field < spiteful_fields().size(); ++field) {

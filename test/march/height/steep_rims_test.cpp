@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nearly vertical rays at borders and rims of holes: they hit where they are as high as the rim, by every query.
+// Nearly vertical rays at borders and rims of holes: they hit at the height of the rim, by every query.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,12 +24,12 @@ constexpr double kSeamOfScenes = 0x1p-26;
 const double kCosineOf90 = std::cos(std::numbers::pi / 2);
 // Fields have a relief of 5 at most, and rays start at 20 at most.
 constexpr double kMostRelief = 5, kMostHeight = 20;
-// A ray at a border moves over the ground beside it by its lean, 2^-30 at most, in a time of kMostHeight; in cells of
-// 0.1 at least. By so much of the relief the ground may differ from the edge, and rays fall by 1 in a unit of t.
+// A ray at a border moves over the ground beside it by its slant, 2^-30 at most, in a time of kMostHeight; in cells of
+// 0.1 at least. The ground may differ from the edge by this fraction of the relief, and rays fall by 1 per unit of t.
 constexpr double kMostLean = 0x1p-30, kLeastCell = 0.1;
 constexpr double kOff = kMostLean * kMostHeight / kLeastCell * kMostRelief;
 
-// The cosine of 90 degrees, the noise of rotations, and what is too short to move a ray at all.
+// The cosine of 90 degrees, the noise of rotations, and components too small to move a ray at all.
 std::vector<double> leans() {
   std::vector<double> all{0, kCosineOf90, 1e-16, 1e-18, 1e-20, 1e-300};
   for (int power = 0; power <= 970; power += 97) all.push_back(std::ldexp(kMostLean, -power));
@@ -38,7 +38,7 @@ std::vector<double> leans() {
   return all;
 }
 
-// Rays over one field and what they hit.
+// Rays over one field and their hits.
 class SteepRays {
  public:
   explicit SteepRays(const HeightField& field, double seam = 0)
@@ -46,10 +46,10 @@ class SteepRays {
 
   const HeightTarget& target() const { return target_; }
   void expect_hit(const Ray& ray, double t) { rays_.push_back(ray), expected_.push_back(t); }
-  // No hit, whatever the status.
+  // No hit, with any status.
   void expect_none(const Ray& ray) { expect_hit(ray, -1); }
 
-  // Asks all queries; at most `off` away in t.
+  // Runs all queries; at most `off` away in t.
   void check(double off = kOff) const {
     std::vector<Hit> batch(rays_.size()), all;
     std::vector<std::uint8_t> blocked(rays_.size());
@@ -98,7 +98,7 @@ TEST(SteepRims, HitTheBorderWithNearlyVerticalRays) {
   SteepRays in_a_scene(flat, kSeamOfScenes), alone(flat);
   in_a_scene.expect_hit(ray, 10);
   in_a_scene.check();
-  // Beside the field by far more than rounding: it comes in 90 m below the ground.
+  // Outside of the field by far more than rounding: it enters 90 m below the ground.
   alone.expect_none(ray);
   alone.check();
 }
@@ -117,7 +117,7 @@ TEST(SteepRims, StartsOnTheBorderFarBelowGroundHitNothing) {
   }
 }
 
-TEST(SteepRims, LeansTooSmallToMoveTheRayChangeNothing) {
+TEST(SteepRims, IgnoreNegligibleLeans) {
   const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
   SteepRays rays(flat);
   for (const double lean : leans()) {
@@ -134,7 +134,7 @@ TEST(SteepRims, LeansTooSmallToMoveTheRayChangeNothing) {
 // The height of an edge: samples of both ends at a share of its length.
 double on_edge(float a, float b, double share) { return a + share * (static_cast<double>(b) - a); }
 
-TEST(SteepRims, HitAllBordersAtTheHeightOfTheirEdges) {
+TEST(SteepRims, HitAllBordersAtTheirEdgeHeight) {
   constexpr int kCols = 11, kRows = 14;
   Random random(7);
   std::vector<float> samples(kCols * kRows);
@@ -149,7 +149,7 @@ TEST(SteepRims, HitAllBordersAtTheHeightOfTheirEdges) {
         for (const double lean : leans()) {
           const int row = whole(random, 0, kRows - 2), col = whole(random, 0, kCols - 2);
           const double share = uniform(random, 0.01, 0.99), high = uniform(random, 10, 20);
-          // On the border, and so far before it that it is there when it comes to the ground.
+          // On the border, and far enough in front of it that it is there when it reaches the ground.
           for (const bool before : {false, true}) {
             for (const bool far : {false, true}) {
               const auto add = [&](dvec3 p, dvec3 d, double ground) {
@@ -191,7 +191,7 @@ HeightField with_hole(const std::vector<float>& samples, int side, double cell, 
                            .solid = solid});
 }
 
-TEST(SteepRims, HitTheRimsOfHolesAtTheHeightOfTheirEdges) {
+TEST(SteepRims, HitHoleRimsAtTheirEdgeHeight) {
   constexpr int kSide = 24;
   Random random(8);
   std::vector<float> samples(kSide * kSide);
@@ -227,7 +227,7 @@ TEST(SteepRims, HitTheRimsOfHolesAtTheHeightOfTheirEdges) {
   }
 }
 
-// A ray along a rim, slower across it than rounding moves the line, sinks through the rim between two nodes.
+// A ray along a rim, slower across it than rounding of the line, sinks through the rim between two nodes.
 TEST(SteepRims, AreHitByRaysAlongThem) {
   constexpr int kSide = 24;
   const std::vector<float> flat(kSide * kSide);
@@ -251,7 +251,7 @@ TEST(SteepRims, AreHitByRaysAlongThem) {
 
 // From the ground into the hole, not so steep that they are followed all the way: rounding may let them pass the line
 // above the ground through which they sink behind it.
-TEST(SteepRims, AreHitByRaysThatLeaveTheGroundThere) {
+TEST(SteepRims, AreHitByRaysThatLeaveTheGround) {
   constexpr int kSide = 24;
   Random random(9);
   std::vector<float> samples(kSide * kSide);
@@ -276,7 +276,7 @@ TEST(SteepRims, AreHitByRaysThatLeaveTheGroundThere) {
 }
 
 // Level rays that start below the ground, along the rim of the hole and beside it by rounding. They touch the lowest
-// nodes from below, which is no hit.
+// nodes from below, which does not count as a hit.
 TEST(SteepRims, AreNotHitFromBelow) {
   constexpr int kSide = 24;
   std::vector<float> samples(kSide * kSide, 4);
@@ -302,7 +302,7 @@ TEST(SteepRims, AreNotHitFromBelow) {
 }
 
 // Nodes at col * cell are on the rim although their coordinates are rounded.
-TEST(SteepRims, NodesOnThemHaveHeights) {
+TEST(SteepRims, HaveHeightsAtTheirNodes) {
   constexpr int kCols = 300, kRows = 8;
   for (const double cell : {7.7, 0.7, 0.1, 92.6, 30.7, 0.01, 1.23, 1.0 / 3, 1.0, 10.0}) {
     for (int hole = 2; hole + 3 < kCols; hole += 7) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Targets without a part that a march needs are refused.
+// Targets that lack a part required by a march are rejected.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,7 +14,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Targets, WithoutAPartAreRefusedByEveryQuery) {
+TEST(Targets, MissingAPartAreRejectedByEveryQuery) {
   const HeightField field = HeightField::own(std::vector<float>(25, 1.0f), 5, 5);
   const MaxPyramid pyramid(field);
   std::vector<Ray> rays(40, Ray{{1.5, 1.5, 9}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is in the textures of scarp/march/height/textures.glsl.h and max_mip_easy.glsl.h, level by level, rows one after
+// Content of the textures of scarp/march/height/textures.glsl.h and max_mip_easy.glsl.h, level by level, rows one after
 // the other.
 #pragma once
 

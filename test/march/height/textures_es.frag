@@ -1,6 +1,6 @@
 #version 300 es
 // SPDX-License-Identifier: MIT
-// All marches over textures, in the words of GLSL ES 3.0.
+// All marches over textures, as GLSL ES 3.0.
 precision highp float;
 precision highp int;
 
@@ -11,7 +11,7 @@ uniform int march;
 out vec4 colour;
 
 #include "scarp/march/height/textures.glsl.h"
-// The marches ask the textures for their ground.
+// The marches read their ground from the textures.
 #include "scarp/march/height/float_ray.glsl.h"
 #include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"

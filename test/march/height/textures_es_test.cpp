@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The installed text for WebGL 2, run as GLSL ES 3.0 by EGL without a window: rays of floats (scarp_ray_from), closest
 // hit and any hit over textures, judged as those of the same text in C++. ES has no word for `precise`: the bound holds
-// as far as the driver's compiler leaves the arithmetic alone, which is seen here.
+// as long as the driver's compiler does not change the arithmetic, which is tested here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,7 +80,7 @@ class TexturesAsEs : public EsTest {
   }
 };
 
-TEST_F(TexturesAsEs, MaxMipDecidesAsTheSurfaceDoes) {
+TEST_F(TexturesAsEs, MaxMipMatchesTheSurface) {
   int hits = 0;
   for (const FieldKind& fields : spiteful_fields()) {
     Random random(17);
@@ -92,7 +92,7 @@ TEST_F(TexturesAsEs, MaxMipDecidesAsTheSurfaceDoes) {
     std::vector<Ray> rays;
     std::vector<double> speeds;
     while (rays.size() < kPixels) {
-      // The first four kinds are free and begin at 0.
+      // The first four kinds are free and start at 0.
       const auto made = shader_ray(field, spiteful_rays()[rays.size() % 4].make(field, random));
       if (!made) continue;
       const auto [origin, direction, speed, end, ray] = *made;

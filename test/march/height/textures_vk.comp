@@ -20,7 +20,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Hi
 #define scarp_nodata push.nodata
 
 #include "scarp/march/height/textures.glsl.h"
-// The marches ask the textures.
+// The marches read the textures.
 #include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
 

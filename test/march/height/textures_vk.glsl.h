@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What textures_vk.comp and its test agree upon.
+// Shared by textures_vk.comp and its test.
 #ifndef TEST_MARCH_TEXTURES_VK_GLSL_H
 #define TEST_MARCH_TEXTURES_VK_GLSL_H
 

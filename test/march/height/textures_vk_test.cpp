@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The marches over textures, as WebGL has them, on a Vulkan device: the answers are those over buffers, bit for bit,
-// because it is the same text on the same numbers. What those over buffers may be, parity_vk_test.cpp asks the judge.
+// because it is the same text on the same numbers. parity_vk_test.cpp judges those over buffers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ constexpr std::uint32_t kWords[] = {
 };
 constexpr std::uint32_t kThreads = 64;
 
-// Commands of the test's own: the station knows neither images nor descriptors.
+// The test has its own commands: the station supports neither images nor descriptors.
 template <class Record>
 void run(Device::Impl& device, const Record& record) {
   vk::raii::CommandBuffers one(device.device, {*device.pool, vk::CommandBufferLevel::ePrimary, 1});
@@ -188,11 +188,11 @@ std::vector<Realisation> realisations(double slope) {
   return all;
 }
 
-TEST(TexturesLayout, IsThatOfTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
+TEST(TexturesLayout, MatchesTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
 
 class TexturesOnDevice : public OnDevice {};
 
-TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
+TEST_F(TexturesOnDevice, EveryMarchMatchesBuffers) {
   constexpr int kRaysPerKind = 8;
   std::map<std::string_view, DeviceQueries> over_buffers;
   std::map<std::pair<std::string_view, bool>, TextureMarch> over_textures;
@@ -226,7 +226,7 @@ TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
       for (const Ray& ray : rays) {
         prepared.push_back(of.prepare(field, ray));
         packed.push_back(prepared.back().ray);
-        // There is nothing to march.
+        // There are no cells.
         if (!prepared.back().marches) packed.back().exit = -1;
       }
       const DeviceBuffer on_device(device(), packed.size() * sizeof packed[0], "rays");
@@ -252,7 +252,7 @@ TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
       const std::vector<Hit> hits = ask(false);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         hit_counts[of.name] += static_cast<bool>(hits[i]);
-        // Over buffers the host answers rays that stay at a line.
+        // Over buffers the host traces rays that stay on a line.
         if (prepared[i].lingers) continue;
         ASSERT_TRUE(hits[i].status == expected[i].status && hits[i].t == expected[i].t &&
                     hits[i].cell == expected[i].cell && hits[i].wall == expected[i].wall)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shaders of marches read in their loops, from their SPIR-V: drivers do not move loads through an address out of
-// loops, so the ground's description has to be read before them.
+// Checks the loads in the loops of march shaders, from their SPIR-V: drivers do not hoist loads through an address out
+// of loops, so the ground's description must be read before them.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct Loads {
   int elsewhere = 0;
 };
 
-// Loads of members of GroundBuffers, but of its table of levels, which a march reads by its level.
+// Loads of members of GroundBuffers, except its table of levels, which a march indexes by level.
 Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
   std::map<std::uint32_t, Offsets> offsets;
   std::map<std::uint32_t, std::uint32_t> constants, type_of, member_of_chain;
@@ -59,7 +59,7 @@ Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
   return loads;
 }
 
-TEST(TurnLoads, MarchesReadTheGroundBeforeTheirLoops) {
+TEST(TurnLoads, MarchesLoadTheGroundOutsideLoops) {
   for (const ShaderProgram& shader : DeviceHeightMarch::shaders()) {
     const Loads loads = loads_of_ground(shader.spirv);
     EXPECT_EQ(loads.in_loops, 0) << shader.file << ", " << shader.variant;

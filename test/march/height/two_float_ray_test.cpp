@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays that shaders make in two floats per number, and slopes of the ground for shading: the text as C++.
+// Rays that shaders compute in two floats per number, and slopes of the ground for shading: the text as C++.
 #include "scarp/march/height/two_float_ray.glsl.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 
 const int kRaysPerPair = cases(1000, 250, 50);
 constexpr int kRaysPerField = 250;
-// Of times and places, see the header.
+// Bounds of times and positions: see the header.
 constexpr double kUnit = 0x1p-44;
 
 void split(const dvec3& value, glsl::vec3& high, glsl::vec3& low) {
@@ -37,7 +37,7 @@ glsl::ScarpTwoFloat two_floats(double t, int exponent) {
   return {static_cast<float>(time), static_cast<float>(time - static_cast<double>(static_cast<float>(time)))};
 }
 
-// The answer for a ray whose range begins at 0 or later.
+// The answer for a ray whose range starts at 0 or later.
 Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, int turns) {
   const GridRay local = field.grid_from_world(ray);
   const dvec3& d = local.direction;
@@ -72,7 +72,7 @@ Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, i
 
 class TwoFloatRays : public testing::TestWithParam<Pair> {};
 
-TEST_P(TwoFloatRays, MeetWhatTheSurfaceHas) {
+TEST_P(TwoFloatRays, MatchTheSurface) {
   const auto [field_kind, ray_kind] = GetParam();
   const FieldKind& fields = spiteful_fields()[field_kind];
   const RayKind& rays = spiteful_rays()[ray_kind];
@@ -85,7 +85,7 @@ TEST_P(TwoFloatRays, MeetWhatTheSurfaceHas) {
     glsl::host_pyramid = &pyramid;
     for (int i = 0; i < std::min(kRaysPerPair, kRaysPerField); ++i) {
       Ray ray = rays.make(field, random);
-      // Shaders begin their rays at 0, or some cells on.
+      // Shaders start their rays at 0, or some cells later.
       const GridRay local = field.grid_from_world(ray);
       const double skipped = ray.start == RayStart::on_surface || i % 2 == 0 ? 0 : 3 / length(local.direction);
       ray.origin = ray.at(ray.t_min - skipped);
@@ -105,7 +105,7 @@ TEST_P(TwoFloatRays, MeetWhatTheSurfaceHas) {
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, TwoFloatRays, testing::ValuesIn(pairs()), name_of_pair);
 
-TEST(TwoFloatRay, StepsGoOnWhereTheyWereInterrupted) {
+TEST(TwoFloatRay, ResumesAfterAnInterruption) {
   Random random(5);
   for (const FieldKind& fields : spiteful_fields()) {
     const HeightField field = fields.make(random);
@@ -129,7 +129,7 @@ TEST(TwoFloatRay, StepsGoOnWhereTheyWereInterrupted) {
   }
 }
 
-TEST(SinglePrecisionSlopes, AreThoseOfTheField) {
+TEST(SinglePrecisionSlopes, MatchTheField) {
   Random random(9);
   int compared = 0;
   for (const FieldKind& fields : spiteful_fields()) {
@@ -147,7 +147,7 @@ TEST(SinglePrecisionSlopes, AreThoseOfTheField) {
         return normalize(
             dvec3(-double{slope.x} * metres / settings.cell_x, double{slope.y} * metres / settings.cell_y, 1.0));
       };
-      // Eight roundings of differences, relative to the largest sample: an angle of so many times the slope.
+      // Eight roundings of differences, relative to the largest sample: an angle of this multiple of the slope.
       const double steepest = std::max(std::abs(field.min_sample()), std::abs(field.max_sample())) * metres /
                               std::min(settings.cell_x, settings.cell_y);
       const double bound = 16 * 0x1p-24 * (1 + steepest);

@@ -42,7 +42,7 @@ class Walls : public testing::Test {
   MaxPyramid pyramid_;
 };
 
-TEST_F(Walls, OfTheBorderFaceOutwards) {
+TEST_F(Walls, AtTheBorderFaceOutwards) {
   expect({-3, 1.3, 5}, {1, 0, 0}, {-1, 0, 0});
   expect({9, 1.3, 5}, {-2, 0, 0}, {1, 0, 0});
   expect({1.3, -3, 5}, {0, 1, 0}, {0, -1, 0});
@@ -51,7 +51,7 @@ TEST_F(Walls, OfTheBorderFaceOutwards) {
   expect({0.5, -3, 7}, {0.1, 1, -0.5}, {0, -1, 0});
 }
 
-TEST_F(Walls, OfHolesFaceTheHole) {
+TEST_F(Walls, AroundHolesFaceTheHole) {
   expect({2, 2.3, 5}, {1, 0, 0}, {-1, 0, 0});
   expect({2, 2.3, 5}, {-1, 0.2, 0}, {1, 0, 0});
   expect({1.7, 2, 5}, {0, 1, 0}, {0, -1, 0});

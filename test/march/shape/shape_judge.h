@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays against shapes, and what `sphere-trace` in single precision may tell of them: the surface is met within `delta`.
+// Rays against shapes, and the valid answers of `sphere-trace` in single precision: the surface is hit within `delta`.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,8 @@
 
 namespace scarp::test {
 
-/// At what is within 2 or 12 m of the origin, from up to 40 m away, with directions of any length; some begin inside.
+/// Aimed at positions within 2 or 12 m of the origin, from up to 40 m away, with directions of any length; some start
+/// inside.
 inline Ray shape_ray(FunctionRandom& random) {
   const auto point = [&](double reach) {
     return dvec3(random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach));
@@ -27,7 +28,7 @@ inline Ray shape_ray(FunctionRandom& random) {
   return ray;
 }
 
-/// What is wrong with `hit`; empty: nothing.
+/// Returns why `hit` is wrong, or an empty string.
 inline std::string shape_objection(const DistanceField& shape, const Ray& ray, double delta, const Hit& hit) {
   if (hit.status == HitStatus::exhausted) return {};
   const double tolerance = SphereTraceSettings{}.tolerance, speed = length(ray.direction);
@@ -38,7 +39,7 @@ inline std::string shape_objection(const DistanceField& shape, const Ray& ray, d
   }
   const Hit truth = march_sphere_trace(shape, ray);
   if (!truth || (hit && hit.t <= truth.t)) return {};
-  // A ray that begins inside comes out where it is farther than delta.
+  // A ray that starts inside leaves where it is farther than delta.
   if (hit.status == HitStatus::below) {
     bool outside = false;
     for (int i = 0; i <= 1000; ++i)

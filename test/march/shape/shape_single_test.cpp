@@ -70,7 +70,7 @@ constexpr int kPositions = 200, kRays = 20;
 glsl::ScarpSphereTrace settings(const ShapeSingleRounding& rounding) {
   return {1e-6f, 1024, 1 << 30, static_cast<float>(shape_ray_growth(rounding))};
 }
-// Of a ray, where it is off most.
+// Largest error along a ray.
 double most_off(const ShapeSingleRounding& rounding, const glsl::ScarpFunctionRay& ray) {
   return static_cast<double>(ray.rounding) +
          shape_ray_growth(rounding) * static_cast<double>(ray.speed) * static_cast<double>(ray.exit);
@@ -102,7 +102,7 @@ void expect_values(const std::string& name, const Shape& shape, FunctionRandom& 
   }
 }
 
-TEST(ShapesInShaders, ValuesAreWithinTheirBound) {
+TEST(ShapesInShaders, ValuesStayWithinTheirBound) {
   FunctionRandom random(1);
   double worst = 0;
   for (const NamedShape& named : shape_zoo()) expect_values(named.name, named.shape, random, worst);
@@ -113,7 +113,7 @@ TEST(ShapesInShaders, ValuesAreWithinTheirBound) {
   fmt::print("values off by at most {:.2f} of the bound\n", worst);
 }
 
-TEST(ShapesInShaders, MarchesTellWhatSinglePrecisionAllows) {
+TEST(ShapesInShaders, MarchesMatchWithinSinglePrecision) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     const ShapeWords words = shape_words(field.program());
@@ -140,7 +140,7 @@ TEST(ShapesInShaders, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
-TEST(ShapesInShaders, RaysLeaveTheSurface) {
+TEST(ShapesInShaders, RaysEscapeTheSurface) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     const ShapeWords words = shape_words(field.program());
@@ -166,7 +166,7 @@ TEST(ShapesInShaders, RaysLeaveTheSurface) {
         ++left;
         continue;
       }
-      // Out of a concave edge it may go into the solid at once.
+      // At a concave edge it may enter the solid at once.
       bool leaves = true;
       for (double metres = r; metres < 64 * r; metres *= 2)
         leaves = leaves && field.value(ray.at(metres / length(ray.direction))) > 0.1 * metres;

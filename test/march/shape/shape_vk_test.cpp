@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Distance fields on a Vulkan device: `sphere-trace` tells what single precision allows (shape_judge.h), any-hit agrees
-// with closest-hit, and validation has nothing to say.
+// Distance fields on a Vulkan device: `sphere-trace` returns what single precision allows (shape_judge.h), any-hit
+// agrees with closest-hit, and validation is silent.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -24,7 +24,7 @@ constexpr int kShapeRays = 500;
 constexpr int kShapeRays = 60;
 #endif
 
-// Making a shader for lavapipe takes longer than its rays: shape_single_test has all.
+// Compiling a shader for lavapipe takes longer than tracing its rays: shape_single_test covers all shapes.
 bool is_one_of(const std::string& name) {
   for (const char* one : {"turned box", "cone", "scaled, moved torus", "intersection", "smooth subtraction", "lattice",
                           "touching lattice of bounds", "forty solids", "quarry with holes", "cave"}) {
@@ -35,7 +35,7 @@ bool is_one_of(const std::string& name) {
 
 class ShapesOnDevice : public OnDevice {};
 
-TEST_F(ShapesOnDevice, MarchesTellWhatSinglePrecisionAllows) {
+TEST_F(ShapesOnDevice, MarchesMatchWithinSinglePrecision) {
   DeviceShapeQueries queries(device(), find_shape_march("sphere-trace"), {}, {.rays_at_once = 256});
   int shapes = 0;
   for (const NamedShape& named : shape_zoo()) {
@@ -67,7 +67,7 @@ TEST_F(ShapesOnDevice, MarchesTellWhatSinglePrecisionAllows) {
   EXPECT_EQ(shapes, 10);
 }
 
-TEST_F(ShapesOnDevice, RefuseWhatTakesTooLong) {
+TEST_F(ShapesOnDevice, RejectShapesThatTakeTooLong) {
   const auto function = std::make_shared<HeightFunction>(make_function(Fractal{.octaves = {24, 24, 24}}));
   std::vector<Shape> grounds;
   for (int i = 0; i < 100; ++i)
@@ -85,7 +85,7 @@ constexpr std::uint32_t kShapeShader[] = {
 #include "scarp/march/shape/sphere_trace.comp.inc"
 };
 
-TEST(ShapeBatchLayout, IsThatOfTheShaders) {
+TEST(ShapeBatchLayout, MatchesTheShaders) {
   using glsl::ShapeBatch, glsl::ScarpShapeInstruction;
   EXPECT_TRUE(has_struct(
       kShapeShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, grounds),
@@ -101,7 +101,7 @@ TEST(ShapeBatchLayout, IsThatOfTheShaders) {
   EXPECT_EQ(sizeof(ScarpShapeInstruction), 32u);
 }
 
-TEST(ShapeBatchLayout, NumbersMeanTheSame) {
+TEST(ShapeBatchLayout, ConstantsMatchTheShaders) {
   EXPECT_EQ(glsl::kScarpShapeEllipsoid, static_cast<std::uint32_t>(DistanceOp::ellipsoid));
   EXPECT_EQ(glsl::kScarpShapeFieldGround, static_cast<std::uint32_t>(DistanceOp::field_ground));
   EXPECT_EQ(glsl::kScarpShapeUnite, static_cast<std::uint32_t>(DistanceOp::unite));

@@ -87,14 +87,14 @@ void expect_nothing_lost(const Shape& shape, const DistanceField& field, const R
       counts.early += bool(hit);
       break;
     case FunctionVerdict::undecided:
-      // A touch, nearly one, or used-up evaluations: up to there it is proven that there is nothing.
+      // A touch, nearly one, or exhausted evaluations: the ray is proven to be free up to there.
       ++counts.undecided;
       if (hit) count_early(judge, hit);
       break;
   }
 }
 
-TEST(SphereTrace, LosesNothing) {
+TEST(SphereTrace, LosesNoHits) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(21);
@@ -106,7 +106,7 @@ TEST(SphereTrace, LosesNothing) {
     fmt::print("{}: {} crossings, {} clear, {} undecided, {} exhausted, {} early, {} inexact, {:.1f} steps\n",
                named.name, counts.crossings, counts.clear, counts.undecided, counts.exhausted, counts.early,
                counts.inexact, counts.steps / kRays);
-    // Enough of either kind for the test to mean something.
+    // Enough of either kind to make the test meaningful.
     EXPECT_GE(counts.crossings, kRays / 40) << named.name;
     EXPECT_GE(counts.clear, kRays / 40) << named.name;
     // Not only conservative, but right.
@@ -115,7 +115,7 @@ TEST(SphereTrace, LosesNothing) {
   }
 }
 
-RC_GTEST_PROP(SphereTrace, LosesNothingOnRandomTrees, (unsigned seed)) {
+RC_GTEST_PROP(SphereTrace, LosesNoHitsOnRandomTrees, (unsigned seed)) {
   FunctionRandom random(seed);
   const Shape shape = random_shape(random, 1 + static_cast<int>(seed % 4), true);
   const DistanceField field(shape);
@@ -134,7 +134,7 @@ std::optional<double> enter_quadratic(double a, double b, double c) {
   return t >= 0 ? std::optional(t) : std::nullopt;
 }
 
-TEST(SphereTrace, AgreesWithClosedForms) {
+TEST(SphereTrace, MatchesClosedForms) {
   FunctionRandom random(22);
   const DistanceField ball(make_shape(Sphere{2})), block(make_shape(Box{{3, 2, 1}})),
       floor(make_shape(HalfSpace{{0, 1, 2}, 1})), pillar(make_shape(Cylinder{1, 4}));
@@ -147,7 +147,7 @@ TEST(SphereTrace, AgreesWithClosedForms) {
     const auto expect = [&](const DistanceField& field, std::optional<double> t, double clearance) {
       if (field.value(o) <= 0) return;
       const Hit hit = march_sphere_trace(field, ray);
-      // Rays that pass nearer than the tolerance may be told either way.
+      // Rays that pass closer than the tolerance may be reported either way.
       if (t) {
         ++hits;
         ASSERT_TRUE(hit || clearance < 1e-4) << "lost the hit at " << *t;
@@ -158,7 +158,7 @@ TEST(SphereTrace, AgreesWithClosedForms) {
         ASSERT_EQ(hit.status, HitStatus::miss);
       }
     };
-    // How near to a graze: of the ball's discriminant, of the box's slabs, of the plane's slope.
+    // Closeness to a graze: of the ball's discriminant, of the box's slabs, of the plane's slope.
     const double a = dot(d, d), b = dot(o, d);
     const double nearest = length(o - d * (b / a));
     expect(ball, enter_quadratic(a, b, dot(o, o) - 4), std::abs(nearest - 2));
@@ -172,7 +172,7 @@ TEST(SphereTrace, AgreesWithClosedForms) {
     const dvec3 n = dvec3(0, 1, 2) / std::sqrt(5.0);
     const double down = dot(d, n), t = (1 - dot(o, n)) / down;
     expect(floor, down < 0 && t >= 0 ? std::optional(t) : std::nullopt, std::abs(down));
-    // Of an upright cylinder that is met from its side.
+    // An upright cylinder that is hit from its side.
     const double ha = d.x * d.x + d.y * d.y, hb = o.x * d.x + o.y * d.y, hc = o.x * o.x + o.y * o.y - 1;
     const auto side = enter_quadratic(ha, hb, hc);
     if (side && hc > 0 && std::abs(o.z + *side * d.z) < 3.9) {
@@ -183,7 +183,7 @@ TEST(SphereTrace, AgreesWithClosedForms) {
   EXPECT_GT(hits, kRays);
 }
 
-TEST(SphereTrace, CountsInLengthsOfTheDirection) {
+TEST(SphereTrace, MeasuresTInLengthsOfTheDirection) {
   const DistanceField ball(make_shape(Sphere{1}));
   for (const double scale : {1e-6, 1.0, 3e7}) {
     const Hit hit = march_sphere_trace(ball, {{0, 0, 5}, {0, 0, -scale}});
@@ -199,13 +199,13 @@ TEST(SphereTrace, CountsInLengthsOfTheDirection) {
   ray.t_min = 2.5;  // inside
   ray.t_max = 9;
   EXPECT_EQ(march_sphere_trace(ball, ray).status, HitStatus::below);
-  // From far away and without an end.
+  // From far away, with an infinite range.
   EXPECT_NEAR(march_sphere_trace(ball, {{1e7, 0, 0}, {-1, 0, 0}}).t, 1e7 - 1, 1e-8);
   EXPECT_EQ(march_sphere_trace(ball, {{1e7, 0, 0}, {1, 0, 0}}).status, HitStatus::miss);
   EXPECT_EQ(march_sphere_trace(ball, {{0, 0, 5}, {0, 1, 0}}).status, HitStatus::miss);
 }
 
-TEST(SphereTrace, RaysFromInsideHitWhatTheyMeetLater) {
+TEST(SphereTrace, RaysFromInsideHitLaterSurfaces) {
   const DistanceField two(
       make_shape(Union{{make_shape(Sphere{1}), make_shape(Moved{make_shape(Sphere{1}), {5, 0, 0}})}}));
   const Hit hit = march_sphere_trace(two, {{0.2, 0, 0}, {1, 0, 0}});
@@ -220,7 +220,7 @@ TEST(SphereTrace, RaysFromInsideHitWhatTheyMeetLater) {
   EXPECT_EQ(march_sphere_trace(block, {{0, 0, 0}, {0, 0, 1}}).status, HitStatus::below);
 }
 
-TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
+TEST(SphereTrace, RaysFromInsideContinueThroughSeams) {
   const auto block = [](double half, double z) { return make_shape(Moved{make_shape(Box{{1, 1, half}}), {0, 0, z}}); };
   // Two that touch, or nearly do, from z = 1 to 3, and one from -3 to -1.
   for (const double gap : {-1e-3, 0.0, 1e-13, 1e-11, 1e-9, 1e-8, 1e-6, 1e-4}) {
@@ -229,7 +229,7 @@ TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
     const Hit hit = march_sphere_trace(field, down);
     ASSERT_EQ(hit.status, HitStatus::hit) << gap;
     EXPECT_TRUE(occluded_sphere_trace(field, down)) << gap;
-    // At the lower block; or, where there is a gap and it is seen, behind it.
+    // At the lower block, or behind it if there is a visible gap.
     const double seam = 0.5, lower = 3.5;
     const bool in_gap = gap > 0 && std::abs(hit.t - seam) <= gap + kTolerance * seam;
     EXPECT_TRUE(in_gap || std::abs(hit.t - lower) <= kTolerance * lower) << gap << ": " << hit.t;
@@ -244,7 +244,7 @@ TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
   }
 }
 
-// A ray that a hit sends on: its origin is where the hit was told to be.
+// A ray from a hit: its origin is the reported position.
 Ray sent_on(const Ray& ray, const Hit& hit, const dvec3& direction) {
   Ray on;
   on.origin = ray.at(hit.t);
@@ -254,7 +254,8 @@ Ray sent_on(const Ray& ray, const Hit& hit, const dvec3& direction) {
   return on;
 }
 
-// Steps aside and along the ray have another normal: from an edge a ray may go into the solid and out again at once.
+// Steps sideways and along the ray have a different normal: from an edge a ray may enter the solid and leave it again
+// at once.
 bool is_on_edge(const DistanceField& field, const dvec3& p, const dvec3& direction) {
   const dvec3 n = field.normal(p);
   for (const dvec3& side : {cross(n, direction), direction - n * dot(n, direction)}) {
@@ -265,7 +266,7 @@ bool is_on_edge(const DistanceField& field, const dvec3& p, const dvec3& directi
   return false;
 }
 
-// Whether a ray from the surface goes into the solid, and comes out again, before t.
+// Whether a ray from the surface enters the solid, and leaves it again, before t.
 bool dips(const DistanceField& field, const Ray& ray, double t) {
   for (double at = t; at > 1e-9; at *= 0.98) {
     if (field.value(ray.at(at)) < -4 * field.rounding(30)) return true;
@@ -273,7 +274,7 @@ bool dips(const DistanceField& field, const Ray& ray, double t) {
   return false;
 }
 
-TEST(SphereTrace, RaysFromConvexSolidsGoFree) {
+TEST(SphereTrace, RaysFromConvexSolidsEscape) {
   FunctionRandom random(23);
   for (const NamedShape& named : shape_zoo()) {
     const bool convex = named.name == "sphere" || named.name == "box" || named.name == "rounded box" ||
@@ -306,7 +307,7 @@ TEST(SphereTrace, RaysFromConvexSolidsGoFree) {
   }
 }
 
-TEST(SphereTrace, RaysAlongAPlaneGoFree) {
+TEST(SphereTrace, RaysAlongAPlaneMiss) {
   const DistanceField floor(make_shape(HalfSpace{{0, 0, 1}, 0.3})), block(make_shape(Box{{3, 2, 1}}));
   for (const double angle : {0.0, 0.3, 1.0, 2.5}) {
     Ray ray{{0.5, 0.25, 0.3}, {std::cos(angle), std::sin(angle), 0}};
@@ -317,7 +318,7 @@ TEST(SphereTrace, RaysAlongAPlaneGoFree) {
   }
 }
 
-TEST(SphereTrace, RaysFromHollowsHitTheOtherSide) {
+TEST(SphereTrace, RaysFromConcavitiesHitTheOtherSide) {
   // From the inner side of a ring across its hole, and out of a bowl.
   const DistanceField ring(make_shape(Torus{3, 1}));
   Ray ray{{2, 0, 0}, {-1, 0, 0}};
@@ -345,7 +346,7 @@ TEST(SphereTrace, RaysFromHollowsHitTheOtherSide) {
   }
 }
 
-TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
+TEST(SphereTrace, ShadowsMatchTheJudge) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(25);
@@ -357,7 +358,7 @@ TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
       Ray on = sent_on(ray, hit, normalize(anywhere(random, 1)));
       const Hit next = march_sphere_trace(field, on);
       ASSERT_EQ(occluded_sphere_trace(field, on), bool(next)) << named.name;
-      // A millimetre on, the ray is either free, and judged from there, or it has gone into the solid.
+      // A millimetre further, the ray is either free, and judged from there, or it has entered the solid.
       Ray later = on;
       later.start = RayStart::free;
       later.t_min = 1e-3;
@@ -381,7 +382,7 @@ TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
   }
 }
 
-TEST(SphereTrace, TellsUsedUpStepsFromHits) {
+TEST(SphereTrace, ReportsExhaustionSeparatelyFromHits) {
   const DistanceField lattice(make_shape(Repeated{make_shape(Sphere{1}), {3, 3, 3}}));
   MarchSettings settings;
   settings.sphere_trace.max_steps = 3;
@@ -397,7 +398,7 @@ TEST(SphereTrace, TellsUsedUpStepsFromHits) {
   EXPECT_THROW(validate(settings), Error);
 }
 
-TEST(SphereTrace, IsInTheTable) {
+TEST(SphereTrace, IsListed) {
   const ShapeMarchEntry& march = find_shape_march("sphere-trace");
   EXPECT_EQ(march.cpu, march_sphere_trace);
   EXPECT_EQ(march.guarantee, Guarantee::conservative);

@@ -29,7 +29,7 @@ VoxelHit first(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& 
 }
 
 // With the largest radius a lone voxel is a ball.
-TEST(RoundedVoxels, ALoneVoxelIsABall) {
+TEST(RoundedVoxels, SingleVoxelIsABall) {
   VoxelGrid grid(ivec3(3));
   grid.set(ivec3(1), 7);
   const dvec3 middle(1.5);
@@ -56,16 +56,16 @@ TEST(RoundedVoxels, ALoneVoxelIsABall) {
   EXPECT_GT(hits, 1000);
 }
 
-// The judge: every solid voxel on its own, its cube cut out of the ray, and the first point of that which is near
-// enough to the inner box by bisection; the distance to a box is convex along a line.
+// The judge: every solid voxel on its own, its cube cut out of the ray, and the first point of that part that is close
+// enough to the inner box, by bisection; the distance to a box is convex along a line.
 struct Judged {
   double t = std::numeric_limits<double>::infinity();
-  bool close = false;  // to passing where it hits, or the other way round
+  bool close = false;  // from passing to hitting, or vice versa
 };
 
 bool solid(const VoxelGrid& grid, const ivec3& v) { return grid.box().contains(v) && grid.solid(v); }
 
-// Within one eighth of a voxel.
+// Within one octant of a voxel.
 void judge_piece(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& rounding, const ivec3& v,
                  double begin, double end, Judged& judged) {
   const dvec3 inside = ray.origin + 0.5 * (begin + end) * ray.direction - dvec3(v);
@@ -112,7 +112,7 @@ Judged judge(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& ro
     }
     judged.close = judged.close || std::abs(end - begin) < 1e-3;
     if (begin >= end) return;
-    // Cut at the planes of the middle, too: each eighth has a box of its own.
+    // Also cut at the middle planes: each octant has its own box.
     std::vector<double> cuts{begin, end};
     for (int axis = 0; axis < 3; ++axis) {
       const double t = (v[axis] + 0.5 - ray.origin[axis]) / ray.direction[axis];
@@ -124,7 +124,7 @@ Judged judge(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& ro
   return judged;
 }
 
-TEST(RoundedVoxels, AgreeWithEachVoxelOnItsOwn) {
+TEST(RoundedVoxels, MatchPerVoxelTests) {
   Random random(2);
   int hits = 0, misses = 0, close = 0;
   for (int round = 0; round < 60; ++round) {
@@ -167,16 +167,16 @@ TEST(RoundedVoxels, WallsStayFlat) {
   const VoxelHit flat = first(grid, ray, {0.25, false});
   EXPECT_EQ(flat.t, 4);
   EXPECT_EQ(rounded_normal(grid, flat.voxel, flat.face, {2, 1.75, 1}, {0.25, false}), dvec3(0, 0, 1));
-  // Each on its own there is a groove as deep as the radius.
+  // With separate voxels there would be a groove as deep as the radius.
   EXPECT_EQ(first(grid, ray, {0.25, true}).t, 4.25);
-  // And where four meet nothing.
+  // And no groove where four meet.
   ray.origin.y = 2;
   EXPECT_EQ(first(grid, ray, {0.25, false}).t, 4);
   EXPECT_FALSE(first(grid, ray, {0.25, true}));
 }
 
-// A wall of voxels that touch at edges stops what it stops as cubes.
-TEST(RoundedVoxels, WhatTouchesAtEdgesStaysClosed) {
+// A wall of voxels that touch at edges stops the same rays as cubes.
+TEST(RoundedVoxels, EdgeContactsStayClosed) {
   VoxelGrid grid(ivec3(8));
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     return v.x == v.z ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
@@ -194,17 +194,17 @@ TEST(RoundedVoxels, WhatTouchesAtEdgesStaysClosed) {
   EXPECT_GT(passed, 100);
 }
 
-TEST(RoundedVoxels, RaysThatLeaveAVoxelDoNotHitItAgain) {
+TEST(RoundedVoxels, RaysDoNotHitTheVoxelTheyLeave) {
   VoxelGrid grid(ivec3(2, 1, 1));
   grid.set({0, 0, 0}, 1);
   VoxelRay ray;
-  // From the ball's upper right, where the cube goes on: up, past nothing.
+  // From the ball's upper right, where the cube would continue: upwards, free.
   ray.origin = dvec3(0.5) + 0.5 * normalize(dvec3(1, 0, 1));
   ray.direction = {1, 0, 0.25};
   const ivec3 from(0);
   EXPECT_FALSE(first(grid, ray, {0.5, false}, &from));
   grid.set({1, 0, 0}, 2);
-  // Now the neighbour is there, and its side of the seam is flat.
+  // Now the neighbour exists, and its side of the seam is flat.
   ray.origin = {0.75, 0.5, 1};
   ray.direction = {1, 0, -0.01};
   const VoxelHit hit = first(grid, ray, {0.25, true}, &from);
@@ -212,7 +212,7 @@ TEST(RoundedVoxels, RaysThatLeaveAVoxelDoNotHitItAgain) {
   EXPECT_EQ(hit.voxel, ivec3(1, 0, 0));
 }
 
-TEST(RoundedVoxels, RefusesARadiusThatIsNone) {
+TEST(RoundedVoxels, RejectsInvalidRadii) {
   EXPECT_THROW(validate(VoxelRounding{0.51, false}), Error);
   EXPECT_THROW(validate(VoxelRounding{-0.1, false}), Error);
   EXPECT_THROW(validate(VoxelRounding{std::nan(""), false}), Error);

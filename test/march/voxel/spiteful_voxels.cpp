@@ -44,7 +44,7 @@ dvec3 any_direction(Random& random) {
   }
 }
 
-// Small whole numbers, so that planes are crossed at once.
+// Small integers, so that planes are crossed at once.
 dvec3 lattice_direction(Random& random) {
   for (;;) {
     const dvec3 d(whole(random, -2, 2), whole(random, -2, 2), whole(random, -2, 2));
@@ -147,7 +147,7 @@ const std::vector<VoxelRayKind>& spiteful_voxel_rays() {
        }},
       {"from far away",
        [](const VoxelGrid& g, Random& r) { return through(inside(g, r), normalize(any_direction(r)), 1e7); }},
-      // Down to lengths of which no inverse is a number.
+      // Down to lengths whose inverse overflows.
       {"of any length",
        [](const VoxelGrid& g, Random& r) {
          VoxelRay ray = through(inside(g, r), any_direction(r), uniform(r, 0, 50));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxel grids and rays chosen to hurt.
+// Adversarial voxel grids and rays.
 #pragma once
 
 #include <functional>

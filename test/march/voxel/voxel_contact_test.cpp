@@ -101,7 +101,7 @@ TEST(VoxelSweep, NeverTunnels) {
   EXPECT_GT(inside, 0);
 }
 
-TEST(VoxelOverlap, IsThatOfSomeVoxel) {
+TEST(VoxelOverlap, MatchesATestOfAllVoxels) {
   Random random(22);
   int yes = 0, no = 0;
   for (int round = 0; round < cases(300, 40, 8); ++round) {
@@ -123,7 +123,7 @@ TEST(VoxelOverlap, IsThatOfSomeVoxel) {
 }
 
 // Against points of the box: if one is in a voxel, they overlap.
-TEST(VoxelOverlap, KnowsPointsOfTheBox) {
+TEST(VoxelOverlap, AgreesWithPointsInTheBox) {
   Random random(23);
   int met = 0;
   for (int i = 0; i < cases(20'000, 2000, 200); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every voxel march of the table against the exhaustive one, on spiteful grids and rays: the same voxel, face, t and
+// Every voxel march of the table against the exhaustive one, on adversarial grids and rays: the same voxel, face, t and
 // entry, to the bit. A quantised ray has one answer, so there is no tolerance.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace scarp::test {
 namespace {
 
-// Few under the sanitizers, which look for what marches do to memory.
+// Few under the sanitizers, which check memory accesses.
 const int kRaysPerPair = cases(100'000, 10'000, 500);
 constexpr int kRaysPerGrid = 250;
 
@@ -35,7 +35,7 @@ std::string text(const VoxelRay& ray) {
 
 class VoxelOracle : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelOracle, AllMarchesAgreeWithExhaustive) {
+TEST_P(VoxelOracle, AllMarchesMatchExhaustive) {
   int hits = 0, failures = 0;
   for (const VoxelRayKind& rays : spiteful_voxel_rays()) {
     Random random(1);
@@ -83,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelOracle, testing::ValuesIn(spiteful_voxel_grid
   return name;
 });
 
-// The oracle itself, and the quantised ray, against the ray in double where nothing is close.
-TEST(VoxelOracle, StaysWithTheRay) {
+// The oracle itself, and the quantised ray, against the ray in double away from close decisions.
+TEST(VoxelOracle, HitsLieOnTheUnquantisedRay) {
   Random random(5);
   for (int i = 0; i < 20'000; ++i) {
     const VoxelGrid grid =

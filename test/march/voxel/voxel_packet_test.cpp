@@ -32,7 +32,7 @@ double uniform(Random& random) { return std::uniform_real_distribution<double>(0
 
 class VoxelPacketOf : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
+TEST_P(VoxelPacketOf, MatchesSingleRays) {
   int hits = 0;
   for (const std::int64_t set : instruction_sets()) {
     const InstructionSet chosen(set);
@@ -61,7 +61,7 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
         std::vector<Ray> in_world;
         for (VoxelRay& ray : rays) {
           ray = kind.make(grid, random);
-          // Signed permutations keep the ray at the grid.
+          // Signed permutations keep the ray near the grid.
           if (round % 3 != 2) {
             ray.origin = transpose(stand.grid_from_world) * ray.origin;
             ray.direction = transpose(stand.grid_from_world) * ray.direction;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The shaders' text of voxel marches, compiled as C++, on the spiteful grids and rays of the oracle: the same voxel,
-// face and t as the CPU's, to the bit, with 64-bit integers and with words. And its quotients against those of doubles.
+// The shaders' text of voxel marches, compiled as C++, on the adversarial grids and rays of the oracle: the same voxel,
+// face and t as the CPU's, to the bit, with 64-bit integers and with words. Its quotients are compared with those of
+// doubles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +56,7 @@ constexpr Marched kMarches[] = {{"voxel-planes", glsl::kScarpVoxelPlanes},
                                 {"voxel-octants", glsl::kScarpVoxelOctants},
                                 {"voxel-bricks", glsl::kScarpVoxelBricks}};
 
-// Whether the shaders get such rays: others, whose directions are too long or short, the host brings near 1 before.
+// Whether the shaders receive such rays: the host scales directions that are too long or short to about 1.
 bool is_usual(const VoxelRay& ray) {
   for (int axis = 0; axis < 3; ++axis) {
     const double d = std::abs(ray.direction[axis]);
@@ -64,7 +65,7 @@ bool is_usual(const VoxelRay& ray) {
   return true;
 }
 
-// A ray as voxel_objects.glsl.h has it in memory.
+// A ray in the memory layout of voxel_objects.glsl.h.
 struct ShaderRay {
   glsl::ScarpVoxelWalk walk{};
   double t = 0, t_per_s = 0;
@@ -133,7 +134,7 @@ std::string text(const VoxelHit& hit) {
 
 class VoxelShaders : public testing::TestWithParam<VoxelGridKind> {};
 
-TEST_P(VoxelShaders, AgreeWithTheCpu) {
+TEST_P(VoxelShaders, MatchTheCpu) {
   int hits = 0, failures = 0;
   for (const VoxelRayKind& rays : spiteful_voxel_rays()) {
     Random random(2);
@@ -171,7 +172,7 @@ TEST_P(VoxelShaders, AgreeWithTheCpu) {
         std::uint32_t steps = 0;
         const VoxelHit hit = marched(there, ray, steps);
         hits += static_cast<bool>(expected);
-        // Spheres may travel a little less far.
+        // Spheres may advance slightly less.
         const bool same_steps = steps == stats.steps || march.number == glsl::kScarpVoxelSpheres;
         if (hit == expected && same_steps) continue;
         ++failures;
@@ -192,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelShaders, testing::ValuesIn(spiteful_voxel_gri
   return name;
 });
 
-TEST(VoxelShaders, KnowWhatIsAhead) {
+TEST(VoxelShaders, ComputeVoxelsAhead) {
   for (int octant = 0; octant < 8; ++octant) {
     for (int bit = 0; bit < 64; ++bit) {
       const ivec3 voxel(4 + (bit & 3), 8 + (bit >> 2 & 3), bit >> 4);
@@ -201,8 +202,8 @@ TEST(VoxelShaders, KnowWhatIsAhead) {
   }
 }
 
-// A long way through the largest box: distances begin again 64 times.
-TEST(VoxelShaders, AgreeAtTheLargestSize) {
+// A long way through the largest box: distances are rebased 64 times.
+TEST(VoxelShaders, MatchAtTheLargestSize) {
   constexpr int kHeight = 256;  // less memory
   VoxelGrid grid({VoxelGrid::kMaxSide, VoxelGrid::kMaxSide, kHeight}, 1);
   const ivec3 last = grid.size() - 1;
@@ -240,9 +241,9 @@ TEST(VoxelShaders, AgreeAtTheLargestSize) {
   EXPECT_GT(hits, 100);
 }
 
-// Starts that are off by some units, as those of drivers are, must not matter: the text starts from the right quotient
-// here, so its corrections are tested from both sides of it.
-TEST(VoxelShaders, DivideAsTheCpuDoes) {
+// Estimates that are off by some units, like those of drivers, must not matter: the text starts from the correct
+// quotient here, so its corrections are tested from both sides of it.
+TEST(VoxelShaders, DivideAsTheCpu) {
   Random random(4);
   for (int i = 0; i < kQuotients; ++i) {
     const auto a = static_cast<std::uint64_t>(std::exp2(uniform(random, 0, 35)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The installed texts of voxel marches for WebGL 2, run as GLSL ES 3.0 by EGL without a window. Shaders make the rays
-// in single precision: each is near the ray that was asked for, and from there on all marches find the voxel and face
-// that the CPU finds for the same quantised ray.
+// The installed texts of voxel marches for WebGL 2, run as GLSL ES 3.0 by EGL without a window. Shaders compute the
+// rays in single precision: each is close to the requested ray, and all marches find the voxel and face that the CPU
+// finds for the same quantised ray.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,7 +98,7 @@ struct Made {
     ray.face = static_cast<VoxelFace>(third[3]);
     ray.t_max = HUGE_VAL;
   }
-  // Where it comes into the box.
+  // Where it enters the box.
   double place(int axis) const {
     const auto k = static_cast<std::size_t>(axis);
     const double left = static_cast<double>(ray.to_plane[k]) / kVoxelPlaces;
@@ -108,14 +108,14 @@ struct Made {
 
 double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-// Nothing is wrong: "".
+// Returns "" if nothing is wrong.
 std::string objection(const Made& made, const VoxelRay& ray, const VoxelBox& box) {
   const double longest = longest_of(ray.direction);
   const dvec3 slope = ray.direction / longest;  // per voxel along the longest axis
   const double path = longest_of(ray.origin) + longest_of(dvec3(box.high));
   const double bound = kBound * (1 + longest_of(ray.origin) + path);
   if (!made.met) {
-    // It passes the box, or comes no further in than that; both ends of its way in the box are off by as much.
+    // It misses the box, or enters it by no more than that; both ends of its path in the box are off by as much.
     double t_in = 0, t_out = HUGE_VAL;
     for (int i = 0; i < 3; ++i) {
       const double low = box.low[i] + bound, high = box.high[i] - bound;
@@ -146,7 +146,7 @@ std::string objection(const Made& made, const VoxelRay& ray, const VoxelBox& box
   return {};
 }
 
-TEST_F(VoxelTexturesAsEs, MarchAsTheCpuDoes) {
+TEST_F(VoxelTexturesAsEs, MatchTheCpu) {
   int hits = 0, blocked = 0, grids = 0;
   for (const VoxelGridKind& kind : spiteful_voxel_grids()) {
     Random random(11);
@@ -214,7 +214,7 @@ TEST_F(VoxelTexturesAsEs, MarchAsTheCpuDoes) {
           ASSERT_EQ(answers[4 * i + 3], static_cast<GLuint>(expected.face));
           blocked += static_cast<int>(more[4 * i + 1]);
           if (march == 0) {
-            // At the hit, the given ray is near the voxel: off by the bound, and by what rounds t, no more than that.
+            // At the hit, the given ray is close to the voxel: off by at most the bound plus the rounding of t.
             const double t = std::bit_cast<float>(more[4 * i]);
             const double bound = 2 * kBound * (1 + 2 * longest_of(rays[i].origin) + longest_of(dvec3(target.box.high)));
             for (int axis = 0; axis < 3; ++axis) {

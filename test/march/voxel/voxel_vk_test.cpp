@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Voxel marches on a Vulkan device: spiteful grids and rays have the answers of the CPU, to the bit, with 64-bit
-// integers and with words; edits arrive; and validation has nothing to say.
+// Voxel marches on a Vulkan device: adversarial grids and rays have the answers of the CPU, to the bit, with 64-bit
+// integers and with words; edits arrive; and validation is silent.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ struct Model {
   }
 };
 
-// Rays with what the CPU says about them.
+// Rays with the answers of the CPU.
 struct Asked {
   std::vector<Ray> rays;
   std::vector<Hit> starts;
@@ -134,7 +134,7 @@ int judge(DeviceVoxelQueries& queries, const DeviceVoxelObjects& objects, const 
 
 class VoxelsOnDevice : public OnDevice {};
 
-TEST_F(VoxelsOnDevice, AnswerAsTheCpuDoes) {
+TEST_F(VoxelsOnDevice, MatchTheCpu) {
   DeviceVoxelQueries queries(device(), {.rays_at_once = 4096}), words(device(), {.rays_at_once = 4096, .words = true});
   int hits = 0, failures = 0;
   for (const VoxelGridKind& kind : spiteful_voxel_grids()) {
@@ -163,12 +163,12 @@ TEST_F(VoxelsOnDevice, AnswerAsTheCpuDoes) {
   EXPECT_GT(hits, kGrids * kRaysOfKind);
 }
 
-TEST_F(VoxelsOnDevice, TakeEdits) {
+TEST_F(VoxelsOnDevice, ApplyEdits) {
   DeviceVoxelQueries queries(device(), {.rays_at_once = 4096});
   Random random(8);
   for (const char* name : {"voxel-spheres", "voxel-octants", "voxel-bricks"}) {
     const VoxelMarchEntry& march = find_voxel_march(name);
-    // The second stands beside it, and stays as it is.
+    // The second is next to it, and does not change.
     Model model(VoxelGrid({70, 40, 90}, 8), true), other(VoxelGrid({9, 9, 9}, 8), true);
     other.edit(random);
     other.grid.fill({ivec3(1), ivec3(3)}, 9);
@@ -193,7 +193,7 @@ TEST_F(VoxelsOnDevice, TakeEdits) {
 }
 
 // Boxes of 2^34 voxels, whose tables are in chunks on the CPU; rays from one end to the other.
-TEST_F(VoxelsOnDevice, AnswerInWorlds) {
+TEST_F(VoxelsOnDevice, MatchInWorlds) {
   constexpr int kSide = VoxelGrid::kMaxSide, kHeight = 64;
   constexpr int kRays = 200;
   VoxelGrid grid({kSide, kSide, kHeight}, 4);
@@ -244,7 +244,7 @@ constexpr std::uint32_t kBoxShader[] = {
 #include "scarp/march/voxel/voxel_proxies.vert.inc"
 };
 
-TEST(VoxelProxiesLayout, IsThatOfTheShaders) {
+TEST(VoxelProxiesLayout, MatchesTheShaders) {
   using glsl::ScarpVoxelView, glsl::VoxelProxies;
   EXPECT_TRUE(has_struct(
       kBoxShader,
@@ -258,7 +258,7 @@ TEST(VoxelProxiesLayout, IsThatOfTheShaders) {
                           offsetof(VoxelProxies, room)}));
 }
 
-TEST(VoxelBatchLayout, IsThatOfTheShaders) {
+TEST(VoxelBatchLayout, MatchesTheShaders) {
   using glsl::ScarpVoxelRay, glsl::ScarpVoxelHit, glsl::ScarpVoxelGrid, glsl::ScarpVoxelObject;
   EXPECT_TRUE(has_struct(
       kVoxelShader, {offsetof(ScarpVoxelRay, origin), offsetof(ScarpVoxelRay, direction),

@@ -35,8 +35,8 @@ VoxelGrid needle(int axis, Random& random) {
   return grid;
 }
 
-// Towards a lattice point at the far end, from a lattice point or one beside it: crossings coincide there, or differ by
-// as little as directions can tell.
+// Towards a lattice point at the far end, from a lattice point or one beside it: crossings coincide there, or differ as
+// little as directions can represent.
 VoxelRay long_ray(const VoxelGrid& grid, int axis, Random& random) {
   const ivec3& size = grid.size();
   dvec3 from, to;
@@ -70,7 +70,7 @@ bool suits(const VoxelMarchEntry& march) {
 // Rays of thousands of steps take seconds under sanitizers.
 const int kAxes = cases(3, 3, 1);
 
-TEST(VoxelWorlds, LongRaysAgreeWithExhaustive) {
+TEST(VoxelWorlds, LongRaysMatchExhaustive) {
   Random random(21);
   int hits = 0, far = 0;
   for (int axis = 0; axis < kAxes; ++axis) {
@@ -99,7 +99,7 @@ TEST(VoxelWorlds, LongRaysAgreeWithExhaustive) {
   EXPECT_GT(far, cases(10, 10, 0)) << "rays are long";
 }
 
-TEST(VoxelWorlds, VectorsAnswerLongRaysAsSingleOnes) {
+TEST(VoxelWorlds, SimdMatchesSingleLongRays) {
   Random random(22);
   int hits = 0;
   for (int axis = 0; axis < kAxes; ++axis) {
@@ -144,8 +144,8 @@ TEST(VoxelWorlds, VectorsAnswerLongRaysAsSingleOnes) {
   EXPECT_GT(hits, cases(50, 50, 10));
 }
 
-// A cube of 2^42 voxels: what is solid takes memory, and rays across all of it take few steps.
-TEST(VoxelWorlds, OfTheLargestSizeAreSparse) {
+// A cube of 2^42 voxels: only solid voxels take memory, and rays across all of it take few steps.
+TEST(VoxelWorlds, AtTheLargestSizeAreSparse) {
   VoxelGrid grid(ivec3(kSide), 8);
   const ivec3 corner(kSide - 1), middle(kSide / 2 + 1, kSide / 2 - 7, 12'345);
   grid.set(corner, 7);

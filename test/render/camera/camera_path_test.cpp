@@ -11,14 +11,14 @@
 namespace scarp {
 namespace {
 
-TEST(CameraPath, GoesThroughItsStations) {
+TEST(CameraPath, PassesThroughItsPoints) {
   const std::vector<CameraStation> stations{
       {{0, 0, 10}, {0, 50, 0}}, {{30, 5, 12}, {40, 60, 0}}, {{31, 8, 12}, {41, 60, 5}}, {{90, -20, 40}, {0, 0, 0}}};
   const CameraPath path(stations);
   EXPECT_EQ(path.at(0).eye, stations.front().eye);
   EXPECT_LT(length(path.at(1).target - stations.back().target), 1e-12);
   for (const CameraStation& station : stations) {
-    // Nearest of many places on the way: one of them lies at most half of the largest step away.
+    // The nearest of many positions on the path: one of them is at most half of the largest step away.
     double nearest = 1e9, step = 0;
     constexpr int kPlaces = 20000;
     for (int i = 0; i <= kPlaces; ++i) {
@@ -34,7 +34,7 @@ TEST(CameraPath, GoesThroughItsStations) {
   }
 }
 
-TEST(CameraPath, IsStraightBetweenPointsOnALine) {
+TEST(CameraPath, IsStraightBetweenCollinearPoints) {
   const CameraPath path({{{0, 0, 5}, {0, 1, 5}}, {{10, 0, 5}, {10, 1, 5}}, {{20, 0, 5}, {20, 1, 5}}});
   for (int i = 0; i <= 20; ++i) {
     const CameraStation here = path.at(i / 20.0);
@@ -44,7 +44,7 @@ TEST(CameraPath, IsStraightBetweenPointsOnALine) {
   }
 }
 
-TEST(CameraPath, MayStandStillOrBeOnePoint) {
+TEST(CameraPath, SupportsStandingStillAndSinglePoints) {
   const CameraPath still({{{0, 0, 5}, {0, 1, 5}}, {{0, 0, 5}, {1, 0, 5}}});
   EXPECT_LT(length(still.at(0.5).eye - dvec3(0, 0, 5)), 1e-12);
   EXPECT_GT(still.at(0.5).target.x, 0.4);

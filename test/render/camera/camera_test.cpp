@@ -37,13 +37,13 @@ void expect_round_trip(const Camera& camera, int width, int height) {
   }
 }
 
-TEST(Camera, APointOfAPixelsRayAppearsInThatPixel) {
+TEST(Camera, PointsOnAPixelsRayProjectToThatPixel) {
   expect_round_trip(Camera::look_at({100, -5000, 3000}, {15000, 15000, 0}, 40, 640, 480), 640, 480);
   expect_round_trip(Camera::framed(kBox, {.azimuth_deg = 77, .elevation_deg = 12}, 0.02, 1280, 720), 1280, 720);
   expect_round_trip(Camera::top(kBox, 500, 700), 500, 700);
 }
 
-TEST(Camera, TheTargetIsInTheMiddleAndUpIsUp) {
+TEST(Camera, TargetIsCentredAndUpIsUp) {
   const dvec3 target(1000, 2000, 300);
   const Camera camera = Camera::look_at({-4000, 500, 2500}, target, 35, 800, 600);
   const auto middle = camera.pixel(target), above = camera.pixel(target + dvec3(0, 0, 10));
@@ -53,7 +53,7 @@ TEST(Camera, TheTargetIsInTheMiddleAndUpIsUp) {
   EXPECT_LT(above->y, 300);
 }
 
-TEST(Camera, TheAngleOfViewIsTheVerticalOne) {
+TEST(Camera, AngleOfViewIsVertical) {
   const Camera camera = Camera::look_at({0, 0, 0}, {0, 1, 0}, 60, 300, 200);
   const auto edge = camera.pixel({0, 1, std::tan(glm::radians(30.0))});
   EXPECT_NEAR(edge->y, 0, 1e-9);
@@ -65,13 +65,13 @@ TEST(Camera, StraightDownHasNorthUp) {
   EXPECT_GT(camera.pixel({10, 0, 0})->x, 50);
 }
 
-TEST(Camera, PointsBehindItAppearNowhere) {
+TEST(Camera, PointsBehindProjectNowhere) {
   const Camera camera = Camera::look_at({0, 0, 0}, {0, 1, 0}, 60, 100, 100);
   EXPECT_FALSE(camera.pixel({0, -1, 0}));
   EXPECT_FALSE(camera.pixel({3, 0, 2}));
 }
 
-TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
+TEST(Camera, FramingFitsAllCornersTightly) {
   const WorldBox boxes[] = {kBox, {{0, 0, 0}, {1, 1, 0}}, {{0, 0, -9000}, {10, 5000, 9000}}, {{0, 0, 5}, {4000, 3, 6}}};
   for (const WorldBox& box : boxes) {
     for (const auto& [width, height] : {std::pair(1280, 720), {720, 1280}, {500, 500}, {3000, 200}}) {
@@ -79,7 +79,7 @@ TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
         for (const double elevation : {0.0, 10.0, 35.0, 89.0, 90.0}) {
           const Camera camera =
               Camera::framed(box, {.azimuth_deg = azimuth, .elevation_deg = elevation}, 0.1, width, height);
-          double left = 1, right = 1, above = 1, below = 1;  // free shares of the picture
+          double left = 1, right = 1, above = 1, below = 1;  // free fractions of the picture
           double nearest = std::numeric_limits<double>::infinity();
           for (int i = 0; i < 8; ++i) {
             const auto pixel = camera.pixel(box.corner(i));
@@ -93,7 +93,7 @@ TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
           // The margin is 3 % at least; in one direction it is just that on both sides.
           constexpr double kMargin = 0.03, kRounding = 1e-6;
           EXPECT_GE(std::min({left, right, above, below}), kMargin - kRounding);
-          // Unless the camera would come too near: never within 5 % of the diagonal.
+          // Unless the camera would be too close: never within 5 % of the diagonal.
           const double least_distance = 0.05 * length(box.high - box.low);
           EXPECT_GE(nearest, least_distance * (1 - kRounding));
           if (nearest < least_distance * (1 + kRounding)) continue;
@@ -105,7 +105,7 @@ TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
   }
 }
 
-TEST(Camera, ItStandsAtTheCompassAzimuthOfTheView) {
+TEST(Camera, StandsAtTheAzimuthOfTheView) {
   // The grid's north points to the compass azimuth of 10 degrees.
   const double grid_north = glm::radians(10.0);
   const Camera camera = Camera::framed(kBox, {.azimuth_deg = 100, .elevation_deg = 0}, grid_north, 400, 400);
@@ -116,7 +116,7 @@ TEST(Camera, ItStandsAtTheCompassAzimuthOfTheView) {
   EXPECT_NEAR(south.forward().z, -std::sin(glm::radians(35.0)), 1e-12);
 }
 
-TEST(Camera, DistanceCountsInFramedOnes) {
+TEST(Camera, DistanceIsRelativeToTheFramedView) {
   const ViewSettings near{.distance = 1}, far{.distance = 3};
   const dvec3 a = Camera::framed(kBox, near, 0, 400, 400).eye(), b = Camera::framed(kBox, far, 0, 400, 400).eye();
   const dvec3 forward = Camera::framed(kBox, near, 0, 400, 400).forward();
@@ -125,9 +125,10 @@ TEST(Camera, DistanceCountsInFramedOnes) {
   EXPECT_NEAR(dot(kBox.middle() - b, forward) / dot(kBox.middle() - a, forward), 3, 1e-9);
 }
 
-// The focus stays where it is in the picture, and the eye ends there.
-TEST(Camera, NearerViewsGoTowardsTheirFocus) {
-  // Of metres and pixels: some dozen roundings of coordinates below 2^17 m are 2^-53 * 2^17 * 2^6 or less than 2^-30.
+// The focus stays at its position in the picture, and the eye ends there.
+TEST(Camera, NearerViewsApproachTheirFocus) {
+  // Rounding of metres and pixels: some dozen roundings of coordinates below 2^17 m are 2^-53 * 2^17 * 2^6 or less than
+  // 2^-30.
   constexpr double kRounding = 0x1p-30;
   const dvec3 other(12000, 20000, 1200);
   for (const std::optional<dvec3>& given : {std::optional<dvec3>(), std::optional(other)}) {
@@ -167,7 +168,7 @@ TEST(Camera, TopKeepsPixelsSquare) {
   EXPECT_NEAR(origin.y + corner.y, 100, 1e-9) << "centred";
 }
 
-TEST(Camera, SettingsOutOfRangeAreRefused) {
+TEST(Camera, RejectsSettingsOutOfRange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const ViewSettings& bad : {ViewSettings{.azimuth_deg = nan},
                                   {.elevation_deg = 91},

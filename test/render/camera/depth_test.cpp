@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(Depth, IsThatOfProjectedPoints) {
+TEST(Depth, MatchesProjectedPoints) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> share(0, 1);
   const DepthRange range{2, 3000, false}, reversed{2, 3000, true};
@@ -36,7 +36,7 @@ TEST(Depth, IsThatOfProjectedPoints) {
     EXPECT_NEAR(device_depth(z, range), depth(vulkan), 1e-14);
     EXPECT_NEAR(device_depth(z, reversed), depth(turned), 1e-14);
     EXPECT_NEAR(view_depth_from_device(device_depth(z, reversed), reversed), z, 1e-12 * z);
-    // What is left of 1 - depth, at least 2 / 3000 of it, has lost 11 of 53 digits.
+    // The result 1 - depth, at least 2 / 3000, has lost 11 of 53 digits.
     EXPECT_NEAR(view_depth_from_device(device_depth(z, range), range), z, 1e-11 * z);
   }
   EXPECT_EQ(device_depth(2, range), 0);
@@ -49,7 +49,7 @@ TEST(Depth, IsThatOfProjectedPoints) {
   EXPECT_DOUBLE_EQ(device_depth(8, {0.5, kInfinity, false}), 1 - 0.0625);
 }
 
-TEST(Depth, OfTheTextIsRightOnTheAxisAlone) {
+TEST(Depth, RadialDepthIsExactOnlyOnTheAxis) {
   const Camera camera = Camera::look_at({0, 0, 0}, {0, 1, 0}, 60, 400, 300);
   const auto longer = [&](double x, double y) {
     const Ray ray = camera.ray(x, y);
@@ -59,7 +59,7 @@ TEST(Depth, OfTheTextIsRightOnTheAxisAlone) {
   EXPECT_NEAR(longer(0, 0), 1.388, 0.001);
 }
 
-// A sphere that sticks out of a tilted plane: which of both is nearer along a ray is what a depth buffer must say.
+// A sphere that sticks out of a tilted plane: a depth buffer must show which of the two is nearer along a ray.
 TEST(Depth, OrdersAnIntersectingSpherePixelByPixel) {
   const Camera camera = Camera::look_at({0, -8, 6}, {0, 0, 0}, 60, 80, 60);
   const dvec3 middle(0.5, 0, -0.8), normal = normalize(dvec3(0.2, -0.1, 1));
@@ -85,7 +85,7 @@ TEST(Depth, OrdersAnIntersectingSpherePixelByPixel) {
   }
 }
 
-TEST(Depth, RefusesPlanesInTheWrongOrder) {
+TEST(Depth, RejectsPlanesInTheWrongOrder) {
   EXPECT_THROW(validate(DepthRange{0, 10}), Error);
   EXPECT_THROW(validate(DepthRange{10, 10}), Error);
   EXPECT_THROW(validate(DepthRange{kInfinity, kInfinity}), Error);

@@ -32,7 +32,7 @@ FieldView view_of(const HeightField& field, const ViewSettings& settings, bool p
   return view_of_field(field, box_of(field, plinth), settings, 0.2, 640, 360);
 }
 
-TEST(FieldView, IsAboveLevelGroundFromAnywhere) {
+TEST(FieldView, StaysAboveLevelGround) {
   const HeightField field = field_of(kLevel);
   for (const bool plinth : {true, false}) {
     for (const double elevation : {5.0, 10.0, 20.0, 35.0, 60.0}) {
@@ -45,7 +45,7 @@ TEST(FieldView, IsAboveLevelGroundFromAnywhere) {
   }
 }
 
-TEST(FieldView, GoesTowardsTheGroundInTheMiddle) {
+TEST(FieldView, ApproachesTheGroundInTheMiddle) {
   const HeightField hill = field_of([](const auto& sample) { sample(kMiddle, kMiddle) = 1500; });
   const HeightField hole = field_of([](const auto& sample) {
     sample(kMiddle, kMiddle) = std::numeric_limits<float>::quiet_NaN();
@@ -58,7 +58,7 @@ TEST(FieldView, GoesTowardsTheGroundInTheMiddle) {
   }
 }
 
-// A ridge all along, before the ground in the middle.
+// A ridge along the whole field, in front of the ground in the middle.
 TEST(FieldView, IsRaisedOutOfHills) {
   const HeightField field = field_of([](const auto& sample) {
     for (int col = 0; col < kSide; ++col) {
@@ -71,14 +71,14 @@ TEST(FieldView, IsRaisedOutOfHills) {
   ASSERT_TRUE(field.height(eye.x, eye.y));
   EXPECT_GT(view.raised, 1000);
   const dvec3 before(eye.x, eye.y, eye.z - view.raised);
-  // field_view.h: a hundredth of its way; some dozen roundings of coordinates below 2^13 m.
+  // field_view.h: a hundredth of its path; some dozen roundings of coordinates below 2^13 m.
   constexpr double kClear = 0.01, kRounding = 0x1p-34;
   EXPECT_NEAR(eye.z - *field.height(eye.x, eye.y), kClear * length(before - focus), kRounding);
   EXPECT_EQ(view.camera.forward(), Camera::framed(box_of(field, true), south, 0.2, 640, 360).forward());
 }
 
-// Level views of ground that goes on beyond its border begin in the middle of the plinth's height.
-TEST(FieldView, IsRaisedOutOfGroundThatGoesOn) {
+// Level views of ground that continues beyond its border start at half of the plinth's height.
+TEST(FieldView, IsRaisedOutOfWrappedGround) {
   const HeightField field = field_of(kLevel, Wrap::periodic);
   const FieldView view = view_of(field, {.elevation_deg = 0});
   EXPECT_GT(view.raised, 0);

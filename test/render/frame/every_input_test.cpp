@@ -84,7 +84,7 @@ class EveryInput : public testing::TestWithParam<Kind> {
   }
 };
 
-// Pixels that have another colour than most.
+// Pixels whose colour differs from that of most.
 int varied(const Image& image) {
   int count = 0;
   for (int i = 0; i < image.width * image.height; ++i)
@@ -92,7 +92,7 @@ int varied(const Image& image) {
   return count;
 }
 
-TEST_P(EveryInput, HasEveryLook) {
+TEST_P(EveryInput, SupportsEveryLook) {
   const Scene scene = GetParam().make();
   for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error, Look::comanche}) {
     PictureSettings with = settings();
@@ -106,7 +106,7 @@ TEST_P(EveryInput, HasEveryLook) {
   }
 }
 
-TEST_P(EveryInput, HasNoErrorsWithAMarchThatPassesNothing) {
+TEST_P(EveryInput, HasNoErrorsWithExactMarches) {
   PictureSettings with = settings();
   with.look = Look::error;
   const ErrorCounts errors = render_picture(GetParam().make(), camera(), with).errors.value();
@@ -116,8 +116,8 @@ TEST_P(EveryInput, HasNoErrorsWithAMarchThatPassesNothing) {
   EXPECT_EQ(errors.contradictions, 0);
 }
 
-// What lies below the level is under water, seen at the level; what rises above it is as it was.
-TEST_P(EveryInput, HasWater) {
+// Ground below the level is under water, whose surface is seen; ground above it does not change.
+TEST_P(EveryInput, SupportsWater) {
   constexpr double kWater = 3.25;  // between two faces of voxels
   const Scene scene = GetParam().make();
   PictureSettings dry = settings(), wet = settings();
@@ -135,7 +135,7 @@ TEST_P(EveryInput, HasWater) {
       EXPECT_NE(before.colour[i], after.colour[i]);
     } else if (hit && before.position[i].z > kWater + 0.1) {
       ++above;
-      // Marches that close in on a surface stop elsewhere when a ray ends at the water, by their tolerance.
+      // Marches that converge to a surface stop elsewhere if a ray ends at the water, by their tolerance.
       EXPECT_LT(length(before.colour[i] - after.colour[i]), 1e-3);
     }
   }
@@ -143,7 +143,7 @@ TEST_P(EveryInput, HasWater) {
   EXPECT_GT(above, kWidth * kHeight / 200);
 }
 
-TEST_P(EveryInput, HasFogAndHaze) {
+TEST_P(EveryInput, SupportsFogAndHaze) {
   const Scene scene = GetParam().make();
   const PictureLayers clear = render_layers(scene, camera(), settings());
   for (const FogKind kind : {FogKind::none, FogKind::distance, FogKind::height}) {
@@ -161,7 +161,7 @@ TEST_P(EveryInput, HasFogAndHaze) {
   }
 }
 
-TEST_P(EveryInput, HasPaintOnTop) {
+TEST_P(EveryInput, SupportsGroundPaintOnTop) {
   const Scene scene = GetParam().make();
   const Image plain = render_picture(scene, camera(), settings()).image;
   std::vector<std::function<void(PictureSettings&)>> changes = {
@@ -186,8 +186,8 @@ INSTANTIATE_TEST_SUITE_P(All, EveryInput,
                                          Kind{"shape", shape}, Kind{"terrain_with_a_ball", terrain_with_a_ball}),
                          [](const auto& kind) { return kind.param.name; });
 
-// A plinth is seen, and that is all.
-TEST(PlinthInScene, ThrowsNoShadowAndIsNoGround) {
+// Only a plinth is seen.
+TEST(PlinthInScene, CastsNoShadowAndIsNotGround) {
   const Scene bare = heights(), scene = with_plinth(bare);
   EXPECT_LT(scene.box().low.z, bare.box().low.z);
   EXPECT_EQ(scene.height(16, 16), bare.height(16, 16));

@@ -30,7 +30,7 @@ TEST(Film, TilesCoverEveryPixelOnceAndHaveFewPoints) {
   }
 }
 
-TEST(Film, SamplesAreMixedInLinearLight) {
+TEST(Film, SamplesAreAveragedInLinearLight) {
   // Half the light is 188 in sRGB, not 128.
   const std::vector<vec3> points = {vec3(0.0f), vec3(1.0f), vec3(0.0f), vec3(1.0f)};
   Image image(1, 1);
@@ -38,7 +38,7 @@ TEST(Film, SamplesAreMixedInLinearLight) {
   EXPECT_EQ(int{image.pixel(0, 0)[0]}, 188);
 }
 
-TEST(Film, OneSampleIsTheMiddleOfThePixel) {
+TEST(Film, SingleSampleIsThePixelCentre) {
   const auto points = points_of({0, 0, 3, 2}, 1);
   EXPECT_EQ(points[2].x, 2.5);
   EXPECT_EQ(points[5].y, 1.5);

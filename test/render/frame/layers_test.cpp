@@ -33,7 +33,7 @@ PictureSettings small() {
   return settings;
 }
 
-TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
+TEST(Layers, ReportThePixelCentreOnAPlane) {
   const Scene scene = test::terrain(plane(), "max-mip");
   const dvec3 normal = normalize(dvec3(-0.25, 0.5, 1));
   for (const Camera& camera : {Camera::look_at({10, 60, 40}, {16, 16, 3}, 40, kWidth, kHeight),
@@ -72,7 +72,7 @@ TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
   }
 }
 
-TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
+TEST(Layers, ColourIsThePictureBeforeTheTransferCurve) {
   const Scene scene = test::terrain_on_plinth(plane());
   PictureSettings settings = small();
   settings.samples = 4;
@@ -86,7 +86,7 @@ TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
   EXPECT_EQ(developed.rgb, image.rgb);
 }
 
-TEST(Layers, WallsOfThePlinthCountAsMet) {
+TEST(Layers, PlinthWallsCountAsHits) {
   const Scene scene = test::terrain_on_plinth(plane());
   PictureSettings settings = small();
   // Level, from the south, below the ground's border: the wall at y = 0.
@@ -99,7 +99,7 @@ TEST(Layers, WallsOfThePlinthCountAsMet) {
   }
 }
 
-TEST(Layers, WallsOfSolidGroundAreNoSurface) {
+TEST(Layers, SolidWallsAreNotSurfaces) {
   HeightFieldSettings solid;
   solid.solid = true;
   std::vector<float> samples(33 * 33);
@@ -118,7 +118,7 @@ TEST(Layers, WallsOfSolidGroundAreNoSurface) {
   }
 }
 
-TEST(Layers, GoWithTheLookShadedAlone) {
+TEST(Layers, ApplyOnlyToTheShadedLook) {
   const Scene scene = test::terrain(plane(), "max-mip");
   const Camera camera = Camera::top(picture_box(scene), kWidth, kHeight);
   for (const Look look : {Look::height, Look::steps, Look::error}) {

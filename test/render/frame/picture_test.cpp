@@ -46,7 +46,7 @@ Picture map_of(const HeightField& field, PictureSettings settings, double grid_n
   return render_picture(scene, Camera::top(picture_box(scene), settings.width, settings.height), settings);
 }
 
-// Of that map the two rows of pixels next to its middle. Row 1 lies where row 100 of 200 does, the lower of the two.
+// The two rows of pixels next to the middle of that map. Row 1 is row 100 of 200, the lower of the two.
 Image middle_of(const HeightField& field, PictureSettings settings, double grid_north = 0) {
   constexpr int kRows = 2;
   const Scene scene = test::terrain(field);
@@ -67,7 +67,7 @@ HeightField wall() {
   });
 }
 
-// How bright level ground at x is, on the map of the wall with the sun in the west at 45 degrees.
+// Brightness of level ground at x, on the map of the wall with the sun in the west at 45 degrees.
 int brightness_at(double x, double grid_north, bool shadows) {
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
@@ -77,7 +77,7 @@ int brightness_at(double x, double grid_north, bool shadows) {
   return red(middle_of(field, settings, grid_north), static_cast<int>(10 * x), 1);
 }
 
-TEST(Picture, ShadowsEndWhereTheSunSaysSo) {
+TEST(Picture, ShadowsHaveTheRightLength) {
   // 4 m at 45 degrees: the shadow of the crest at x = 10 ends at x = 14.
   const int lit = brightness_at(17, 0, true);
   EXPECT_LT(brightness_at(13.8, 0, true), 0.8 * lit);
@@ -86,7 +86,7 @@ TEST(Picture, ShadowsEndWhereTheSunSaysSo) {
   EXPECT_EQ(brightness_at(13.8, 0, false), lit) << "hill shade only";
 }
 
-TEST(Picture, TheSunKnowsTrueNorth) {
+TEST(Picture, SunAzimuthCountsFromTrueNorth) {
   // The raster's up is compass south, so the compass's west is its east.
   const double upside_down = glm::radians(180.0);
   const int lit = brightness_at(3, upside_down, true);
@@ -94,7 +94,7 @@ TEST(Picture, TheSunKnowsTrueNorth) {
   EXPECT_EQ(brightness_at(13.8, upside_down, true), lit);
 }
 
-TEST(Picture, LevelGroundInTheSunHasTheColourOfItsRamp) {
+TEST(Picture, SunlitLevelGroundHasItsRampColour) {
   const HeightField field = field_of(5, 30, nothing);
   PictureSettings settings = map_settings(field);
   settings.ramp = "hypsometric";
@@ -104,7 +104,7 @@ TEST(Picture, LevelGroundInTheSunHasTheColourOfItsRamp) {
   EXPECT_EQ(int{image.pixel(20, 20)[2]}, 0x74);
 }
 
-TEST(Picture, SamplesLeaveLevelGroundInTheSunAsItIs) {
+TEST(Picture, LightSamplesKeepSunlitLevelGround) {
   const HeightField field = field_of(5, 30, nothing);
   PictureSettings settings = map_settings(field);
   settings.ramp = "hypsometric";
@@ -118,7 +118,7 @@ TEST(Picture, SamplesLeaveLevelGroundInTheSunAsItIs) {
   }
 }
 
-TEST(Picture, SamplesDependOnPixelAndSeedAndNotOnThreads) {
+TEST(Picture, SamplesDependOnlyOnPixelAndSeed) {
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
   // Several tiles.
@@ -137,9 +137,9 @@ TEST(Picture, SamplesDependOnPixelAndSeedAndNotOnThreads) {
   EXPECT_NE(with_threads(1), one);
 }
 
-TEST(Picture, SamplesOfAPixelDrawPointsOfTheirOwn) {
-  // Where half of a wide sun is seen, one ray to it finds it or not. With the same ray for all four samples of a pixel
-  // half of the pixels would be dark; with rays of their own, spread as well as four can be, none is.
+TEST(Picture, SamplesOfAPixelUseDifferentPoints) {
+  // Where half of a wide sun is visible, a single ray finds it or not. With the same ray for all four samples of a
+  // pixel, half of the pixels would be dark; with separate, well distributed rays, none is.
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
   settings.ramp = "viridis";
@@ -154,7 +154,7 @@ TEST(Picture, SamplesOfAPixelDrawPointsOfTheirOwn) {
   EXPECT_LT(found_dark, 10);
 }
 
-TEST(Picture, OcclusionDarkensTheFootOfAWallInItsShadow) {
+TEST(Picture, OcclusionDarkensTheShadowedFootOfAWall) {
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
   settings.ramp = "viridis";
@@ -188,8 +188,8 @@ TEST(Picture, HolesShowTheSky) {
   EXPECT_EQ(red(image, 40, 40), red(beside, 1, 40));
 }
 
-// The ramp grey is linear in height, wherever the ground turns to, in the shadow of the wall as in the sun.
-TEST(Picture, UnlitGroundHasItsOwnColours) {
+// The ramp grey is linear in height, for any slope, in the shadow of the wall as in the sun.
+TEST(Picture, UnlitGroundKeepsItsColours) {
   const HeightField field = wall();
   for (const Look look : {Look::shaded, Look::comanche}) {
     PictureSettings settings = map_settings(field);
@@ -206,7 +206,7 @@ TEST(Picture, UnlitGroundHasItsOwnColours) {
   }
 }
 
-TEST(Picture, UnlitWallsAreAlike) {
+TEST(Picture, UnlitWallsHaveOneColour) {
   const Scene scene = test::terrain_on_plinth(field_of(5, 30, nothing));
   PictureSettings settings;
   settings.width = settings.height = 64;
@@ -249,7 +249,7 @@ TEST(Picture, LevelsShowTheMaximaOfTheirNodes) {
   EXPECT_THROW(map_of(field, settings), Error);
 }
 
-TEST(Picture, HeightIsLinearFromOneAndMissesAreBlack) {
+TEST(Picture, HeightIsLinearAndMissesAreBlack) {
   // Ten steps from 100 m in the west to 110 m in the east, with a hole.
   const HeightField field = field_of(11, 0, [](std::vector<float>& samples, int side) {
     for (int i = 0; i < side * side; ++i) samples[static_cast<std::size_t>(i)] = static_cast<float>(100 + i % side);
@@ -288,7 +288,7 @@ TEST(Picture, StepsCountWhatTheMarchReports) {
   EXPECT_EQ(picture.steps->most, most);
   EXPECT_EQ(picture.steps->least, 0u) << "rays beside the field";
   EXPECT_NEAR(picture.steps->mean, sum / (40 * 30), 1e-9);
-  // On a scale of its own a number of steps has one colour in all pictures.
+  // On a fixed scale a number of steps has the same colour in all pictures.
   settings.step_scale = StepScale{0, 2.0 * most};
   const Picture scaled = render_picture(scene, camera, settings);
   EXPECT_EQ(scaled.steps->most, most);
@@ -321,8 +321,8 @@ MarchSettings coarse_naive() {
   return coarse;
 }
 
-// In the colours of the ramp grey the ground is grey, and the sky is blue.
-TEST(Picture, SkyIsSeenWhereANaiveMarchLosesTheGround) {
+// With the ramp grey the ground is grey, and the sky is blue.
+TEST(Picture, SkyShowsWhereNaiveLosesTheGround) {
   const Image right = spike(Look::shaded, "max-mip").image, naive = spike(Look::shaded, "naive", coarse_naive()).image;
   const ErrorCounts counts = spike(Look::error, "naive", coarse_naive()).errors.value();
   std::int64_t holes = 0;
@@ -334,7 +334,7 @@ TEST(Picture, SkyIsSeenWhereANaiveMarchLosesTheGround) {
   EXPECT_EQ(holes, counts[Verdict::lost]);
 }
 
-TEST(ErrorLook, ANaiveMarchLosesASpike) {
+TEST(ErrorLook, NaiveLosesASpike) {
   const Picture picture = spike(Look::error, "naive", coarse_naive());
   ASSERT_TRUE(picture.errors);
   const ErrorCounts& counts = *picture.errors;
@@ -351,7 +351,7 @@ TEST(ErrorLook, ANaiveMarchLosesASpike) {
   EXPECT_EQ(reds, counts[Verdict::lost]);
 }
 
-TEST(ErrorLook, AnExactMarchHasNoErrors) {
+TEST(ErrorLook, ExactMarchHasNoErrors) {
   const Picture picture = spike(Look::error, "max-mip");
   const ErrorCounts& counts = *picture.errors;
   EXPECT_GT(counts[Verdict::right_hit], 500);
@@ -362,7 +362,7 @@ TEST(ErrorLook, AnExactMarchHasNoErrors) {
 }
 
 // Under the rim of a bowl, from outside.
-TEST(ErrorLook, RaysThatComeInUnderTheGroundAreNotLost) {
+TEST(ErrorLook, RaysThatEnterBelowGroundAreNotLost) {
   const HeightField bowl = field_of(33, 0, [](std::vector<float>& samples, int side) {
     for (int i = 0; i < side * side; ++i)
       samples[static_cast<std::size_t>(i)] =
@@ -380,7 +380,7 @@ TEST(ErrorLook, RaysThatComeInUnderTheGroundAreNotLost) {
   }
 }
 
-TEST(ErrorLook, NamesAShrinkFactorThatIsNotProven) {
+TEST(ErrorLook, NamesAnUnprovenShrinkFactor) {
   MarchSettings settings;
   settings.lipschitz.shrink = 0.7;
   const Picture picture = spike(Look::error, "lipschitz", settings);
@@ -389,7 +389,7 @@ TEST(ErrorLook, NamesAShrinkFactorThatIsNotProven) {
   EXPECT_EQ((*picture.errors)[Verdict::gave_up], 0);
 }
 
-TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
+TEST(ErrorLook, VerdictComparesStatusThenDistance) {
   const auto hit = [](double t) {
     Hit h;
     h.status = HitStatus::hit;
@@ -414,7 +414,7 @@ TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
   EXPECT_EQ(judge(hit(5), below, 0.2), Verdict::not_judged);
 }
 
-TEST(Picture, ThePlinthStandsBelowTheBorder) {
+TEST(Picture, PlinthStandsBelowTheBorder) {
   const HeightField field = field_of(21, 100, nothing);
   const Scene scene = test::terrain_on_plinth(field);
   PictureSettings settings;
@@ -429,13 +429,13 @@ TEST(Picture, ThePlinthStandsBelowTheBorder) {
   EXPECT_GT(red(without, x, y), 200) << "sky";
 }
 
-TEST(Picture, ANameOfALookIsFoundAndAnUnknownOneListsThem) {
+TEST(Picture, UnknownLookErrorListsTheKnownOnes) {
   for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error})
     EXPECT_EQ(find_look(name_of(look)), look);
   EXPECT_THROW(find_look("pretty"), Error);
 }
 
-TEST(Picture, SettingsOutOfRangeAreRefused) {
+TEST(Picture, RejectsSettingsOutOfRange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   using Settings = PictureSettings;
   const std::vector<std::function<void(Settings&)>> spoil = {[](Settings& s) { s.width = 0; },
@@ -475,7 +475,7 @@ TEST(Picture, SettingsOutOfRangeAreRefused) {
   EXPECT_NO_THROW(validate(PictureSettings{}));
 }
 
-TEST(Picture, AFieldWithNothingToSeeIsAnError) {
+TEST(Picture, RejectsFieldsWithNothingVisible) {
   const Camera camera = Camera::look_at({0, -5, 5}, {0, 0, 0}, 30, 8, 8);
   PictureSettings settings;
   settings.width = settings.height = 8;
@@ -484,7 +484,7 @@ TEST(Picture, AFieldWithNothingToSeeIsAnError) {
   EXPECT_THROW(render_picture(Scene({}, {}), camera, settings), Error);
 }
 
-TEST(Picture, StopsWhenItIsAskedTo) {
+TEST(Picture, StopsOnRequest) {
   const HeightField field = wall();
   for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error}) {
     PictureSettings settings = map_settings(field);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Pictures on a Vulkan device: every ray of every look gets an answer that single precision allows (RoundingJudge), and
-// where the CPU answers the same, pixels are the same.
+// Pictures on a Vulkan device: every ray of every look has an answer within single precision (RoundingJudge), and where
+// the CPU's answer is equal, pixels are equal.
 //
-// A hit of the device is the CPU's when it has the same status and cell; where in the cell, the judge decides. The
-// picture is made twice: once by the device alone; once with the CPU's hits put in where they are the same, so that all
-// further rays begin where the CPU's do. The second picture is the CPU's, byte by byte, but for pixels with a ray that
-// the device answers otherwise: these are counted, and each was allowed.
+// A hit of the device is the CPU's when it has the same status and cell; the judge checks the position in the cell. The
+// picture is rendered twice: once by the device alone; once with the CPU's hits substituted where they are equal, so
+// that all further rays start where the CPU's do. The second picture is the CPU's, byte by byte, except for pixels with
+// a ray that the device answers differently: these are counted, and each must be valid.
 //
-// Where the device alone puts its hits is compared with rays of the CPU that are delta lower and higher (2 rho of
-// doc/dev/numerics.md): a march that errs by no more in clearance stops between the hits of these two.
+// The hits of the device alone are compared with rays of the CPU that are delta lower and higher (2 rho of
+// doc/dev/numerics.md): a march whose clearance errs by no more stops between the hits of these two.
 #include "scarp/render/frame/picture.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ namespace {
 
 const int kWidth = cases(80, 80, 40), kHeight = cases(48, 48, 24);
 const unsigned kManyRays = static_cast<unsigned>(kWidth * kHeight / 4);
-constexpr double kSideways = 0x1p-10;  // of a cell: the most that a march is off, sideways, in a tile
+constexpr double kSideways = 0x1p-10;  // of a cell: the largest sideways error of a march in a tile
 
 bool same(const Hit& a, const Hit& b) { return a.status == b.status && (!a || (a.wall == b.wall && a.cell == b.cell)); }
 
@@ -57,8 +57,8 @@ double delta_of(const HeightField& field) {
 
 class Judged final : public SceneBackEnd {
  public:
-  // Scenes of one height field. `repairs`: whether the CPU's hits are returned where the device's are the same.
-  // `plinth` answers the rays of field 1; null: there is none.
+  // Scenes of one height field. `repairs`: whether the CPU's hits replace equal hits of the device. `plinth` answers
+  // the rays of field 1; null: there is none.
   Judged(const Scene& device, const Scene& cpu, SceneFieldPtr plinth, bool repairs)
       : device_(device),
         cpu_(cpu),
@@ -84,7 +84,7 @@ class Judged final : public SceneBackEnd {
       if (repairs_) hits[i] = cpu[i];
       if (steps.empty()) continue;
       ++counted;
-      // The first pass of max-mip looks at 2 x 2 blocks at once.
+      // The first pass of max-mip tests 2 x 2 blocks at once.
       EXPECT_TRUE(steps[i] == cpu_steps[i] || march_.name == "max-mip" || counts_vary(rays[i]))
           << steps[i] << " steps, on the CPU " << cpu_steps[i] << ": " << text(rays[i]);
     }
@@ -100,7 +100,7 @@ class Judged final : public SceneBackEnd {
     cpu_.occluded(rays, cpu);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(blocked[i] != 0, static_cast<bool>(hits[i])) << text(rays[i]);
-      // A march that takes samples stops near the surface, not on it, and then such a ray does not begin on it.
+      // A sampling march stops near the surface, not on it, and such a ray then does not start on it.
       if (march_.guarantee == Guarantee::exact) judge(rays[i], hits[i]);
       otherwise += (blocked[i] != 0) != (cpu[i] != 0);
     }
@@ -110,7 +110,7 @@ class Judged final : public SceneBackEnd {
   std::size_t asked = 0, otherwise = 0, counted = 0;
 
  private:
-  // Whether the CPU looks at more or less for a ray within delta: a count is a sum of decisions.
+  // Whether the CPU's counts differ for a ray within delta: a count is a sum of decisions.
   bool counts_vary(const Ray& ray) const {
     std::vector<Ray> around(7, ray);
     const double cell = std::min((*cpu_.only_heights()).settings().cell_x, (*cpu_.only_heights()).settings().cell_y);
@@ -212,26 +212,26 @@ class PicturesOnDevice : public OnDevice {
   }
 };
 
-// The device alone makes shaded pictures as a whole: terrain_frame_vk_test.cpp.
-TEST_F(PicturesOnDevice, ShadedWithHardShadows) { expect_the_cpus(scenes(false, true), settings(Look::shaded), false); }
+// Shaded pictures by the device alone: see terrain_frame_vk_test.cpp.
+TEST_F(PicturesOnDevice, MatchWithHardShadows) { expect_the_cpus(scenes(false, true), settings(Look::shaded), false); }
 
-TEST_F(PicturesOnDevice, ShadedWithSoftSunAndOcclusion) {
+TEST_F(PicturesOnDevice, MatchWithSoftSunAndOcclusion) {
   PictureSettings soft = settings(Look::shaded);
   soft.samples = 3;
   soft.sun.size_deg = 5;
   expect_the_cpus(scenes(false, true), soft, false);
 }
 
-TEST_F(PicturesOnDevice, ShadedSolidGround) {
+TEST_F(PicturesOnDevice, MatchOnSolidGround) {
   PictureSettings bare = settings(Look::shaded);
   bare.aa = 2;
   expect_the_cpus(scenes(true, false), bare, false);
 }
 
-TEST_F(PicturesOnDevice, Height) { expect_the_cpus(scenes(false, true), settings(Look::height)); }
+TEST_F(PicturesOnDevice, MatchInHeightLook) { expect_the_cpus(scenes(false, true), settings(Look::height)); }
 
-// The verdict is by the place of the hit, and the tolerance is far more than delta.
-TEST_F(PicturesOnDevice, Error) {
+// The verdict depends on the position of the hit, and the tolerance is far larger than delta.
+TEST_F(PicturesOnDevice, MatchInErrorLook) {
   const Scenes of = scenes(false, true);
   expect_the_cpus(of, settings(Look::error));
   const ErrorCounts counts = render_picture(of.device, of.camera, settings(Look::error)).errors.value();
@@ -240,8 +240,8 @@ TEST_F(PicturesOnDevice, Error) {
   EXPECT_EQ(counts.pixels, cpu.pixels);
 }
 
-// A march that takes samples decides as on the CPU, but for what is within delta: so it looks at as much.
-TEST_F(PicturesOnDevice, StepsAreTheCpus) {
+// A sampling march decides as on the CPU except within delta, so its counts are equal.
+TEST_F(PicturesOnDevice, StepsMatchTheCpu) {
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     SCOPED_TRACE(march.name);
@@ -256,7 +256,7 @@ TEST_F(PicturesOnDevice, StepsAreTheCpus) {
   }
 }
 
-TEST_F(PicturesOnDevice, Layers) {
+TEST_F(PicturesOnDevice, LayersMatchTheCpu) {
   const Scenes of = scenes(false, true);
   std::shared_ptr<Judged> judge;
   const PictureLayers cpu = render_layers(of.cpu, of.camera, settings(Look::shaded));
@@ -271,7 +271,7 @@ TEST_F(PicturesOnDevice, Layers) {
               cpu.normal[i] != repaired.normal[i] || cpu.position[i] != repaired.position[i];
     const dvec3 place = cpu.position[i];
     const auto away = [&](const PictureLayers& from) { return length(dvec3(from.position[i]) - place); };
-    // Positions are floats: of the four that are compared each is off by its own roundoff.
+    // Positions are floats: each of the four compared ones is off by its own roundoff.
     const double rounding = 4 * 0x1p-24 * length(place);
     moved += !(away(device) <= std::max(away(lower), away(higher)) + delta + rounding);
     counted += device.steps[i] > 0;
@@ -281,8 +281,8 @@ TEST_F(PicturesOnDevice, Layers) {
   EXPECT_GT(counted, kManyRays);
 }
 
-// Marches that take samples may stop elsewhere, each ray by its own rule.
-TEST_F(PicturesOnDevice, EveryMarchMakesThem) {
+// Sampling marches may stop elsewhere, each ray by its own rule.
+TEST_F(PicturesOnDevice, EveryMarchRenders) {
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu || march.guarantee == Guarantee::exact) continue;
     const Scenes of = scenes(false, true, march.name);

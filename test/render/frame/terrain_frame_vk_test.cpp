@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Whole pictures made on a Vulkan device against those of the CPU.
+// Whole pictures rendered on a Vulkan device against those of the CPU.
 //
-// A ray of single precision meets what a ray meets that is off by the bound of doc/dev/numerics.md: over these fields,
-// less than 2^-15 of a cell per cell of the way. Turning the camera by kTurn of a pixel moves each ray by more than ten
-// times that. So a pixel of the device has to lie between the darkest and the brightest of what the CPU's camera shows
-// there, straight and turned left, right, up and down; colours are continuous but for edges, which a turned camera has
-// on the pixel's other side. To that come kRounding: formulas in floats are right to 2^-17, a byte rounds either way.
+// A ray in single precision has the hit of some ray within the bound of doc/dev/numerics.md: over these fields, less
+// than 2^-15 of a cell per cell of its path. Turning the camera by kTurn of a pixel moves each ray by more than ten
+// times that. A pixel of the device must therefore lie between the darkest and the brightest that the CPU's camera
+// shows there, straight and turned left, right, up and down; colours are continuous except at edges, which a turned
+// camera has on the pixel's other side. kRounding is added: formulas in floats are accurate to 2^-17, and a byte rounds
+// either way.
 #include "scarp/render/frame/terrain_frame_vk.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +61,8 @@ bool in_many_holes(int col, int row) {
   return corner || border || ring || scattered || (col > 8 && col < 16 && row > 22 && row < 30);
 }
 
-// Hills with a period of 64 cells; of a field that ends, with a sea at exactly 2 in one corner and perhaps holes.
+// Hills with a period of 64 cells; if the field is not wrapped, with a sea at exactly 2 in one corner and optional
+// holes.
 HeightField hills(const HeightFieldSettings& settings, Holes holes = Holes::one) {
   const bool wraps = settings.wrap != Wrap::none;
   std::vector<float> samples;
@@ -85,7 +87,7 @@ struct Row {
   bool top = false;
   bool plinth = false;
   Holes holes = Holes::one;
-  dvec3 eye{70, -30, 40};  // over a field that ends, looking north-west and down
+  dvec3 eye{70, -30, 40};  // over a field that is not wrapped, looking north-west and down
   double down = 0.6;
 };
 
@@ -159,7 +161,7 @@ std::vector<Row> rows() {
   add("solid", "max-mip",
       [=](PictureSettings& s) {
         fog(s, FogKind::height);
-        s.sun.azimuth_deg = 110;  // on both walls in sight, on either in another way
+        s.sun.azimuth_deg = 110;  // on both visible walls, differently on each
       },
       {.cell_x = 1.25, .cell_y = 0.75, .exaggeration = 1.5, .solid = true});
   add("shaded", "max-mip", [](PictureSettings& s) {
@@ -335,11 +337,11 @@ PictureSettings settings_of(const Row& row) {
   return settings;
 }
 
-// Turned by so many radians to the right and up.
+// Turned by these angles in radians to the right and up.
 Camera camera_of(const Row& row, const HeightField& field, const dvec2& turn) {
   Camera camera = Camera::top({{0, 0, 0}, {field.width(), field.depth(), 10}}, kWidth, kHeight);
   if (row.top) {
-    // There is no other direction: the map is moved instead.
+    // A map has only one direction: it is moved instead.
     const dvec3 moved(turn.x * 20, turn.y * 20, 0);
     camera = Camera::top({moved, dvec3(field.width(), field.depth(), 10) + moved}, kWidth, kHeight);
   } else {
@@ -361,7 +363,7 @@ Scene scene_of(const Row& row, const HeightField& field) {
 
 class TerrainFrames : public OnDevice, public testing::WithParamInterface<Row> {};
 
-TEST_P(TerrainFrames, AreTheCpusPictures) {
+TEST_P(TerrainFrames, MatchTheCpu) {
   const Row& row = GetParam();
   const HeightField field = hills(row.field, row.holes);
   const PictureSettings settings = settings_of(row);
@@ -417,7 +419,7 @@ INSTANTIATE_TEST_SUITE_P(All, TerrainFrames, testing::ValuesIn(tried_rows()),
 class TerrainFrame : public OnDevice {};
 
 // 65,536 steps are more than a run takes.
-TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
+TEST_F(TerrainFrame, ResumesWhereItWasInterrupted) {
   Row row = rows()[1];
   for (const bool stepped : {true, false}) {
     // Under sanitizers the shorter one of the two.
@@ -445,8 +447,8 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
   }
 }
 
-// Wherever it ends, nothing of it is left in the next picture, which is larger and gets other memory.
-TEST_F(TerrainFrame, MayBeInterrupted) {
+// Wherever it is interrupted, nothing of it is left in the next picture, which is larger and uses other memory.
+TEST_F(TerrainFrame, CanBeInterrupted) {
   Row row = rows()[6];
   const HeightField field = hills(row.field);
   PictureSettings settings = settings_of(row);
@@ -480,8 +482,8 @@ TEST_F(TerrainFrame, MayBeInterrupted) {
   EXPECT_EQ(render_picture(fresh, camera, settings).image.rgb, after.rgb);
 }
 
-// More pixels than there are on the device at once.
-TEST_F(TerrainFrame, IsMadeInParts) {
+// More pixels than the device holds at once.
+TEST_F(TerrainFrame, RendersInParts) {
   if (test::cases(1, 1, 0) == 0) GTEST_SKIP() << "takes a minute under sanitizers";
   constexpr int kWide = 700, kHigh = 460, kEvery = 101;
   const HeightField field = hills({}, Holes::none);
@@ -511,7 +513,7 @@ TEST_F(TerrainFrame, IsMadeInParts) {
   EXPECT_GT(ground, 1000);
 }
 
-TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
+TEST_F(TerrainFrame, ReportsWhatItsRaysHit) {
   const Row row = rows()[6];
   const HeightField field = hills(row.field);
   const PictureSettings settings = settings_of(row);
@@ -553,7 +555,7 @@ TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
 }
 
 // Grey levels are heights to within half a level; rays that just hit or miss a crest may differ.
-TEST_F(TerrainFrame, HasTheHeightsOfSteps) {
+TEST_F(TerrainFrame, MatchesTheHeightsOfSteps) {
   Row row = rows()[2];
   ASSERT_EQ(row.name, "by_view");
   const HeightField field = hills(row.field);
@@ -573,7 +575,7 @@ TEST_F(TerrainFrame, HasTheHeightsOfSteps) {
   EXPECT_GT(ground, kWidth * kHeight / 3);
 }
 
-TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
+TEST_F(TerrainFrame, LeavesUnsupportedFramesToRounds) {
   const Row row = rows()[6];
   const HeightField endless = hills(row.field), ends = hills({});
   const auto on_device = [&](const HeightField& field, const char* march) {
@@ -589,7 +591,7 @@ TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
   EXPECT_THROW(render_picture(on_device(ends, "fixed-step"), far_away, settings), Error);
 }
 
-TEST(TerrainFrameLayout, IsThatOfTheShaders) {
+TEST(TerrainFrameLayout, MatchesTheShaders) {
   using glsl::FramePush, glsl::FrameSight, glsl::FrameWave, glsl::FramePatch, glsl::FrameRampPiece;
   EXPECT_TRUE(has_struct(kRaysShader,
                          {offsetof(FramePush, settings), offsetof(FramePush, ground), offsetof(FramePush, seens),

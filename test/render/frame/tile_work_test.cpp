@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work in rounds, against a scene on a device that is none: it tells of each ray what the ray says of itself.
+// Work in rounds, against a scene on a fake device, which derives its answer from the ray itself.
 #include "scarp/render/frame/tile_work.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,8 @@ class Echo final : public SceneBackEnd {
   int batches = 0;
 };
 
-// As many rounds as the tile's column and row say, of all three questions, of sizes of their own; counts right answers.
+// The tile's column and row determine the number of rounds of all three queries, each with its own size; counts correct
+// answers.
 class Curious final : public TileWork {
  public:
   Curious(const PixelTile& tile, std::size_t most_rays, std::atomic<std::int64_t>& right)
@@ -79,7 +80,7 @@ Scene echo_scene(const std::shared_ptr<Echo>& echo) {
   return test::terrain(HeightField::own(std::vector<float>(4), 2, 2)).answered_by(echo);
 }
 
-TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
+TEST(TileWork, TilesShareDeviceBatches) {
   const auto echo = std::make_shared<Echo>();
   const PixelTiles tiles(700, 500, 2);
   std::atomic<std::int64_t> right{0};
@@ -99,7 +100,7 @@ TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
-TEST(TileWork, StopsWhenItIsAskedTo) {
+TEST(TileWork, StopsOnRequest) {
   const Scene on_cpu = test::terrain(HeightField::own(std::vector<float>(4), 2, 2), "max-mip");
   const auto echo = std::make_shared<Echo>();
   for (const Scene& scene : {on_cpu, echo_scene(echo)}) {

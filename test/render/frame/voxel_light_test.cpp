@@ -53,7 +53,7 @@ bool is_floor(const PictureLayers& of, std::size_t i) {
   return std::isfinite(of.depth[i]) && of.position[i].z < 1.001f && of.normal[i].z > 0.5f;
 }
 
-TEST(VoxelLight, IsEmittedInUnitsOfTheColour) {
+TEST(VoxelLight, EmissionScalesTheColour) {
   const PictureLayers plain = layers(room({})), glowing = layers(room({}, {.emission = 2}));
   int walls = 0;
   for (std::size_t i = 0; i < plain.colour.size(); ++i) {
@@ -67,7 +67,7 @@ TEST(VoxelLight, IsEmittedInUnitsOfTheColour) {
   EXPECT_GT(walls, 100);
 }
 
-TEST(VoxelLight, IsMirroredWithTheTintOfTheSurface) {
+TEST(VoxelLight, ReflectionsTakeTheSurfaceTint) {
   const Scene metal = room({.mirror = 0.75f});
   const PictureLayers plain = layers(room({})), mirrored = layers(metal);
   int of_wall = 0, of_sky = 0;
@@ -76,7 +76,7 @@ TEST(VoxelLight, IsMirroredWithTheTintOfTheSurface) {
       EXPECT_EQ(mirrored.colour[i], plain.colour[i]);
       continue;
     }
-    // What the mirrored ray meets is known by a ray of its own.
+    // A separate ray finds the hit of the mirrored ray.
     const dvec3 p = dvec3(plain.position[i]);
     const dvec3 d = normalize(p - camera().eye());
     const dvec3 to(d.x, d.y, -d.z);
@@ -86,7 +86,7 @@ TEST(VoxelLight, IsMirroredWithTheTintOfTheSurface) {
     const Hit hit = metal.closest_hit(ray);
     const vec3 other = (mirrored.colour[i] - 0.25f * plain.colour[i]) / 0.75f;
     if (hit) {
-      // The wall: red, whatever its light.
+      // The wall: red in any light.
       EXPECT_GT(other.x, 4 * other.y);
       ++of_wall;
     } else {
@@ -98,7 +98,7 @@ TEST(VoxelLight, IsMirroredWithTheTintOfTheSurface) {
   EXPECT_GT(of_sky, 20);
 }
 
-TEST(VoxelLight, IsLeftOutOfUnlitPictures) {
+TEST(VoxelLight, IsOmittedFromUnlitPictures) {
   const PictureLayers plain = layers(room({}), true), metal = layers(room({.mirror = 1}, {.emission = 3}), true);
   EXPECT_EQ(plain.colour, metal.colour);
 }

@@ -29,7 +29,7 @@ FogSettings high_fog() {
   return settings;
 }
 
-TEST(Fog, ByHeightIsTheIntegralAlongTheRay) {
+TEST(Fog, ByHeightMatchesTheIntegralAlongTheRay) {
   const FogSettings settings = high_fog();
   const Sky sky({}, {0, 0, 1}, 0);
   const Fog fog(settings, sky);
@@ -59,14 +59,14 @@ TEST(Fog, ByHeightIsTheIntegralAlongTheRay) {
     }
   }
   EXPECT_EQ(judged, 81);
-  // The whole way up: the integral of what lies above.
+  // All the way up: the integral of the fog above.
   const Ray up = ray({0, 0, 350}, {0, 1, 2});
   const double above = per_metre * std::exp(-1.0) * settings.falloff / up.direction.z;
   EXPECT_NEAR(transmittance(settings, up, kInfinity), std::exp(-above), 1e-14);
   EXPECT_EQ(transmittance(settings, ray({0, 0, 350}, {1, 0, 0}), kInfinity), 0);
 }
 
-TEST(Fog, ByDistanceLeavesTwoHundredthsAtTheVisibility) {
+TEST(Fog, ByDistanceTransmitsTwoPercentAtTheVisibility) {
   FogSettings settings;
   settings.kind = FogKind::distance;
   settings.visibility = 1234;
@@ -80,7 +80,7 @@ TEST(Fog, ByDistanceLeavesTwoHundredthsAtTheVisibility) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(seen[i], 0.98 * fog.colour(r.direction)[i], 1e-6);
 }
 
-TEST(Fog, IsWarmTowardsTheSunAlone) {
+TEST(Fog, IsWarmOnlyTowardsTheSun) {
   FogSettings settings = high_fog();
   settings.sun_tint = 1;
   const dvec3 to_sun = normalize(dvec3(1, 0, 1));
@@ -93,7 +93,7 @@ TEST(Fog, IsWarmTowardsTheSunAlone) {
   EXPECT_EQ(Fog(settings, sky).colour(to_sun), away);
 }
 
-TEST(Fog, ByIterationsIsTheShare) {
+TEST(Fog, ByIterationsIsProportional) {
   FogSettings settings;
   settings.kind = FogKind::iterations;
   const Sky sky({}, {0, 0, 1}, 0);
@@ -106,7 +106,7 @@ TEST(Fog, ByIterationsIsTheShare) {
   EXPECT_NEAR(fog.by_share(r, 0.25, ground).x, 0.75 * 0.1 + 0.25 * fog.colour(r.direction).x, 1e-6);
 }
 
-TEST(Fog, RefusesWhatIsOutOfRange) {
+TEST(Fog, RejectsValuesOutOfRange) {
   EXPECT_THROW(find_fog("mist"), Error);
   EXPECT_EQ(find_fog("height"), FogKind::height);
   for (const auto& spoil : {+[](FogSettings& s) { s.visibility = 0; }, +[](FogSettings& s) { s.falloff = -1; },

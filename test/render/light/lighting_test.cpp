@@ -11,7 +11,7 @@ vec3 light_on(double openness, int samples, std::uint8_t sky_blocked) {
   settings.samples = samples;
   settings.shadows = false;
   const Lighting lighting(settings, kUnlimited);
-  // Its back to the sun: what is left is the sky's.
+  // Facing away from the sun: only skylight remains.
   const LightPoint ground{{0, 0, 0}, -lighting.to_sun(), -lighting.to_sun(), openness};
   std::vector<Ray> rays;
   const LightRays asked = lighting.ask(ground, {0.5, 0.5, 0, 0, 0}, rays);
@@ -19,14 +19,14 @@ vec3 light_on(double openness, int samples, std::uint8_t sky_blocked) {
   return lighting.on(ground, asked, rays, blocked);
 }
 
-TEST(Lighting, OpennessIsAShareOfTheSky) {
+TEST(Lighting, OpennessScalesTheSkyLight) {
   const vec3 open = light_on(1, 0, 0);
   EXPECT_GT(open.x, 0);
   EXPECT_FLOAT_EQ(light_on(0.25, 0, 0).x, 0.25F * open.x);
   EXPECT_EQ(light_on(0, 0, 0), vec3(0.0F));
 }
 
-TEST(Lighting, OpennessDoesNotCountWhereTheSkyIsAsked) {
+TEST(Lighting, OpennessIsIgnoredWhenTheSkyIsSampled) {
   EXPECT_EQ(light_on(0.25, 8, 0), light_on(1, 8, 0));
   EXPECT_EQ(light_on(1, 8, 1), vec3(0.0F));
 }

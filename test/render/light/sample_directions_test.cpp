@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-// A mean over the middles of side x side squares is off by about 1 / side where what is averaged has an edge.
+// A mean over the middles of side x side squares is off by about 1 / side if the integrand has an edge.
 constexpr int kSide = 400;
 
 template <class F>
@@ -21,12 +21,12 @@ double mean_over_square(F&& f) {
   return sum / (double{kSide} * kSide);
 }
 
-TEST(SampleDirections, TheDiscIsUniform) {
+TEST(SampleDirections, DiscIsUniform) {
   for (const double radius : {0.25, 0.5, 0.9}) {
     const double share = mean_over_square([&](dvec2 s) { return length(on_disc(s)) < radius ? 1.0 : 0.0; });
     EXPECT_NEAR(share, radius * radius, 1.0 / kSide) << radius;
   }
-  // Each quarter between the diagonals, and each half of one, has its share.
+  // Each quarter between the diagonals, and each half of one, has its fraction.
   for (int part = 0; part < 8; ++part) {
     const double share = mean_over_square([&](dvec2 s) {
       const dvec2 p = on_disc(s);
@@ -38,7 +38,7 @@ TEST(SampleDirections, TheDiscIsUniform) {
   EXPECT_EQ(on_disc({0.5, 0.5}), dvec2(0, 0));
 }
 
-TEST(SampleDirections, AFrameIsOrthonormalAndRightHanded) {
+TEST(SampleDirections, FrameIsOrthonormalAndRightHanded) {
   for (const dvec3& towards : {dvec3(0, 0, 1), dvec3(0, 0, -1), dvec3(1, 0, 0), dvec3(0, -1, 0), dvec3(1, 2, 3),
                                dvec3(1e-9, -1e-8, -1), dvec3(-3, 1, -1e-12)}) {
     const Frame frame(normalize(towards));
@@ -53,8 +53,8 @@ TEST(SampleDirections, AFrameIsOrthonormalAndRightHanded) {
   }
 }
 
-TEST(SampleDirections, TheHemisphereIsWeightedWithTheCosine) {
-  // Below the angle z > c from the horizon there is the share 1 - c^2.
+TEST(SampleDirections, HemisphereIsCosineWeighted) {
+  // The fraction 1 - c^2 is below the angle z > c from the horizon.
   for (const double c : {0.1, 0.5, 0.9}) {
     const double share = mean_over_square([&](dvec2 s) { return cosine_weighted(s).z > c ? 1.0 : 0.0; });
     EXPECT_NEAR(share, 1 - c * c, 1.0 / kSide) << c;
@@ -65,7 +65,7 @@ TEST(SampleDirections, TheHemisphereIsWeightedWithTheCosine) {
   });
 }
 
-TEST(SampleDirections, TheCapIsUniformInSolidAngle) {
+TEST(SampleDirections, CapIsUniformInSolidAngle) {
   for (const double radius : {0.00465, 0.3, std::numbers::pi / 2}) {
     for (const double part : {0.3, 0.7}) {
       const double share = mean_over_square([&](dvec2 s) {

@@ -32,7 +32,7 @@ std::vector<dvec2> points_of(const PixelPoints& pixel, std::uint32_t first, std:
   return points;
 }
 
-TEST(SamplePattern, EveryGoOfAPixelIsStratifiedAndAllTogether) {
+TEST(SamplePattern, EveryRangeOfAPixelIsStratified) {
   const SamplePattern pattern(3, 256);
   for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1599, 899}, {65535, 65535}}) {
     for (const std::uint32_t purpose : {0u, 1u, 7u}) {
@@ -48,7 +48,7 @@ TEST(SamplePattern, EveryGoOfAPixelIsStratifiedAndAllTogether) {
   }
 }
 
-TEST(SamplePattern, NeighboursShareOutWhatIsLeftOver) {
+TEST(SamplePattern, NeighbouringPixelsComplementEachOther) {
   const SamplePattern pattern(3, 16);
   for (const int side : {2, 4, 8}) {
     for (const auto& [x0, y0] : {std::pair(0, 0), {side, 0}, {7 * side, 12 * side}}) {
@@ -65,7 +65,7 @@ TEST(SamplePattern, NeighboursShareOutWhatIsLeftOver) {
   }
 }
 
-TEST(SamplePattern, PixelsPurposesAndSeedsDiffer) {
+TEST(SamplePattern, DiffersByPixelPurposeAndSeed) {
   std::set<double> seen;
   int asked = 0;
   for (const std::uint32_t seed : {0u, 1u}) {

@@ -28,7 +28,7 @@ Sky scattering(double altitude, double turbidity = 3) {
 
 float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
-TEST(Sky, OfAPlainKindIsBlueAtTheZenithAndPaleAtTheHorizon) {
+TEST(Sky, PlainSkyIsBlueAtTheZenithAndPaleAtTheHorizon) {
   const Sky sky({}, direction(30), kSunRadius);
   const vec3 zenith = sky.colour({0, 0, 1}), horizon = sky.colour({1, 0, 0});
   EXPECT_GT(zenith.z, 3 * zenith.x);
@@ -41,7 +41,7 @@ TEST(Sky, HasNoEdgeAtTheHorizon) {
     EXPECT_LT(length(sky.colour(normalize(dvec3(1, 0, 1e-6))) - sky.colour(normalize(dvec3(1, 0, -1e-6)))), 1e-3f);
 }
 
-// Worked out from the paper's formulas by another program: turbidity 3, the sun 45 degrees high.
+// Computed from the paper's formulas by a separate program: turbidity 3, the sun 45 degrees high.
 TEST(Sky, HasPreethamsLuminanceAndChromaticityAtTheZenith) {
   const Sky sky = scattering(45);
   const vec3 zenith = sky.colour({0, 0, 1});
@@ -55,7 +55,7 @@ TEST(Sky, HasPreethamsLuminanceAndChromaticityAtTheZenith) {
   EXPECT_NEAR(luminance(zenith) / luminance(sky.sunlight()), 7.320 / (81.52 / std::numbers::pi), 0.005);
 }
 
-TEST(Sky, OfALowSunIsOrangeAndItsLightToo) {
+TEST(Sky, LowSunTurnsSkyAndSunlightOrange) {
   const Sky low = scattering(5), high = scattering(60);
   EXPECT_GT(low.sunlight().x, 4 * low.sunlight().z);
   EXPECT_LT(high.sunlight().x, 2 * high.sunlight().z);
@@ -76,7 +76,7 @@ TEST(Sky, IsBrightestAroundTheSun) {
   }
 }
 
-TEST(Sky, ShowsADiscOfTheSunsSize) {
+TEST(Sky, ShowsTheDiscAtItsTrueSize) {
   const Sky sky = scattering(30);
   const double radius = glm::degrees(kSunRadius);
   for (const double side : {-1.0, 1.0}) {
@@ -85,7 +85,7 @@ TEST(Sky, ShowsADiscOfTheSunsSize) {
   }
 }
 
-TEST(Sky, LightsLevelGroundWithOneWhenTheSunIsHigh) {
+TEST(Sky, LightsLevelGroundWithOneUnderAHighSun) {
   for (const double altitude : {45.0, 60.0, 90.0}) {
     const Sky sky = scattering(altitude);
     const float light =
@@ -94,7 +94,7 @@ TEST(Sky, LightsLevelGroundWithOneWhenTheSunIsHigh) {
   }
 }
 
-TEST(Sky, IsFiniteAndNotNegativeEverywhere) {
+TEST(Sky, IsFiniteAndNonNegativeEverywhere) {
   for (const double turbidity : {2.0, 10.0}) {
     for (const double sun : {0.01, 3.0, 45.0, 90.0}) {
       const Sky sky = scattering(sun, turbidity);
@@ -108,7 +108,7 @@ TEST(Sky, IsFiniteAndNotNegativeEverywhere) {
   }
 }
 
-// Straight down directions of all azimuths meet: their colours must, too.
+// Straight down, directions of all azimuths meet, and so must their colours.
 TEST(Sky, HasOneColourTowardsTheNadir) {
   const glsl::ScarpSky sky = scattering(5).numbers();
   const vec3 down = glsl::scarp_sky_beyond(sky, {0, 0, -1});
@@ -117,15 +117,15 @@ TEST(Sky, HasOneColourTowardsTheNadir) {
   EXPECT_GT(length(glsl::scarp_sky_beyond(sky, direction(-5)) - glsl::scarp_sky_beyond(sky, direction(-5, 180))), 0.1f);
 }
 
-TEST(Sky, RefusesWhatIsOutOfRange) {
+TEST(Sky, RejectsValuesOutOfRange) {
   EXPECT_THROW(find_sky("clear"), Error);
   EXPECT_EQ(find_sky("scattering"), SkyKind::scattering);
   for (const double turbidity : {1.9, 10.1, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(validate(SkySettings{SkyKind::scattering, turbidity}), Error);
 }
 
-// Water that reflects all light loses none of the sun's: what all eyes above it see is what came in.
-TEST(Glitter, IsAllOfTheSunlight) {
+// Water that reflects all light loses no sunlight: the sum over all eyes above it equals the incoming light.
+TEST(Glitter, ConservesSunlight) {
   for (const double altitude : {40.0, 70.0}) {
     glsl::ScarpSky sky = scattering(altitude).numbers();
     sky.disc = vec3(1e9f);
@@ -144,7 +144,7 @@ TEST(Glitter, IsAllOfTheSunlight) {
   }
 }
 
-TEST(Glitter, IsNotBrighterThanTheSunAndNeedsOne) {
+TEST(Glitter, IsNoBrighterThanTheSunDisc) {
   const Sky sky = scattering(30);
   const dvec3 mirrored(std::cos(glm::radians(30.0)), 0, -0.5);
   const vec3 seen = glsl::scarp_glitter(sky.numbers(), sky.sunlight(), mirrored, {0, 0, 1}, 0, 0.5);

@@ -63,10 +63,10 @@ double mean_of_pixels(int pixels, std::uint32_t count, F&& f) {
   return sum / pixels;
 }
 
-// Four standard errors of the mean of n shares whose values are 0 or 1: what stratification gains is not counted on.
+// Four standard errors of the mean of n values of 0 or 1; the gain from stratification is ignored.
 double four_sigma(int pixels, int count) { return 4 * 0.5 / std::sqrt(double{1} * pixels * count); }
 
-TEST(SkyOcclusion, OfAPlaneIsNothingAtAll) {
+TEST(SkyOcclusion, IsZeroOnAPlane) {
   for (const auto& [east, south] : {std::pair(0.0, 0.0), {0.5, -0.25}, {-3.0, 2.0}, {40.0, 0.0}}) {
     const Scene scene = scene_of(33, 33, [&, e = east, s = south](int c, int r) { return e * c + s * r; });
     for (const double x : {0.0, 3.3, 16.0, 31.99}) {
@@ -81,13 +81,14 @@ TEST(SkyOcclusion, OfAPlaneIsNothingAtAll) {
   }
 }
 
-TEST(SkyOcclusion, AtTheFootOfAWallIsThatOfItsHorizon) {
-  // A wall along the grid's north, its crest at x = 33, seen from level ground at the distance d. Of the sky over level
-  // ground, cosine-weighted, a horizon at the angle a on one side hides (1 - cos a) / 2: half of it for a = 90 degrees.
+TEST(SkyOcclusion, MatchesTheHorizonAtTheFootOfAWall) {
+  // A wall along the grid's north, its crest at x = 33, seen from level ground at the distance d. A horizon at the
+  // angle a on one side hides (1 - cos a) / 2 of the cosine-weighted sky over level ground: half of it for a = 90
+  // degrees.
   constexpr int kLength = 4000, kPixels = 64, kCount = 256;
   for (const auto& [height, d] : {std::pair(2000.0, 1.25), {2.0, 1.5}, {8.0, 5.0}, {8.0, 20.0}}) {
     const Scene scene = scene_of(35, kLength + 1, [h = height](int col, int) { return col >= 33 ? h : 0; });
-    // The wall's base begins one cell before its crest.
+    // The wall's base starts one cell before its crest.
     const LightPoint point = point_at(scene, 33 - d, kLength / 2);
     const double hidden = mean_of_pixels(
         kPixels, kCount, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); });
@@ -110,7 +111,7 @@ TEST(SkyOcclusion, EndsAtTheGivenDistance) {
   EXPECT_GT(within(kInfinity), within(20) + 0.05);
 }
 
-TEST(SkyOcclusion, ARoofHidesNothingFromItsRidge) {
+TEST(SkyOcclusion, IsZeroOnARidge) {
   // The shading normal at the ridge is upright, the slope's is not: the sky is that over the slope.
   const Scene scene = scene_of(33, 33, [](int col, int) { return -2 * std::abs(col - 16); });
   const LightPoint point = point_at(scene, 16.125, 16.5);
@@ -135,9 +136,9 @@ class Cliff : public testing::Test {
   const Scene scene_ = scene_of(200, 17, [h = height_](int col, int) { return col <= kEdge ? h : 0; });
 };
 
-TEST_F(Cliff, ThePenumbraIsThatOfTheDisc) {
+TEST_F(Cliff, PenumbraMatchesTheSunDisc) {
   const double radius = glm::radians(0.533 / 2);
-  // The edge stands at the angle atan(height / distance). A disc that it covers up to the share s of its radius from
+  // The edge stands at the angle atan(height / distance). A disc that it covers up to the fraction s of its radius from
   // the middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: flat, which is off by radius^2 for a cap.
   for (const double s : {-0.95, -0.6, -0.3, 0.0, 0.4, 0.7, 0.95}) {
     const double shown = 0.5 + (std::asin(s) + s * std::sqrt(1 - s * s)) / std::numbers::pi;
@@ -145,20 +146,20 @@ TEST_F(Cliff, ThePenumbraIsThatOfTheDisc) {
     // Over the disc the cosine differs by its radius.
     EXPECT_NEAR(sun_at(distance, radius), shown * std::sin(altitude_), four_sigma(kPixels, kCount) + radius) << s;
   }
-  // Beyond its two ends there is nothing of the sun, and all of it.
+  // Beyond its two ends the sun is completely hidden or completely visible.
   EXPECT_EQ(sun_at(height_ / std::tan(altitude_ + 1.01 * radius), radius), 0.0);
   EXPECT_NEAR(sun_at(height_ / std::tan(altitude_ - 1.01 * radius), radius), std::sin(altitude_),
               radius * radius + 1e-5)
       << "the mean over a stratified disc is nearly its middle's";
 }
 
-TEST_F(Cliff, APointOfASunHasAHardShadow) {
+TEST_F(Cliff, PointSunCastsAHardShadow) {
   const double end = height_ / std::tan(altitude_);
   EXPECT_EQ(sun_at(end * 0.999, 0), 0.0);
   EXPECT_DOUBLE_EQ(sun_at(end * 1.001, 0), std::sin(altitude_));
 }
 
-TEST_F(Cliff, WhatTurnsAwayFromTheSunGetsNone) {
+TEST_F(Cliff, SurfacesFacingAwayGetNoSun) {
   const LightPoint flank = point_at(scene_, kEdge + 0.5, 8);
   EXPECT_EQ(sun_cosine(scene_, flank, to_sun_, 0.005, {SamplePattern(0, 8).pixel(0, 0, 0), 0, 8}), 0.0);
 }

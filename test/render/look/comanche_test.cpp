@@ -57,7 +57,7 @@ PictureSettings comanche(int width, int height) {
   return settings;
 }
 
-TEST(Comanche, EndlessGroundLooksLikeTheTiledField) {
+TEST(Comanche, WrappedGroundMatchesTheTiledField) {
   for (const char* march : {"max-mip", "fixed-step"}) {
     for (const bool shadows : {false, true}) {
       if (shadows && march == std::string("fixed-step")) continue;
@@ -67,7 +67,7 @@ TEST(Comanche, EndlessGroundLooksLikeTheTiledField) {
       settings.fog.kind = FogKind::distance;
       settings.fog.visibility = 60;
       const Scene wrapped = test::terrain(endless(), march), laid_out = test::terrain(tiled(), march);
-      // Six periods from the border of the tiled field, 40 cells of sight and 40 of mirrored sight: no ray comes to it.
+      // Six periods from the border of the tiled field, 40 cells of sight and 40 of mirrored sight: no ray reaches it.
       constexpr double kOffset = 6 * kPeriod;
       const dvec3 eye(7.25, 4.5, 6), ahead(0.5, 0.75, -0.25), offset(kOffset, kOffset, 0);
       Camera near = Camera::look_at(eye, eye + ahead, 60, 96, 72);
@@ -89,7 +89,7 @@ TEST(Comanche, EndlessGroundLooksLikeTheTiledField) {
 }
 
 TEST(Comanche, StepsLieOnPlanesOrShells) {
-  // Level ground: a sample on or below it is one past where the ray meets it.
+  // Level ground: a sample on or below it is past the ray's intersection.
   HeightFieldSettings field_settings;
   field_settings.wrap = Wrap::periodic;
   const HeightField flat = HeightField::own(std::vector<float>(16, 0.0f), 4, 4, field_settings);
@@ -122,7 +122,7 @@ TEST(Comanche, StepsLieOnPlanesOrShells) {
   }
 }
 
-TEST(Comanche, PlainWaterIsSeenAtTheFirstSampleBelow) {
+TEST(Comanche, PlainWaterShowsAtTheFirstSampleBelow) {
   HeightFieldSettings field_settings;
   field_settings.wrap = Wrap::periodic;
   const HeightField flat = HeightField::own(std::vector<float>(16, -50.0f), 4, 4, field_settings);
@@ -140,7 +140,7 @@ TEST(Comanche, PlainWaterIsSeenAtTheFirstSampleBelow) {
   EXPECT_DOUBLE_EQ(met.t, truth);
 }
 
-TEST(Comanche, RaysThatLookUpLeave) {
+TEST(Comanche, UpwardRaysLeave) {
   const HeightField field = endless();
   const StepMarch march(field, {.steps = 1000, .shells = true}, 1000, {0, 1, 0});
   Ray ray;
@@ -151,7 +151,7 @@ TEST(Comanche, RaysThatLookUpLeave) {
   EXPECT_LE(march.march(ray, nullptr).steps, 4u) << "0.1 to rise, 0.0995 a step";
 }
 
-TEST(Comanche, ThePictureOfStepsIsBlackToWhite) {
+TEST(Comanche, StepsPictureRangesFromBlackToWhite) {
   const Scene scene = test::terrain(endless(), "fixed-step");
   PictureSettings settings = comanche(48, 36);
   settings.comanche.iterations = true;
@@ -176,7 +176,7 @@ TEST(Comanche, ThePictureOfStepsIsBlackToWhite) {
   EXPECT_GT(white, 20) << "rays that came to the end of their steps";
 }
 
-TEST(Comanche, HeightsAreThoseThatItsRaysHit) {
+TEST(Comanche, HeightsMatchItsRays) {
   const HeightField field = endless();
   PictureSettings settings = comanche(48, 36);
   settings.comanche.heights = true;
@@ -205,7 +205,7 @@ TEST(Comanche, HeightsAreThoseThatItsRaysHit) {
   }
 }
 
-TEST(Comanche, RefusesWhatIsOutOfRange) {
+TEST(Comanche, RejectsValuesOutOfRange) {
   EXPECT_THROW(validate(ComancheSettings{.scale = 0}), Error);
   EXPECT_THROW(validate(ComancheSettings{.scale = 65}), Error);
   EXPECT_THROW(validate(ComancheSettings{.steps = 0}), Error);

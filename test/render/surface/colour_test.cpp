@@ -35,7 +35,7 @@ TEST(Ramp, HypsometricBreaksAtSeaLevel) {
   EXPECT_FALSE(bluish(ramp(2000)));
 }
 
-TEST(Ramp, HypsometricScalesEachPartToItself) {
+TEST(Ramp, HypsometricScalesLandAndSeaSeparately) {
   const auto same = [](vec3 a, vec3 b) { return length(a - b) < 1e-6f; };
   EXPECT_TRUE(same(Ramp("hypsometric", -10, 2000)(1000), Ramp("hypsometric", -9000, 2000)(1000)));
   EXPECT_TRUE(same(Ramp("hypsometric", 300, 700)(300), Ramp("hypsometric", -50, 700)(1e-12)))
@@ -44,7 +44,7 @@ TEST(Ramp, HypsometricScalesEachPartToItself) {
   EXPECT_TRUE(bluish(Ramp("hypsometric", 0, 0)(0))) << "nothing but sea";
 }
 
-TEST(Ramp, TablesRunFromEndToEnd) {
+TEST(Ramp, TablesSpanTheRange) {
   const Ramp ramp("viridis", 10, 20);
   EXPECT_EQ(rgb_of(ramp(10)), kViridis.front());
   EXPECT_EQ(rgb_of(ramp(20)), kViridis.back());
@@ -66,7 +66,7 @@ TEST(Ramp, EveryNameWorksOnEveryRange) {
   }
 }
 
-TEST(Ramp, AnUnknownNameListsTheKnownOnes) {
+TEST(Ramp, UnknownNameErrorListsTheKnownOnes) {
   try {
     Ramp("jet", 0, 1);
     FAIL() << "no error";
@@ -75,7 +75,7 @@ TEST(Ramp, AnUnknownNameListsTheKnownOnes) {
   }
 }
 
-TEST(Ramp, BytesSurviveTheWayThroughLinearLight) {
+TEST(Ramp, BytesRoundTripThroughLinearLight) {
   for (int byte = 0; byte < 256; ++byte) {
     const auto s = static_cast<float>(byte) / 255.0f;
     EXPECT_EQ(srgb_byte(linear_from_srgb({s, s, s}).y), byte);
@@ -83,7 +83,7 @@ TEST(Ramp, BytesSurviveTheWayThroughLinearLight) {
 }
 
 // srgb_byte() uses a table; all floats around the beginnings of bytes, and some of the others.
-TEST(Ramp, BytesAreThoseOfTheShaders) {
+TEST(Ramp, BytesMatchTheShaders) {
   const auto expect_same = [](float linear) { ASSERT_EQ(srgb_byte(linear), glsl::scarp_srgb_byte(linear)) << linear; };
   for (std::uint32_t bits = 0; bits < 0x40000000; bits += 4001) expect_same(std::bit_cast<float>(bits));
   for (std::uint32_t bits = 1; bits < 0x3f800000; bits += 1024) {
@@ -94,14 +94,14 @@ TEST(Ramp, BytesAreThoseOfTheShaders) {
   for (const float linear : {-1.0f, -0.0f, 1e30f, std::numeric_limits<float>::infinity()}) expect_same(linear);
 }
 
-TEST(Light, LevelGroundInFullSunIsOne) {
+TEST(Light, IsOneOnLevelGroundInFullSun) {
   for (const double altitude : {30.0, 45.0, 90.0}) {
     const vec3 light = Light({.azimuth_deg = 200, .altitude_deg = altitude}, 0.3).on({0, 0, 1}, true);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(light[i], 1, 1e-6) << altitude;
   }
 }
 
-TEST(Light, ShadowedSlopesStillRead) {
+TEST(Light, ShadowedSlopesKeepContrast) {
   const Light light({.azimuth_deg = 90, .altitude_deg = 30}, 0);
   const dvec3 east = normalize(dvec3(1, 0, 1)), west = normalize(dvec3(-1, 0, 1));
   EXPECT_GT(light.on(west, false).y, 0.05f);
@@ -109,14 +109,14 @@ TEST(Light, ShadowedSlopesStillRead) {
   EXPECT_LT(light.on(east, false).y, light.on(east, true).y);
 }
 
-TEST(Light, TheSunIsAtItsCompassAzimuth) {
+TEST(Light, SunIsAtItsCompassAzimuth) {
   const double grid_north = glm::radians(-5.0);
   const Light light({.azimuth_deg = 85, .altitude_deg = 60}, grid_north);
   EXPECT_NEAR(light.to_sun().x, 0.5, 1e-12);
   EXPECT_NEAR(light.to_sun().y, 0, 1e-12);
 }
 
-TEST(Light, ASunBelowTheHorizonIsRefused) {
+TEST(Light, RejectsASunBelowTheHorizon) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double altitude : {0.0, -10.0, 91.0, nan}) {
     EXPECT_THROW(validate(SunSettings{.altitude_deg = altitude}), Error) << altitude;
@@ -124,8 +124,8 @@ TEST(Light, ASunBelowTheHorizonIsRefused) {
   EXPECT_THROW(validate(SunSettings{.azimuth_deg = nan}), Error);
 }
 
-// Shades of a white hill-shade stay apart, hues stay, and dark colours do not change.
-TEST(ToneCurve, CompressesBrightColoursAlone) {
+// Shades of a white hill-shade stay distinct, hues are kept, and dark colours do not change.
+TEST(ToneCurve, CompressesOnlyBrightColours) {
   for (const vec3 dark : {vec3(0.0f), vec3(0.1f, 0.7f, 0.3f)}) EXPECT_EQ(toned(dark), dark);
   float before = toned(vec3(0.7f)).x;
   for (int i = 71; i <= 175; ++i) {

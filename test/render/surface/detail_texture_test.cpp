@@ -27,7 +27,7 @@ std::vector<std::uint8_t> greys(const std::vector<int>& values) {
 constexpr double kSharp = 1e-3;  // metres of a pixel
 
 // 3 x 2 texels over 30 x 20 m; the mean is 85.
-TEST(DetailTexture, IsRepeatedWithNorthUp) {
+TEST(DetailTexture, RepeatsNorthUp) {
   const DetailTexture texture(3, 2, greys({0, 255, 0, 255, 0, 0}));
   const auto at = [&](double x, double y) { return texture.at({x, y}, 30, kSharp); };
   constexpr double kWhite = 2 * (1 - 85.0 / 255), kBlack = -2 * 85.0 / 255;
@@ -43,7 +43,7 @@ TEST(DetailTexture, IsRepeatedWithNorthUp) {
   EXPECT_NEAR(at(10, 10), 0.5 * (kWhite + kBlack), 1e-6) << "between four texels";
 }
 
-TEST(DetailTexture, FadesWhereAPixelCoversIt) {
+TEST(DetailTexture, FadesAsPixelsGrow) {
   std::vector<int> values;
   for (int i = 0; i < 7 * 5; ++i) values.push_back(i * 97 % 256);
   const DetailTexture texture(7, 5, greys(values));
@@ -67,7 +67,7 @@ TEST(DetailTexture, ReplacesNoiseOnTheGround) {
   EXPECT_NEAR(factor(15), 1.5, 1e-6);
 }
 
-TEST(DetailTexture, RefusesImagesOfAnotherSize) {
+TEST(DetailTexture, RejectsImagesOfAnotherSize) {
   EXPECT_THROW(DetailTexture(0, 1, {}), Error);
   EXPECT_THROW(DetailTexture(2, 1, greys({1})), Error);
   EXPECT_THROW(DetailTexture(DetailTexture::kMostSide + 1, 1, {}), Error);

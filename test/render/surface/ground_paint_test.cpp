@@ -14,7 +14,7 @@ namespace {
 
 const dvec3 kSun = normalize(dvec3(-1, 0, 1));
 
-// Of ground of 10 x 10 cells of 10 m, from 0 to 100 m.
+// Paint of ground of 10 x 10 cells of 10 m, from 0 to 100 m.
 class Paint {
  public:
   explicit Paint(const GroundPaintSettings& settings)
@@ -30,7 +30,7 @@ class Paint {
 
 Paint paint(const GroundPaintSettings& settings) { return Paint(settings); }
 
-TEST(GroundPaint, ContoursAreAtTheirHeightsAndSoWideInPixels) {
+TEST(GroundPaint, ContoursHaveTheRightHeightAndWidth) {
   const Paint with = paint({.contours = 20}), without = paint({});
   const dvec3 normal = normalize(dvec3(-1, 0, 1));
   constexpr double kPixel = 0.25;
@@ -44,11 +44,11 @@ TEST(GroundPaint, ContoursAreAtTheirHeightsAndSoWideInPixels) {
     if (std::abs(off - reach) < 1e-6) continue;
     EXPECT_EQ(inked, off < reach) << height;
   }
-  // Lines closer than three pixels are no lines.
+  // Lines closer than three pixels are not drawn.
   EXPECT_EQ(with({20, 50, 20}, 20, normal, 8), without({20, 50, 20}, 20, normal, 8));
 }
 
-TEST(GroundPaint, UprightSurfacesHaveContoursAndLevelOnesHaveNone) {
+TEST(GroundPaint, ContoursAppearOnVerticalSurfacesOnly) {
   const Paint with = paint({.contours = 20}), without = paint({});
   const dvec3 upright(1, 0, 0), up(0, 0, 1);
   constexpr double kPixel = 0.25;
@@ -92,7 +92,7 @@ TEST(GroundPaint, DrapesAPictureOverTheField) {
   EXPECT_NEAR(middle.y, 0.5, 1e-6);
 }
 
-TEST(GroundPaint, DrapesOverAPartLeaveTheRest) {
+TEST(GroundPaint, PartialDrapesLeaveTheRest) {
   Drape part{1, 1, {255, 0, 0, 255}, {0.25, 0.5}, {0.75, 1}};
   const auto red_at = [](const Paint& paper, double x, double y) {
     return paper({x, y, 0}, 100, {0, 0, 1}, 1) == vec3(1, 0, 0);
@@ -127,7 +127,7 @@ TEST(GroundPaint, DrapesRepeatWithTheField) {
   }
 }
 
-TEST(GroundPaint, DetailIsGoneFarAway) {
+TEST(GroundPaint, DetailFadesWithDistance) {
   const Paint rough = paint({.detail = 0.5, .detail_size = 10}), smooth = paint({});
   int different = 0;
   for (int i = 0; i < 100; ++i) {
@@ -138,7 +138,7 @@ TEST(GroundPaint, DetailIsGoneFarAway) {
   EXPECT_GT(different, 90);
 }
 
-TEST(GroundPaint, RampsOfFilesKeepTheirValues) {
+TEST(GroundPaint, FileRampsKeepTheirValues) {
   RampStops stops;
   stops.slices = {{-10, 0, {0, 0, 1}, {0, 0, 1}}, {0, 50, {0, 1, 0}, {1, 0, 0}}};
   const Ramp ramp(stops, 0, 100, 2);  // twice exaggerated
@@ -156,7 +156,7 @@ TEST(GroundPaint, RampsOfFilesKeepTheirValues) {
   EXPECT_EQ(hinged(400), vec3(1, 0, 0));
 }
 
-TEST(GroundPaint, RefusesWhatIsOutOfRange) {
+TEST(GroundPaint, RejectsValuesOutOfRange) {
   EXPECT_THROW(validate(GroundPaintSettings{.detail = 2}), Error);
   EXPECT_THROW(validate(GroundPaintSettings{.detail_size = -1}), Error);
   EXPECT_THROW(validate(GroundPaintSettings{.contours = -1}), Error);

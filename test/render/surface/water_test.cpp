@@ -35,7 +35,7 @@ PictureSettings plain(int width, int height) {
   return settings;
 }
 
-TEST(Water, ReflectsAndRefractsByTheLaws) {
+TEST(Water, ObeysReflectionAndRefractionLaws) {
   const double r0 = 0.333 / 2.333 * (0.333 / 2.333);
   EXPECT_NEAR(r0, 0.0204, 5e-5);
   EXPECT_DOUBLE_EQ(schlick(1), r0);
@@ -66,7 +66,7 @@ HeightField cone() {
   return HeightField::own(std::move(samples), kConeSide, kConeSide);
 }
 
-TEST(Water, TheCoastOfAConeIsACircle) {
+TEST(Water, CoastOfAConeIsACircle) {
   constexpr int kSide = 192;
   const Scene scene = test::terrain(cone(), "max-mip");
   PictureSettings settings = plain(kSide, kSide);
@@ -101,7 +101,7 @@ TEST(Water, TheCoastOfAConeIsACircle) {
   EXPECT_GT(ragged, 100) << "first samples below the level give no circle";
 }
 
-TEST(Water, ReflectsTheSkyThatIsThere) {
+TEST(Water, ReflectsTheVisibleSky) {
   const Scene scene = test::terrain(flat(0), "max-mip");
   PictureSettings settings = plain(64, 48);
   settings.water->level = 50;
@@ -126,7 +126,7 @@ TEST(Water, ReflectsTheSkyThatIsThere) {
   EXPECT_GT(seen, 1000);
 }
 
-TEST(Water, AbsorbsByTheDepthAsTraced) {
+TEST(Water, AbsorbsByTracedDepth) {
   const double depth = 3;
   const Scene scene = test::terrain(flat(10), "max-mip");
   PictureSettings settings = plain(32, 32);
@@ -147,7 +147,7 @@ TEST(Water, AbsorbsByTheDepthAsTraced) {
       const double sine = std::sqrt(1 - ray.direction.z * ray.direction.z) / 1.333;
       const double way = depth / std::sqrt(1 - sine * sine), mirror = schlick(-ray.direction.z);
       for (int c = 0; c < 3; ++c) {
-        // The sun, overhead, comes down through the depth; then there is the way back to the eye.
+        // Sunlight from overhead passes down through the depth, then back to the eye.
         const double bottom = dry.colour[0][c] * std::exp(-absorbed[c] * depth);
         const double left = std::exp(-absorbed[c] * way);
         const double body = bottom * left + deep[c] * (1 - left);
@@ -159,7 +159,7 @@ TEST(Water, AbsorbsByTheDepthAsTraced) {
   EXPECT_GT(dry.colour[0].y, 0.1f) << "the ground is no darkness";
 }
 
-TEST(Water, StandsInItsBasin) {
+TEST(Water, FillsItsBasin) {
   const Scene scene = test::terrain(flat(0, 11, 1));
   WaterSettings settings;
   settings.level = 4;
@@ -201,7 +201,7 @@ TEST(Water, StandsInItsBasin) {
   EXPECT_TRUE(lake.meets(down));
 }
 
-TEST(Water, UnderHigherGroundThereIsNone) {
+TEST(Water, DoesNotExistUnderHigherGround) {
   const Scene scene = test::terrain(flat(7, 11, 1));
   WaterSettings settings;
   settings.level = 4;
@@ -216,7 +216,7 @@ TEST(Water, UnderHigherGroundThereIsNone) {
   EXPECT_TRUE(sea.meets(ray)) << "ground just at the level";
 }
 
-TEST(Water, AFlatSeaAtTheLevelIsWater) {
+TEST(Water, FlatSeaAtTheLevelIsWater) {
   const Scene scene = test::terrain(flat(0), "max-mip");
   PictureSettings settings = plain(32, 24);
   settings.water->level = 0;
@@ -231,8 +231,8 @@ TEST(Water, AFlatSeaAtTheLevelIsWater) {
   }
 }
 
-// Rounding does not decide between water and what lies in its plane.
-TEST(Water, TopsOfVoxelsAtTheLevelAreDeepWater) {
+// Rounding does not decide between water and ground in its plane.
+TEST(Water, VoxelTopsAtTheLevelAreDeepWater) {
   VoxelGrid grid({64, 64, 8}, 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     return v.z < 4 || (v.x == 0 && v.y == 0) ? VoxelGrid::Voxel(0x60a040) : VoxelGrid::Voxel();
@@ -256,7 +256,7 @@ TEST(Water, TopsOfVoxelsAtTheLevelAreDeepWater) {
   EXPECT_GT(seen, 1000);
 }
 
-TEST(Water, WavesHaveTheSlopeThatWasAsked) {
+TEST(Water, WavesHaveTheRequestedSlope) {
   const Scene scene = test::terrain(flat(0));
   WaterSettings settings;
   settings.waves = 0.05;
@@ -273,7 +273,7 @@ TEST(Water, WavesHaveTheSlopeThatWasAsked) {
   EXPECT_EQ(water.normal_at({17, 31, 0}, 1000), dvec3(0, 0, 1)) << "shorter than a pixel";
 }
 
-TEST(Water, RefusesWhatIsOutOfRange) {
+TEST(Water, RejectsValuesOutOfRange) {
   for (const auto& spoil : {+[](WaterSettings& s) { s.level = NAN; }, +[](WaterSettings& s) { s.turbidity = -1; },
                             +[](WaterSettings& s) { s.waves = 0.6; }, +[](WaterSettings& s) { s.wavelength = -1; },
                             +[](WaterSettings& s) { s.srgb.y = 2; }}) {

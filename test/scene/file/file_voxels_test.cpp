@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hits on voxels by their coordinates in the file, from every reader: grids are cropped, and axes turned.
+// Hits on voxels by their coordinates in the file, from every reader: grids are cropped, and axes are permuted.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -44,7 +44,7 @@ TEST(FileVoxels, KeepTheModelsCoordinates) {
   EXPECT_EQ(hit_voxel(placed_voxels_from(file)), ivec3(5, 6, 7));
 }
 
-TEST(FileVoxels, AreThoseOfEachFrame) {
+TEST(FileVoxels, MatchEachFrame) {
   VoxFile file;
   file.version = 200;
   file.models = {{{10, 12, 9}, {{5, 6, 7, 3}}}, {{10, 12, 9}, {{1, 2, 3, 3}}}};
@@ -55,7 +55,7 @@ TEST(FileVoxels, AreThoseOfEachFrame) {
   EXPECT_EQ(hit_voxel(placed_voxels_from(file, {{.frame = 1}, {}})), ivec3(1, 2, 3));
 }
 
-TEST(FileVoxels, AreThoseOfQubicleMatrices) {
+TEST(FileVoxels, MatchQubicleMatrices) {
   for (const std::uint32_t right_handed : {0u, 1u}) {
     std::string bytes =
         numbers({0x101, 0, right_handed, 0, 0, 1}) + std::string(1, '\0') + numbers({4, 3, 5, 10, 20, 30});
@@ -65,7 +65,7 @@ TEST(FileVoxels, AreThoseOfQubicleMatrices) {
   }
 }
 
-TEST(FileVoxels, AreThoseOfVoxlap) {
+TEST(FileVoxels, MatchVoxlapFiles) {
   // Voxel (1, 2, 3) of 2 x 4 x 6, z fastest.
   std::string indices(48, '\xff');
   indices[3 + 6 * (2 + 4 * 1)] = 1;
@@ -73,7 +73,7 @@ TEST(FileVoxels, AreThoseOfVoxlap) {
   EXPECT_EQ(hit_voxel(placed_voxels_from(parse_voxlap_vox(file), {})), ivec3(1, 2, 3));
 }
 
-TEST(FileVoxels, AreThoseOfVolumes) {
+TEST(FileVoxels, MatchVolumes) {
   Binvox binvox;
   binvox.size = {4, 5, 6};
   binvox.clear();
@@ -88,7 +88,7 @@ TEST(FileVoxels, AreThoseOfVolumes) {
   }
 }
 
-TEST(FileVoxels, AreTheIndicesOfOpenVdb) {
+TEST(FileVoxels, MatchOpenVdbIndices) {
   VdbVoxels file;
   VdbLeaf leaf;
   leaf.low = {-8, 16, 24};

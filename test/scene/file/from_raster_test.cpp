@@ -26,7 +26,7 @@ TEST(FromRaster, SamplesKeepTheirType) {
   EXPECT_EQ(height_field_from(raster_of<float>({1, 2, 3, 4}, 2, 2)).sample_type(), SampleType::float32);
 }
 
-TEST(FromRaster, CellsHaveTheirLengthOnTheGround) {
+TEST(FromRaster, CellSizesAreGroundDistances) {
   Raster raster = raster_of<float>({1, 1, 1, 1, 1, 1}, 3, 2);
   raster.georeference.cell_x_m = 23.5;
   raster.georeference.cell_y_m = 30.75;
@@ -35,7 +35,7 @@ TEST(FromRaster, CellsHaveTheirLengthOnTheGround) {
   EXPECT_DOUBLE_EQ(field.depth(), 30.75);
 }
 
-TEST(FromRaster, HeightsAreMetresTimesTheExaggeration) {
+TEST(FromRaster, ExaggeratesMetres) {
   Raster raster = raster_of<std::int16_t>({10, 20, 30, 40}, 2, 2);
   raster.scale = 0.5;
   raster.offset = 100;
@@ -52,13 +52,13 @@ TEST(FromRaster, OptionsReachTheField) {
   EXPECT_TRUE(field.settings().solid);
 }
 
-TEST(FromRaster, TheNodataValueMarksHoles) {
+TEST(FromRaster, NodataMarksHoles) {
   Raster raster = raster_of<std::int16_t>({-32768, 20, 30, 40}, 2, 2);
   raster.nodata = -32768;
   EXPECT_EQ(height_field_from(std::move(raster)).nodata_count(), 1);
 }
 
-TEST(FromRaster, AnErrorNamesTheFileAndTheSample) {
+TEST(FromRaster, ErrorNamesFileAndSample) {
   try {
     height_field_from(raster_of<float>({1, 2, 3, std::numeric_limits<float>::infinity()}, 2, 2));
     FAIL() << "no error";

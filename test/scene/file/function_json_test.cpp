@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions from JSON: every type, and what is told of those that are wrong.
+// Terrain functions from JSON: every type, and the messages of invalid ones.
 #include "scarp/scene/file/function_json.h"
 
 #include <gtest/gtest.h>
@@ -60,14 +60,14 @@ TEST(FunctionJson, ReadsEveryType) {
   same(R"({"type": "mask", "centre": [300, -100], "inner": 10, "outer": 200})", RadialMask{{300, -100}, 10, 200});
   same(R"({"type": "sum", "of": [)" + f + R"(, 10], "factors": [2, -1], "offset": 5})", Sum{fbm, ten, 2, -1, 5});
   same(R"({"type": "smooth-minimum", "of": [)" + f + R"(, 10], "radius": 40})", SmoothMinimum{fbm, ten, 40});
-  // Of three operands the first two are one.
+  // The first two of three operands are combined first.
   EXPECT_EQ(value(R"({"type": "product", "of": [2, 3, 4]})", 0, 0), 24);
   EXPECT_EQ(value(R"({"type": "minimum", "of": [2, 1, 4]})", 0, 0), 1);
   EXPECT_EQ(value(R"({"type": "maximum", "of": [2, 1, 4]})", 0, 0), 4);
   EXPECT_EQ(value(R"({"type": "sum", "of": [2, 1, 4], "factors": [1, 10, 100], "offset": 1000})", 0, 0), 1412);
 }
 
-TEST(FunctionJson, FindsNames) {
+TEST(FunctionJson, ResolvesNames) {
   EXPECT_EQ(value(R"("hills")", 3, 4), HeightFunction(example_function("hills")).value(3, 4));
   const FunctionByName mine = [](const std::string& name, std::string_view path) -> Function {
     if (name == "five") return make_function(Plane{5});
@@ -78,7 +78,7 @@ TEST(FunctionJson, FindsNames) {
   EXPECT_THROW(function_from_json(nlohmann::json("six"), "", mine), Error);
 }
 
-TEST(FunctionJson, TellsWhereAndWhat) {
+TEST(FunctionJson, ErrorNamesPlaceAndProblem) {
   EXPECT_EQ(message("[1]"), "/f: is a list of 1; expected a function: an object with a type, a height, or a name");
   EXPECT_EQ(message(R"({"height": 1})").substr(0, 35), "/f/type: is missing; it must be one");
   EXPECT_EQ(message(R"({"type": "fmb"})").substr(0, 40), R"(/f/type: is "fmb"; expected one of plane)");
@@ -106,7 +106,7 @@ TEST(FunctionJson, TellsWhereAndWhat) {
             "/f/centre: is a list of 3; expected a list of two finite numbers");
 }
 
-TEST(FunctionJson, RefusesDepth) {
+TEST(FunctionJson, RejectsDeepNesting) {
 #ifdef NDEBUG
   constexpr int kLevels = 1'000'000;
 #else
@@ -120,7 +120,7 @@ TEST(FunctionJson, RefusesDepth) {
   EXPECT_LT(told.size(), 200u);
 }
 
-TEST(ExampleFunctions, AreGood) {
+TEST(ExampleFunctions, AreValid) {
   for (const ExampleFunction& example : example_functions()) {
     const HeightFunction function(example_function(example.name));
     const FunctionBound& all = function.bound_everywhere();
@@ -131,7 +131,7 @@ TEST(ExampleFunctions, AreGood) {
   EXPECT_THROW(read_function("/nowhere.json"), Error);
 }
 
-TEST(ExampleFunctions, AGitLfsPointerIsNamed) {
+TEST(ExampleFunctions, ReportsGitLfsPointers) {
   const auto path = std::filesystem::temp_directory_path() / "scarp-function-pointer.json";
   std::ofstream(path) << "version https://git-lfs.github.com/spec/v1\n";
   try {

@@ -51,7 +51,7 @@ std::vector<T> samples_of(const HeightField& field) {
   return samples;
 }
 
-TEST_F(RayDumps, ComeBackToTheBit) {
+TEST_F(RayDumps, RoundTripExactly) {
   const HeightFieldSettings settings{.cell_x = 0.1,
                                      .cell_y = 1.0 / 3,
                                      .scale = 0.7,
@@ -97,7 +97,7 @@ TEST_F(RayDumps, ComeBackToTheBit) {
   EXPECT_EQ(read[0].answered, dump.answered);
 }
 
-TEST_F(RayDumps, HoldFloatsWithHoles) {
+TEST_F(RayDumps, StoreFloatsWithHoles) {
   const std::vector<float> samples{0.1f, kNaN, -3e-30f, 1e30f};
   const RayDump dump{HeightField::own(samples, 2, 2), {}, {}, "", ""};
   const auto read = through_a_file({dump});
@@ -124,14 +124,14 @@ TEST_F(RayDumps, ShareTheirField) {
   EXPECT_EQ(fields, 2);
 }
 
-TEST_F(RayDumps, GenerateWhatWasGenerated) {
+TEST_F(RayDumps, RegenerateProceduralFields) {
   const ProceduralDem dem{.cols = 40, .rows = 30, .seed = 9, .kind = TerrainKind::ridged, .cell_m = 1};
   const RayDump dump{HeightField::own(generate_dem(dem), 40, 30), dem, {}, "", ""};
   EXPECT_EQ(samples_of<float>(through_a_file({dump}).at(0).field), samples_of<float>(dump.field));
   EXPECT_LT(std::filesystem::file_size(path_), 1000u);
 }
 
-TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
+TEST_F(RayDumps, ErrorNamesTheLine) {
   const std::string head = "scarp-rays 1\n", field = "field float32 2 2\nrow 1 2\nrow 3 4\n";
   EXPECT_EQ(refusal(head + field + "ray\ndirection 0 0 -1\n"), "accepted");
   EXPECT_EQ(refusal(""), "line 1: the first line must be 'scarp-rays 1'");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: what is read, and that everything wrong is told in one line with its place.
+// Scene files: their content, and that every error is one line with its position.
 #include "scarp/scene/file/scene_file.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ class SceneFiles : public testing::Test {
     return path.string();
   }
   SceneFile read(const std::string& text) const { return read_scene(write("scene.json", text)); }
-  // The message less the file; empty when there is none.
+  // The message without the file name; empty if there is none.
   std::string error(const std::string& text) const {
     try {
       read(text);
@@ -52,7 +52,7 @@ const std::string kBall = R"({"shape": {"sphere": {"radius": 1}}})";
 
 std::string with_object(const std::string& object) { return R"({"objects": [)" + object + "]}"; }
 
-TEST_F(SceneFiles, AreReadWhole) {
+TEST_F(SceneFiles, ReadEverySection) {
   const SceneFile file = read(R"({
     "about": "all of it",
     "picture": {"size": [320, 200], "aa": 3, "samples": 4, "ao_distance": 10, "seed": 7},
@@ -88,7 +88,7 @@ TEST_F(SceneFiles, AreReadWhole) {
   ASSERT_EQ(file.materials.size(), 6u);
   const auto& blend = std::get<Blend>(file.materials[file.scene.objects()[0].material]);
   EXPECT_EQ(std::get<PlainColour>(file.materials[blend.high]).colour, vec3(1, 0, 0));
-  // What stands in the object comes first, then its place; z counts from the ground.
+  // The transform inside the object comes first, then its placement; z counts from the ground.
   const Placement& second = file.scene.objects()[2].placement;
   EXPECT_EQ(second.scale, 1.5);
   EXPECT_NEAR(length(second.origin - dvec3(0, 20, 7 + 5 + 3)), 0, 1e-12);
@@ -102,7 +102,7 @@ TEST_F(SceneFiles, AreReadWhole) {
   }
 }
 
-TEST_F(SceneFiles, HaveWaterAndFog) {
+TEST_F(SceneFiles, SupportWaterAndFog) {
   const SceneFile dry = read(with_object(kBall));
   EXPECT_FALSE(dry.water || dry.fog);
   const SceneFile file = read(R"({"water": {"level": -2.5, "colour": "#00ff00", "turbidity": 0.5, "waves": 0.1,
@@ -121,8 +121,8 @@ TEST_F(SceneFiles, HaveWaterAndFog) {
   EXPECT_FALSE(plain.water->srgb || plain.water->waves || plain.water->reflection || plain.fog->visibility);
 }
 
-// Voxels by name of their looks: the corner of a rounded cube is not there, what is left has a smooth normal.
-TEST_F(SceneFiles, SayHowVoxelsLook) {
+// Voxels by name of their looks: a rounded cube lacks its corner, and has a smooth normal next to it.
+TEST_F(SceneFiles, SupportVoxelLooks) {
   Binvox cube;
   cube.size = ivec3(2);
   cube.clear();
@@ -177,7 +177,7 @@ TEST_F(SceneFiles, CombineVoxels) {
   const SceneFile both = read(combined("union", "[6.5, 0, 3]"));
   EXPECT_EQ(height(both, 2, 1), 8);
   EXPECT_EQ(height(both, 10, 1), 10);
-  // Combinations are parts of others; what is left of nothing is a note.
+  // Combinations are parts of others; an empty result is a note.
   const SceneFile nested = read(R"({"objects": [{"shape": {"sphere": {"radius": 1}}}, {"voxels": {"centred": true,
     "subtract": [{"union": [{"file": "cube2.binvox"}, {"file": "cube2.binvox", "at": [2, 0, 0]}]},
                  {"file": "cube4.binvox"}]}}]})");
@@ -196,7 +196,7 @@ TEST_F(SceneFiles, CombineVoxels) {
             std::string::npos);
 }
 
-TEST_F(SceneFiles, TakeOtherScenesAsOneObject) {
+TEST_F(SceneFiles, IncludeOtherScenesAsOneObject) {
   write("pair.json", R"({"materials": {"red": {"colour": "#ff0000"}}, "objects": [
     {"shape": {"sphere": {"radius": 1}}, "material": "red"}, {"shape": {"sphere": {"radius": 1}}, "at": [4, 0, 0]}]})");
   const SceneFile file = read(R"({"materials": {"blue": {"colour": "#0000ff"}}, "objects": [
@@ -233,12 +233,12 @@ TEST_F(SceneFiles, PlaceMeshes) {
   EXPECT_NEAR(height(96.001, 5.999), 14, 0.01);
   EXPECT_NEAR(height(95.9, 5.9), 10, 1e-3);
   EXPECT_NEAR(height(198.001, 2.999), 17, 0.01);
-  // As the file has it: corners at z 0 and, at (1, 5), 6.
+  // In the file's coordinates: corners at z 0 and, at (1, 5), 6.
   EXPECT_NEAR(height(301.001, 5.001), 106, 0.02);
 }
 #endif
 
-TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
+TEST_F(SceneFiles, ErrorNamesPlaceAndProblem) {
   write("itself.json", R"({"objects": [{"scene": "scene.json"}]})");
   struct Case {
     std::string text, place, what;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shapes from JSON: what they say is what is built; what is wrong is told with its place.
+// Shapes from JSON: shapes are built as described; errors are reported with their position.
 #include "scarp/scene/file/shape_json.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ const ShapeNames kNames{
 DistanceField field_of(const char* text) { return distance_field_from_json(Json::parse(text), "/shape", kNames); }
 
 TEST(ShapeJson, ReadsEverySolid) {
-  // A position just outside of each, and how far.
+  // A position just outside of each, and its distance.
   const struct {
     const char* text;
     dvec3 position;
@@ -59,7 +59,7 @@ TEST(ShapeJson, ReadsEverySolid) {
   for (const auto& [text, position, distance] : solids) {
     EXPECT_NEAR(field_of(text).value(position), distance, 1e-12) << text;
   }
-  // Smooth by a quarter of the radius where both are as far.
+  // Smooth by a quarter of the radius where both are equally far.
   const DistanceField smooth = field_of(
       R"({"union": [{"sphere": {"radius": 1, "at": [-2, 0, 0]}}, {"sphere": {"radius": 1, "at": [2, 0, 0]}}], "smooth": 0.4})");
   EXPECT_NEAR(smooth.value({0, 0, 0}), 1 - 0.1, 1e-12);
@@ -77,7 +77,7 @@ std::string refusal(const std::string& text, const ShapeNames& names = kNames) {
   return test::refusal([&] { distance_field_from_json(Json::parse(text), "/objects/2/shape", names); });
 }
 
-TEST(ShapeJson, TellsWhereItIsWrong) {
+TEST(ShapeJson, ErrorNamesThePlace) {
   const std::string at = "/objects/2/shape";
   EXPECT_EQ(refusal(R"({"sphere": {"radius": -1}})"), at + "/sphere/radius: expected > 0, got -1");
   EXPECT_EQ(refusal(R"({"sphere": {"radius": 1e-9}})"), at + "/sphere/radius: expected at least 2^-20, got 1e-09");
@@ -111,7 +111,7 @@ TEST(ShapeJson, TellsWhereItIsWrong) {
   EXPECT_EQ(refusal(R"({"cube": {}})").substr(0, 50), at + "/cube: unknown kind of shape (avai");
 }
 
-TEST(ShapeJson, RefusesDeepNesting) {
+TEST(ShapeJson, RejectsDeepNesting) {
   std::string deep = R"({"sphere": {"radius": 1}})";
   for (int i = 0; i < 60; ++i) deep = R"({"scale": 1, "of": )" + deep + "}";
   EXPECT_EQ(refusal(deep), "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenVDB and NanoVDB files: what is solid, where it stands, what is refused. Files are made with OpenVDB itself.
+// OpenVDB and NanoVDB files: solid voxels, their positions, and errors. Files are made with OpenVDB itself.
 #include <gtest/gtest.h>
 #define NANOVDB_USE_OPENVDB
 // NanoVDB's headers need it and do not include it.
@@ -72,14 +72,14 @@ void expect_ball(const PlacedVoxels& placed) {
   EXPECT_NEAR(static_cast<double>(solid), 4.0 / 3 * 3.14159 * 40 * 40 * 40, 1500);
 }
 
-TEST_F(VdbFiles, LevelSetsAreSolidInside) { expect_ball(placed_voxels_from(read_vdb(write("ball.vdb", {ball()})))); }
+TEST_F(VdbFiles, FillsLevelSets) { expect_ball(placed_voxels_from(read_vdb(write("ball.vdb", {ball()})))); }
 
-TEST_F(VdbFiles, NanovdbHoldsTheSameVoxels) {
+TEST_F(VdbFiles, NanovdbHasTheSameVoxels) {
   nanovdb::io::writeGrid(path("ball.nvdb"), nanovdb::openToNanoVDB(*ball()));
   expect_ball(placed_voxels_from(read_vdb(path("ball.nvdb"))));
 }
 
-TEST_F(VdbFiles, TheAxisThatPointsUpIsTurned) {
+TEST_F(VdbFiles, RotatesTheUpAxis) {
   const auto grid = openvdb::BoolGrid::create(false);
   grid->tree().setValueOn(openvdb::Coord(1, 2, 3), true);
   const std::string file = write("one.vdb", {grid});
@@ -109,7 +109,7 @@ TEST_F(VdbFiles, Vec3GridsColourVoxels) {
   EXPECT_EQ(placed_voxels_from(read_vdb(write("alone.vdb", {colours}))).models[0]->grid().solid_count(), 10);
 }
 
-TEST_F(VdbFiles, WhatIsWrittenIsRead) {
+TEST_F(VdbFiles, RoundTrips) {
   std::mt19937 random(3);
   VoxelGrid grid({256, 270, 150}, 1);
   // Whole pages of the grid.
@@ -126,7 +126,7 @@ TEST_F(VdbFiles, WhatIsWrittenIsRead) {
   EXPECT_TRUE(std::any_of(file.tiles.begin(), file.tiles.end(), [](const VdbTile& tile) { return tile.side == 128; }));
 }
 
-TEST_F(VdbFiles, AFullDiskIsAnErrorAndLeavesTheOldFile) {
+TEST_F(VdbFiles, FullDiskKeepsTheOldFile) {
   VoxelGrid grid({64, 64, 64}, 1);
   std::mt19937 random(4);
   for (int i = 0; i < 5000; ++i) grid.set(ivec3(random() % 64, random() % 64, random() % 64), 0);
@@ -148,7 +148,7 @@ TEST_F(VdbFiles, AFullDiskIsAnErrorAndLeavesTheOldFile) {
   }
 }
 
-TEST_F(VdbFiles, GridsWithoutVoxelsAreRefused) {
+TEST_F(VdbFiles, RejectsGridsWithoutVoxels) {
   const auto fog = ball()->deepCopy();
   openvdb::tools::sdfToFogVolume(*fog);
   fog->setName("density");
@@ -160,7 +160,7 @@ TEST_F(VdbFiles, GridsWithoutVoxelsAreRefused) {
   EXPECT_EQ(refusal(path("missing.vdb")), path("missing.vdb") + ": cannot be read");
 }
 
-TEST_F(VdbFiles, GridsThatAreTooLargeOrSkewedAreRefused) {
+TEST_F(VdbFiles, RejectsOversizedOrSkewedGrids) {
   const auto wide = openvdb::BoolGrid::create(false);
   wide->tree().setValueOn(openvdb::Coord(0, 0, 0), true);
   wide->tree().setValueOn(openvdb::Coord(0, 20000, 0), true);
@@ -176,9 +176,9 @@ TEST_F(VdbFiles, GridsThatAreTooLargeOrSkewedAreRefused) {
             path("stretched.vdb") + ": grid 'ball': its voxels are not cubes (resample it)");
 }
 
-TEST_F(VdbFiles, CutOffFilesAreRefused) {
+TEST_F(VdbFiles, RejectsTruncatedFiles) {
 #ifndef NDEBUG
-  // OpenVDB asks for as much memory as the rest of such a file says. The address sanitizer ends the program there.
+  // OpenVDB allocates as much memory as the rest of such a file states. The address sanitizer stops the program there.
   GTEST_SKIP() << "OpenVDB under the address sanitizer";
 #endif
   nanovdb::io::writeGrid(path("ball.nvdb"), nanovdb::openToNanoVDB(*ball()));

@@ -86,7 +86,7 @@ Ray ray_at(const dvec3& origin, const dvec3& direction) {
   return ray;
 }
 
-TEST(SceneMesh, ATriangleIsHitFromBothSides) {
+TEST(SceneMesh, HitsATriangleFromBothSides) {
   TriangleMesh mesh = triangle();
   mesh.corners[0].colour = vec3(1, 0, 0), mesh.corners[1].colour = vec3(0, 1, 0), mesh.corners[2].colour = vec3(0);
   const SceneFieldPtr field = scene_mesh(mesh);
@@ -95,7 +95,7 @@ TEST(SceneMesh, ATriangleIsHitFromBothSides) {
   EXPECT_EQ(field->box()->low, dvec3(0, 0, 1));
   EXPECT_EQ(field->box()->high, dvec3(4, 4, 1));
   for (const double side : {1.0, -1.0}) {
-    // t counts in the direction's length.
+    // t is in units of the direction's length.
     const Ray ray = ray_at({1, 2, 1 + 8 * side}, {0, 0, -4 * side});
     MarchStats stats;
     const Hit hit = field->closest_hit(ray, nullptr, &stats);
@@ -119,7 +119,7 @@ TEST(SceneMesh, ATriangleIsHitFromBothSides) {
   EXPECT_FALSE(field->height(1, 1));
 }
 
-TEST(SceneMesh, TheRangeIsClosed) {
+TEST(SceneMesh, RayRangeIsClosed) {
   const SceneFieldPtr field = scene_mesh(triangle());
   const double before = std::nextafter(2.0, 0.0), after = std::nextafter(2.0, 3.0);
   const struct {
@@ -134,7 +134,7 @@ TEST(SceneMesh, TheRangeIsClosed) {
   }
 }
 
-TEST(SceneMesh, DirectionsOfAnyLengthHit) {
+TEST(SceneMesh, AcceptsDirectionsOfAnyLength) {
   const SceneFieldPtr field = scene_mesh(triangle());
   for (const double length : {1e-300, 1e-12, 1.0, 1e12, 1e300}) {
     const Hit hit = field->closest_hit(ray_at({1, 1, 3}, {0, 0, -length}), nullptr, nullptr);
@@ -143,7 +143,7 @@ TEST(SceneMesh, DirectionsOfAnyLengthHit) {
   }
 }
 
-TEST(SceneMesh, SmoothNormalsAreInterpolated) {
+TEST(SceneMesh, InterpolatesSmoothNormals) {
   TriangleMesh mesh = triangle();
   mesh.corners[1].normal = vec3(1, 0, 0);
   const SceneFieldPtr field = scene_mesh(mesh);
@@ -154,7 +154,7 @@ TEST(SceneMesh, SmoothNormalsAreInterpolated) {
 }
 
 // Against the slabs of the box, in double.
-TEST(SceneMesh, ACubeIsThatOfItsSlabs) {
+TEST(SceneMesh, CubeMatchesTheSlabTest) {
   const dvec3 low(-3, 1, 2), high(4, 5, 9);
   const SceneFieldPtr field = scene_mesh(cube(low, high));
   constexpr double kNear = 4 * kMeshRounding;  // the half side in metres, 3.5, and its unit, 2
@@ -200,8 +200,8 @@ TEST(SceneMesh, SharedEdgesAndCornersLeaveNoGap) {
   }
 }
 
-// From a convex solid a ray outward meets nothing, and a ray inward the other side.
-TEST(SceneMesh, ARayFromATriangleHitsOthersAlone) {
+// From a convex solid a ray outwards hits nothing, and a ray inwards hits the other side.
+TEST(SceneMesh, RayFromATriangleHitsOnlyOthers) {
   for (const dvec3& middle : {dvec3(0), dvec3(5e5, 4e6, 1e3)}) {
     const SceneFieldPtr field = scene_mesh(ball(middle, 5));
     Random random(3);
@@ -221,7 +221,7 @@ TEST(SceneMesh, ARayFromATriangleHitsOthersAlone) {
         ASSERT_TRUE(other) << i;
         EXPECT_NE(other.cell, hit.cell);
         EXPECT_GT(other.t, 5 * kMeshRounding);
-        // The same where the ray itself says on which triangle it begins.
+        // The same if the ray itself names the triangle on which it starts.
         EXPECT_EQ(field->closest_hit(field->started(next, &hit), nullptr, nullptr), other);
       }
     }
@@ -261,14 +261,14 @@ TEST(SceneMesh, ClosedMeshesHaveAnInside) {
   EXPECT_FALSE(scene_mesh(open)->within({7, -3, 20}));
 }
 
-TEST(SceneMesh, DistanceCostsNoAccuracy) {
+TEST(SceneMesh, IsAccurateAtAnyDistance) {
   const dvec3 far(5e5, 4e6, 2e3);
   const SceneFieldPtr near_field = scene_mesh(ball(dvec3(0), 5)), far_field = scene_mesh(ball(far, 5));
   Random random(4);
   for (int i = 0; i < 2000; ++i) {
     const dvec3 back = random.direction(), target = 4.0 * random.direction();
     const Hit near_hit = near_field->closest_hit(ray_at(target + 20.0 * back, -back), nullptr, nullptr);
-    // From a thousand kilometres away, where doubles lie 2^-31 m apart.
+    // From a thousand kilometres away, where doubles are 2^-31 m apart.
     const Ray ray = ray_at(far + target + 1e6 * back, -back);
     const Hit hit = far_field->closest_hit(ray, nullptr, nullptr);
     ASSERT_TRUE(near_hit && hit);
@@ -315,7 +315,7 @@ TEST(SceneMesh, AnyHitAgreesWithClosestHit) {
   }
 }
 
-TEST(SceneMesh, StandsWhereItIsPlaced) {
+TEST(SceneMesh, AppliesItsPlacement) {
   const TriangleMesh mesh = cube({1, 2, 3}, {3, 6, 4});
   const Placement place = mesh_placement(mesh, {.at = {100, 200, 50}, .scale = 2, .turn_deg = 90});
   // 2 x 4 x 1, turned and doubled: 8 east, 4 north, 2 up.
@@ -341,7 +341,7 @@ TEST(SceneMesh, StandsWhereItIsPlaced) {
   refuse({.scale = 1e308}, "mesh: is too large at this scale");
 }
 
-TEST(SceneMesh, RefusesWhatIsNoMesh) {
+TEST(SceneMesh, RejectsInvalidMeshes) {
   TriangleMesh mesh;
   EXPECT_EQ(test::refusal([&] { scene_mesh(mesh); }), "mesh: has no whole triangles");
   mesh = triangle();
@@ -351,7 +351,7 @@ TEST(SceneMesh, RefusesWhatIsNoMesh) {
   EXPECT_EQ(test::refusal([&] { scene_mesh(mesh); }), "mesh: its extent must be finite and above 0");
 }
 
-TEST(SceneMesh, LetsRaysThroughTrianglesThatDoNotCount) {
+TEST(SceneMesh, PassesRejectedTriangles) {
   const Scene scene(scene_mesh(cube({0, 0, 0}, {4, 4, 4})));
   const Ray down{{1, 2, 9}, {0, 0, -1}};
   const Hit top = scene.closest_hit(down);
