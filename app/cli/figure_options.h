@@ -28,7 +28,7 @@ struct FigureOptions {
 /// `top`: the option --top, and `output` the file's name; both must outlive the command.
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output);
 
-/// What can be judged without the field. Throws Error.
+/// Checks the options that do not depend on the field. Throws Error.
 void check_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
 
 /// The contents of a figure.

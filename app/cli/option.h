@@ -82,7 +82,7 @@ Rule needs(const std::string& what, std::function<bool()> met, unsigned of = kEv
 /// Where the value goes. A Setter parses the text itself and throws Error or WrongUsage. bool* without a value name,
 /// and Off, are flags.
 using Setter = std::function<void(const std::string& text)>;
-/// What a flag switches off.
+/// The value that a flag switches off.
 struct Off {
   std::optional<bool>* what;
 };

@@ -77,7 +77,7 @@ class Render {
     blank_.tell();
   }
 
-  // Renders and writes one picture. What was found is returned; layers have no findings.
+  // Renders and writes one picture. Returns the findings; layers have none.
   Picture make(ReplaceFile& file, const std::string& name, const PictureSettings& settings, const Camera& camera,
                const Progress& progress) {
     look_through(stage_.there(), camera, settings.look == Look::shaded || format().layers ? settings.aa : 1);

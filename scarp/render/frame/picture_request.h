@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A request for a picture, and what becomes of it: resolve() turns what is asked, what the input says and where the
-// camera stands into settings, which nothing changes afterwards. The command line, the window and scene files all ask
-// by a PictureRequest.
+// A request for a picture. resolve() makes settings of the request, the facts of the input and the place of the camera;
+// nothing changes them afterwards. The command line, the window and scene files all fill in a PictureRequest.
 #pragma once
 
 #include <cstdint>
@@ -80,9 +79,9 @@ struct PictureFiles {
   std::shared_ptr<const Drape> drape{};                   ///< null: none
 };
 
-/// What is known of what a picture shows, beside the request.
+/// The subject of a picture: all that is known of it besides the request.
 struct PictureSubject {
-  PictureRequest own{};           ///< what the input itself asks for: the picture of a scene file, the sun of models
+  PictureRequest own{};           ///< the input's own request: the picture of a scene file, the sun of models
   PictureFiles files{};           //
   double grid_north_azimuth = 0;  ///< radians clockwise from true north
   double across = 0;              ///< metres that a picture is about; 0: unknown

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resolve(): what is asked comes before what the input asks, and that before the default.
+// resolve(): a request takes precedence over that of the input, and that over the defaults.
 #include <gtest/gtest.h>
 
 #include <cmath>
