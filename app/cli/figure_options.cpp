@@ -257,7 +257,7 @@ void check_figure(const FigureOptions& options, const PictureSettings& settings,
   if (options.legend && settings.comanche.iterations) {
     throw Error("--legend is not available with --iterations (use --look steps)");
   }
-  const bool ramp = settings.look == Look::shaded || settings.look == Look::comanche;
+  const bool ramp = entry_of(settings.look).lit;
   if (options.legend && ramp && settings.ground.natural) {
     throw Error("--legend has no colour scale to show with --ground natural (leave one of them out)");
   }
@@ -268,7 +268,7 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
   if (options.any().empty()) return {};
   const Scene& scene = subject.scene;
   const Camera& camera = subject.camera;
-  const double per_pixel = settings.look == Look::comanche ? settings.comanche.scale : 1;
+  const double per_pixel = entry_of(settings.look).large_pixels ? settings.comanche.scale : 1;
   const double width = per_pixel * settings.width, height = per_pixel * settings.height;
   Figure figure{.title = options.title};
   if (options.layout == "beside") figure.layout = FigureLayout::beside;

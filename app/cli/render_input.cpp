@@ -29,7 +29,7 @@ std::int64_t samples_shown(const RenderOptions& options, ImageSize size) {
   const CameraOptions& camera = options.camera;
   const PictureSettings picture = resolve(options.picture, {.size = size});
   if (options.moves || camera.eye || camera.area || !options.frames.path.empty() ||
-      view_of(camera, picture.look).distance < 1 || camera.fov_deg || picture.look == Look::comanche)
+      view_of(camera, picture.look).distance < 1 || camera.fov_deg || entry_of(picture.look).large_pixels)
     return kMost;
   // The longer side is the width; the other one follows from the raster.
   const int height = camera.top && !options.picture.width ? picture.width : picture.height;
@@ -179,7 +179,7 @@ InputOptions input_of(InputKind kind, const RenderOptions& options, ImageSize si
 // Looks that measure do.
 bool reads_all_samples(const RenderOptions& options) {
   const Look look = look_of(options.picture);
-  const bool measures = look == Look::steps || look == Look::error || look == Look::level;
+  const bool measures = entry_of(look).measures;
   // The shared border would be averaged with its neighbours.
   return options.full || measures || options.field.wrap == Wrap::shared_border;
 }
@@ -201,7 +201,7 @@ RenderInput open_render_input(InputKind kind, const RenderOptions& options, cons
   input.all_samples = reads_all_samples(options);
   if (kind == InputKind::function) input.function_reach = input_options.march_settings.function.reach;
   const Look look = look_of(options.picture);
-  const bool in_perspective = !options.camera.top && (look == Look::shaded || look == Look::comanche);
+  const bool in_perspective = !options.camera.top && entry_of(look).lit;
   if (kind == InputKind::terrain && in_perspective && !options.exaggeration.given) {
     const double side = default_reach(*input.scene.terrain());
     const ReliefRange& heights = input.subject.heights;

@@ -26,8 +26,9 @@ constexpr Looks kLit{"shaded comanche", "the others show numbers"};
 // All looks except level:N.
 std::vector<std::string> plain_looks() {
   std::vector<std::string> looks;
-  for (const Look look : {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error, Look::comanche})
-    looks.emplace_back(name_of(look));
+  for (const LookEntry& entry : scarp::looks()) {
+    if (entry.look != Look::level) looks.emplace_back(entry.name);
+  }
   return looks;
 }
 

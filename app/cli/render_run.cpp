@@ -80,7 +80,7 @@ class Render {
   // Renders and writes one picture. Returns the findings; layers have none.
   Picture make(ReplaceFile& file, const std::string& name, const PictureSettings& settings, const Camera& camera,
                const Progress& progress) {
-    look_through(stage_.there(), camera, settings.look == Look::shaded || format().layers ? settings.aa : 1);
+    look_through(stage_.there(), camera, entry_of(settings.look).antialiased || format().layers ? settings.aa : 1);
     if (format().layers) {
       const PictureLayers layers = render_layers(stage_.scene(), camera, settings, progress);
       look_if_blank(name, settings, camera, has_one_colour(layers));

@@ -112,7 +112,7 @@ class Maker {
     control.kind = ControlKind::choice;
     for (const std::string& choice : declared.option.choices) {
       // Large pixels have a different size and camera from the window.
-      if (declared.name != "--look" || choice != name_of(Look::comanche)) control.choices.push_back(choice);
+      if (declared.name != "--look" || !entry_of(find_look(choice)).large_pixels) control.choices.push_back(choice);
     }
     const auto* text = std::get_if<std::string*>(&declared.to);
     control.choice = text ? **text : now(declared);

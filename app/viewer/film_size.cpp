@@ -8,7 +8,7 @@ namespace scarp::viewer {
 namespace {
 
 int side_of_pixel(const PictureRequest& picture) {
-  return look_of(picture) == Look::comanche ? picture.comanche.scale : 1;
+  return entry_of(look_of(picture)).large_pixels ? picture.comanche.scale : 1;
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ ImageSize film_size(const PictureRequest& picture, int width, int height) {
 
 PictureRequest for_window(PictureRequest picture, int width, int height) {
   const ImageSize size = film_size(picture, width, height);
-  if (look_of(picture) == Look::comanche) {
+  if (entry_of(look_of(picture)).large_pixels) {
     picture.low_resolution = size;
   } else {
     picture.width = size.width, picture.height = size.height;

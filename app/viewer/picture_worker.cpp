@@ -32,7 +32,7 @@ WorkedPicture begun(const ViewRequest& request, std::uint64_t generation) {
   WorkedPicture worked;
   worked.generation = generation;
   worked.large_pixels = std::any_of(request.sides.begin(), request.sides.end(),
-                                    [](const PictureSide& side) { return side.settings.look == Look::comanche; });
+                                    [](const PictureSide& side) { return entry_of(side.settings.look).large_pixels; });
   return worked;
 }
 
@@ -98,7 +98,7 @@ int PictureWorker::rows_for(double pixels_per_second, int width, int height) {
 std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings& settings) {
   std::vector<PictureSettings> stages{settings};
   // Other looks trace one ray per pixel.
-  if (settings.look != Look::shaded && settings.look != Look::comanche) return stages;
+  if (!entry_of(settings.look).lit) return stages;
   for (PictureSettings next = settings; next.aa > 1 || next.samples > 0;) {
     // Anti-aliasing multiplies the rays of samples, and costs as its square.
     if (next.aa > 1) {

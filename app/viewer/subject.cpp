@@ -17,7 +17,6 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr std::array<Look, 5> kLooks = {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error};
 constexpr int kJudgedRays = 1000;
 constexpr ErrorSettings kOneCell{.tolerance = 1};
 
@@ -55,7 +54,7 @@ Subject::Subject(Opening opening, int width, int height)
 Subject::Side Subject::open(Opening opening) const {
   cli::RenderOptions options = *opening.options;
   const ImageSize film = film_size(options.picture, width_, height_);
-  if (options.picture.width || look_of(options.picture) == Look::comanche)
+  if (options.picture.width || entry_of(look_of(options.picture)).large_pixels)
     options.picture = for_window(options.picture, width_, height_);
   auto opened = std::make_shared<Opened>(opening, std::move(options), film);
   opened->stage.open();
@@ -106,7 +105,10 @@ void Subject::reopen() {
 std::vector<std::string> Subject::comparisons() const {
   std::vector<std::string> words;
   for (const std::string& march : marches_for(opening().kind)) words.push_back("march " + march);
-  for (const Look look : kLooks) words.push_back("look " + std::string(name_of(look)));
+  for (const LookEntry& look : looks()) {
+    // Large pixels have another size, and levels a number.
+    if (!look.large_pixels && look.look != Look::level) words.push_back("look " + std::string(look.name));
+  }
   return words;
 }
 
@@ -150,11 +152,11 @@ PictureSide Subject::picture_side(const Side& side, int width, int height) {
     stage.finish(camera, *options);
     PictureSettings settings = asked;
     settings.fog.visibility = stage.picture(*options, &camera).fog.visibility;
-    cli::look_through(stage.there(), camera, settings.look == Look::shaded ? settings.aa : 1);
+    cli::look_through(stage.there(), camera, entry_of(settings.look).antialiased ? settings.aa : 1);
     return render_picture(stage.scene(), camera, settings, progress);
   };
   // Coarser voxels differ in every picture, and the look comanche has its own rays.
-  if (side.opened->stage.input().coarse_voxels || picture.settings.look == Look::comanche) return picture;
+  if (side.opened->stage.input().coarse_voxels || entry_of(picture.settings.look).large_pixels) return picture;
   picture.judge = [opened = side.opened, options](const Camera& seen,
                                                   const Progress& progress) -> std::optional<JudgedRays> {
     Camera camera = seen;

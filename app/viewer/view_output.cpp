@@ -31,7 +31,7 @@ std::string render_command(const Opening& opening, const cli::Places& places, co
     mesh = " --mesh-at=" + cli::local_mesh_at(opening.options->mesh, places);
   }
   const PictureRequest& picture = opening.options->picture;
-  const bool large_pixels = look_of(picture) == Look::comanche;
+  const bool large_pixels = entry_of(look_of(picture)).large_pixels;
   if (large_pixels) left_out.emplace_back("--lowres");
   const ImageSize size = film_size(picture, width, height);
   std::string text = fmt::format("scarp render{}{} -o {} {} {}x{}", opening.command().typed_words(left_out), mesh,

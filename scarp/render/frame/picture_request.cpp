@@ -36,7 +36,7 @@ double way_to(const WorldBox& box, const Camera& camera) {
 }
 
 ImageSize size_of(const PictureRequest& r, const PictureSubject& subject) {
-  if (look_of(r) == Look::comanche) return r.low_resolution.value_or(kLowResolution);
+  if (entry_of(look_of(r)).large_pixels) return r.low_resolution.value_or(kLowResolution);
   return {r.width.value_or(subject.size.width), r.height.value_or(subject.size.height)};
 }
 
