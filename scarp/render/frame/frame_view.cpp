@@ -32,6 +32,17 @@ std::optional<double> ceiling_of(const Scene& scene) {
   return scene.wraps() || !scene.endless() ? std::optional(top) : std::nullopt;
 }
 
+LightSettings light_of(const PictureSettings& settings) {
+  return {.sun = settings.sun,
+          .sky = settings.sky,
+          .grid_north_azimuth = settings.grid_north_azimuth,
+          .shadows = settings.shadows,
+          .unlit = settings.unlit,
+          .samples = settings.samples,
+          .points_per_pixel = settings.aa * settings.aa,
+          .seed = settings.seed};
+}
+
 // No ray from a surface has a longer path to the end of the scene.
 double ao_distance_of(const Scene& scene, const PictureSettings& settings) {
   const WorldBox& box = scene.box();
@@ -63,7 +74,7 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       camera_(camera),
       settings_(settings),
       ceiling_(ceiling_of(scene)),
-      lighting_(settings, ao_distance_of(scene, settings), scene.wraps() ? ceiling_ : std::nullopt),
+      lighting_(light_of(settings), ao_distance_of(scene, settings), scene.wraps() ? ceiling_ : std::nullopt),
       colours_(settings.materials),
       paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
       wall_light_(sky().scatters() ? sky().skylight() + sky().sunlight() * static_cast<float>(lighting_.to_sun().z)

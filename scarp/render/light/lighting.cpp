@@ -19,10 +19,10 @@ void end_above_ground(std::span<Ray> rays, double highest) {
 
 }  // namespace
 
-Lighting::Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest)
+Lighting::Lighting(const LightSettings& settings, double ao_distance, std::optional<double> highest)
     : settings_(settings),
       light_(settings.sun, settings.grid_north_azimuth, settings.sky),
-      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, samples() * settings.aa * settings.aa))),
+      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, samples() * settings.points_per_pixel))),
       ao_distance_(ao_distance),
       highest_(highest) {}
 

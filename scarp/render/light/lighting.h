@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "scarp/render/frame/film.h"
-#include "scarp/render/frame/picture.h"
 #include "scarp/render/light/light.h"
+#include "scarp/render/light/light_settings.h"
 #include "scarp/render/light/sample_pattern.h"
 #include "scarp/render/light/visibility.h"
 
@@ -23,12 +23,11 @@ struct LightRays {
   std::size_t end = 0;
 };
 
-/// Refers to the settings.
 class Lighting {
  public:
-  /// `ao_distance` in metres replaces that of the settings. `highest`, for wrapped ground: there is nothing above it,
-  /// and rays to the sun end there.
-  Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest = {});
+  /// Rays to the sky end after `ao_distance` metres. `highest`, for wrapped ground: there is nothing above it, and rays
+  /// to the sun end there.
+  Lighting(const LightSettings& settings, double ao_distance, std::optional<double> highest = {});
 
   /// Maximum number of rays that ask() appends.
   std::size_t most_rays() const;
@@ -53,7 +52,7 @@ class Lighting {
   double sun_radius() const { return samples() > 0 ? light_.sun_radius() : 0; }
 
  private:
-  const PictureSettings& settings_;
+  LightSettings settings_;
   Light light_;
   SamplePattern pattern_;
   double ao_distance_;

@@ -3,14 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace scarp {
 namespace {
 
 vec3 light_on(double openness, int samples, std::uint8_t sky_blocked) {
-  PictureSettings settings;
+  LightSettings settings;
   settings.samples = samples;
   settings.shadows = false;
-  const Lighting lighting(settings, kUnlimited);
+  const Lighting lighting(settings, std::numeric_limits<double>::infinity());
   // Facing away from the sun: only skylight remains.
   const LightPoint ground{{0, 0, 0}, -lighting.to_sun(), -lighting.to_sun(), openness};
   std::vector<Ray> rays;
