@@ -75,7 +75,7 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   if (field_.settings().solid && from_outside_ && *c0_ < -bound(t0_) && c0 && *c0 < -bound(in)) must_hit_ = true;
 }
 
-// Moves the ray up or down so that it begins on the surface of its cell.
+// Moves the ray up or down so that it starts on the surface of its cell.
 void LeakJudge::put_on_surface() {
   const CellHeights h = *field_.cell_heights(ray_.start_cell);
   const Real u = clamped(x(t0_) - ray_.start_cell.col), v = clamped(y(t0_) - ray_.start_cell.row);
@@ -310,7 +310,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
     const bool at_side = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
     return at_side ? nullptr : "a wall inside the ground";
   }
-  // Rims are touched within a bound of their own.
+  // Touches of rims have their own bound.
   const bool at_rim = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
   if (std::abs(c) > 2 * (at_rim ? std::max(b, bound_at_rim(hit, place->h, t, e)) : b)) return "not on the surface";
 
@@ -328,7 +328,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const Real above =
       z(came) - (triangles_ ? height_of_triangle(place->h, u_in + v_in > 1, u_in, v_in) : height(place->h, u_in, v_in));
   if (before > 0 && above > 0) return nullptr;
-  // At the entry of its cell: the ray came through the cell before, if no other lies in between.
+  // At the entry of its cell: the ray came through the previous cell, if no other is in between.
   constexpr Real kBack = 0x1p-8L;  // of a cell
   const Real speed = std::max(std::abs(dx_), std::abs(dy_));
   if (speed > 0 && before * speed < 0x1p-20L) {

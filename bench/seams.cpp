@@ -179,8 +179,7 @@ Ray placed_ray(const SeamTerrain& to, const Ray& ray) {
   return world;
 }
 
-// Whether a hit is where the ray meets the ground, to the accuracy that is promised: a thousandth of a cell,
-// vertically.
+// Whether a hit is where the ray hits the ground, to the promised accuracy: a thousandth of a cell, vertically.
 bool is_on_ground(const SeamTerrain& of, const Ray& ray, const Hit& hit, std::uint64_t seed) {
   const long double t = hit.t, z = ray.origin.z + ray.direction.z * t, room = 1e-3L * of.cell;
   if (std::abs(hit.height - z) > room || z < of.base - room || z > of.base + kRelief + room) return false;

@@ -40,7 +40,7 @@ struct RenderInput {
 /// Reads the inputs and builds their accelerators. `view` holds the typed values. Throws Error naming the file.
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view);
 
-/// Returns whether rasters are read completely, however large they are; otherwise large ones are averaged.
+/// Returns whether rasters of any size are read completely; otherwise large ones are averaged.
 bool reads_all_samples(const RenderOptions& options);
 
 /// Applies the settings that follow from the input, which was opened with the options `before`, to other picture

@@ -4,7 +4,7 @@
 //   while moving   few rows, as many as can be traced in a frame; one sample per pixel, hard shadows
 //   then           full resolution, one sample per pixel
 //   refining       more and more samples, see refinement_of()
-//   at rest        the settings as they were asked for: what `scarp render` writes
+//   at rest        the settings as requested: the picture of `scarp render`
 //   afterwards     some rays of the picture are judged
 //
 // A picture may have two sides, such as the same view by two marches. Each stage renders both.

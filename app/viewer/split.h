@@ -17,7 +17,7 @@ Image split_image(const Image& left, const Image& right, int column);
 class SplitLine {
  public:
   double share() const { return share_; }
-  /// The column of a picture of this width at which the right side begins, 0..width.
+  /// The column of a picture of this width at which the right side starts, 0..width.
   int column(int width) const;
   /// Whether a position in a window of this size is on the line.
   bool is_at(const dvec2& place, const dvec2& size) const;

@@ -430,7 +430,7 @@ class Viewer {
   bool is_complete() const {
     return shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_;
   }
-  // Independent of the displayed picture: recordings end at the same view, however long pictures take.
+  // Independent of the displayed picture: recordings end at the same view, regardless of rendering times.
   bool compares() const { return !subject_->compared().empty(); }
 
   void show_sides() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What files of listed voxels contain, whatever their format: parts, each with its voxels and their colours.
+// Content of files of listed voxels, in any format: parts, each with its voxels and their colours.
 #pragma once
 
 #include <array>

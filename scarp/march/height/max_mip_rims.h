@@ -123,7 +123,7 @@ struct Rim {
     return seam_step + rounding_at_rim(field, ray, t, of_cell, seam);
   }
 
-  // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's place on a line,
+  // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's position on a line,
   // until f returns true, and then returns true. Rims are closed, so any of these cells is valid.
   template <class F>
   bool any_beside(double t, const F& f) const {

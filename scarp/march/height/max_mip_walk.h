@@ -377,7 +377,7 @@ class Walk {
         begun_ = true;
       }
       if (!falling && lowest_code > highest_code) break;
-      // The range is closed: it may end where the ray comes out of a hole.
+      // The range is closed: it may end where the ray leaves a hole.
       const bool ends_on_line = Holes && t_line == ray_.t_max && t_line < t_exit;
       if (!(t_line < t_end) && !ends_on_line) {
         left = t_end < t_end_ || (Wraps && Holes && t_exit == t_end_);
@@ -526,7 +526,7 @@ class Walk {
   Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
 
   // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
-  // crosses a rim within rounding of it touches it, whatever the sign: otherwise a ray through the corner of a hole,
+  // crosses a rim within rounding of it touches it, for either sign: otherwise a ray through the corner of a hole,
   // above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);

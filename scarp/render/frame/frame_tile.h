@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Computes the colours of a tile's points, in rounds of rays:
 //
-//   camera rays ──▶ rays that water and metal send on ──▶ rays from all surfaces met to sun and sky, in as many rounds
+//   camera rays ──▶ rays that water and metal send on ──▶ rays from all hit surfaces to sun and sky, in as many rounds
 //   as these need
 #pragma once
 

@@ -149,7 +149,7 @@ struct Picture {
 
 /// Renders a picture. `camera` must have been created with the width and height of the settings; if terrain wraps, it
 /// needs a finite reach. Throws Error if a setting is out of range, nothing in the scene is visible, the eye is not
-/// above the water, or the scene has no such level. Throws Interrupted if `progress` returns false.
+/// above the water, or the scene lacks the level. Throws Interrupted if `progress` returns false.
 Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                        const Progress& progress = {});
 

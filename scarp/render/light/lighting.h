@@ -30,7 +30,7 @@ class Lighting {
   /// and rays to the sun end there.
   Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest = {});
 
-  /// Maximum number of rays that ask() appends.
+  /// Maximum number of rays appended by ask().
   std::size_t most_rays() const;
   /// Appends the rays for the light on a point.
   LightRays ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const;

@@ -13,7 +13,7 @@
 //   blue       early: the march stopped before the ground, or at something nearer
 //   orange     late: the march hit behind the first ground
 //   yellow     gave up: the march came to its step limit
-//   brown      not judged: the ray starts or enters below the surface and never meets it from above
+//   brown      not judged: the ray starts or enters below the surface and never hits it from above
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scene of a .vox file as models in their places, in metres: a voxel 1 m, z up as in the file.
+// The scene of a .vox file as placed models, in metres: a voxel 1 m, z up as in the file.
 #pragma once
 
 #include "scarp/scene/placed_voxels.h"
@@ -18,7 +18,7 @@ struct FromVoxOptions {
 /// because many programs do not write alpha. Where instances overlap, one voxel remains at each position, the one that
 /// MagicaVoxel shows: that of the first instance in files from version 200 on, that of the last in older files. An
 /// instance that loses voxels gets its own model; all others share the models of the file. If instances coincide, one
-/// remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such march, too many
+/// remains. Grids are models cut to the smallest box around their voxels. Throws Error: unknown march, too many
 /// overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it is allocated.
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options = {});
 
