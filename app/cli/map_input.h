@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The input of subcommands that compute maps: one elevation model, places on it, and a plane in metres around a place.
+// The input of subcommands that compute maps: one elevation model, points on it, and a plane in metres around a point.
 #pragma once
 
 #include <optional>

@@ -13,7 +13,7 @@ Image stretched(const Image& image, int width, int height);
 /// The left picture up to a column, and the right one from there on. Both have the same size.
 Image split_image(const Image& left, const Image& right, int column);
 
-/// The line between two pictures, as a share of the window's width.
+/// The line between two pictures, as a fraction of the window's width.
 class SplitLine {
  public:
   double share() const { return share_; }

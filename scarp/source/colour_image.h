@@ -25,8 +25,8 @@ ColourImage read_colour_row(const std::string& path);
 /// `most_side` pixels.
 ColourImage read_colour_image(const std::string& path, int most_side);
 
-/// An image over part of a raster, or over all of it. Edges are shares of the way from the first sample to the last: 0
-/// is the north-west sample, 1 the south-east one.
+/// An image over part of a raster, or over all of it. Edges are fractions of the distance from the first sample to the
+/// last: 0 is the north-west sample, 1 the south-east one.
 struct Overlay {
   ColourImage image;
   double west = 0, north = 0, east = 1, south = 1;

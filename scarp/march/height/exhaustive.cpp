@@ -352,8 +352,8 @@ std::optional<double> descent_after_rise(const Piece& p, std::optional<double> d
   return p.roots() ? p.roots()->end : p.length();
 }
 
-// Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started so, otherwise
-// miss.
+// Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started below the ground,
+// otherwise miss.
 template <class Found>
 HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchStats* stats,
                  const Found& found_in_range) {

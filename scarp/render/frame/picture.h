@@ -87,8 +87,8 @@ struct PictureSettings {
   FogSettings fog{};                  ///< replaces haze unless its kind is `none`
   std::optional<WaterSettings> water{};
 
-  /// Whether Image::alpha is filled with the share of each pixel that shows ground, a model or water. Colours then are
-  /// means over that share alone, and black where it is 0.
+  /// Whether Image::alpha is filled with the fraction of each pixel that shows ground, a model or water. Colours then
+  /// are means over that share alone, and black where it is 0.
   bool alpha = false;
 
   bool tone_curve = true;  ///< whether `shaded` and `comanche` compress bright colours (toned()); layers never do

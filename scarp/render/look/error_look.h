@@ -43,7 +43,7 @@ Verdict judge(const Hit& answer, const Hit& truth, double tolerance);
 
 struct ErrorSettings {
   double tolerance = 0.1;  ///< hits agree within this many sides of a cell or voxel along the ray; >= 0
-  double share = 0.01;     ///< of functions and shapes: within this share of the distance; >= 0
+  double share = 0.01;     ///< functions and shapes: within this fraction of the distance; >= 0
 };
 
 /// Throws Error naming the first setting out of range.

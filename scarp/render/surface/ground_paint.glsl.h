@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Colours of ground: the formulas of ground_paint.h. Compiles as C++ and GLSL. The including file must define before:
-//   struct ScarpPaintPlace, a place on the ground, and
+//   struct ScarpPaintPlace, a point on the ground, and
 //   real scarp_paint_noise(ScarpPaintPlace place, int set, int octave, real size)
 //                                              Perlin noise, seed octave + 1, of patches of so many metres; `set` and
 //                                              `octave` name them: see scarp_patches()

@@ -14,7 +14,7 @@ struct FromVoxOptions {
 
 /// Entries are palette indices. Materials of the file: colours that emit (_emit, doubled by each step of _flux) and
 /// metals (_metal, reduced by _rough) become VoxelMaterial; all others, glass included, are opaque. An alpha of 1 to
-/// 254 is the share of a colour's voxels that are solid, chosen by ordered_pattern.h. An alpha of 0 means opaque,
+/// 254 is the fraction of a colour's voxels that are solid, chosen by ordered_pattern.h. An alpha of 0 means opaque,
 /// because many programs do not write alpha. Where instances overlap, one voxel remains at each position, the one that
 /// MagicaVoxel shows: that of the first instance in files from version 200 on, that of the last in older files. An
 /// instance that loses voxels gets its own model; all others share the models of the file. If instances coincide, one

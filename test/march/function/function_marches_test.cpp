@@ -299,7 +299,7 @@ TEST(FunctionMarches, FixedStepCountsItsSamples) {
   EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 52);
   settings.sampling.refinement = Refinement::bisect;
   settings.sampling.halvings = 10;
-  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic share of the step
+  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic fraction of the step
   settings.sampling.refinement = Refinement::none;
   settings.function.step_share = 0.5;  // 0, 2, 4, 6, 9, 13.5, 20.25, 30.375, 45.5625, 60 (68.3, the end)
   hit = march_fixed_step(ramp, ray, settings, &stats);

@@ -131,7 +131,7 @@ TEST(SteepRims, IgnoreNegligibleLeans) {
   rays.check();
 }
 
-// The height of an edge: samples of both ends at a share of its length.
+// The height of an edge: samples of both ends at a fraction of its length.
 double on_edge(float a, float b, double share) { return a + share * (static_cast<double>(b) - a); }
 
 TEST(SteepRims, HitAllBordersAtTheirEdgeHeight) {
