@@ -87,7 +87,7 @@ class LeakJudge {
   std::optional<Real> clearance(Real t) const;
   Piece piece(const Place& place, Real t, bool south_east) const;
   bool south_east(const Place& place, Real t) const { return x(t) - place.col + (y(t) - place.row) > 1; }
-  Real time_in_cell(const Place& place, Real t, bool back) const;
+  Real time_in_cell(const Place& place, Real t, bool back, Real room = 0) const;
   Real risen(const Place& place, Real t, Real length) const;
   Real deepest(const Place& place, Real t) const;
 

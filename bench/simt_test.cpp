@@ -168,15 +168,11 @@ TEST(SimtBlocks, MatchTheShaders) {
   }
   if (compilers != kept.compilers) GTEST_SKIP() << "the table is of other compilers: " << kept.compilers;
   constexpr const char* kRewrite = "scarp-bench simt --recount --update bench/simt_blocks.csv";
-  // The rows of voxel shaders are older than their rule of ties (VoxelTies), so their basic blocks must be reassigned;
-  // until then `scarp-bench simt --voxels` counts the former shaders. Rows of height fields are checked.
-  SimtShaders checked = kept;
-  std::erase_if(checked.shaders, [](const auto& shader) { return shader.name.starts_with("voxel"); });
-  const SimtShaders found = recount(checked);
-  for (std::size_t i = 0; i < checked.shaders.size(); ++i) {
+  const SimtShaders found = recount(kept);
+  for (std::size_t i = 0; i < kept.shaders.size(); ++i) {
     for (std::size_t block = 0; block < kSimtBlocks; ++block)
-      EXPECT_EQ(found.shaders[i].costs[block], checked.shaders[i].costs[block])
-          << checked.shaders[i].name << ", " << kSimtBlockNames[block] << " (rewrite the table: " << kRewrite << ")";
+      EXPECT_EQ(found.shaders[i].costs[block], kept.shaders[i].costs[block])
+          << kept.shaders[i].name << ", " << kSimtBlockNames[block] << " (rewrite the table: " << kRewrite << ")";
   }
 }
 #endif

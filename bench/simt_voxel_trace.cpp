@@ -196,12 +196,13 @@ struct ObjectRay {
   glsl::uint entered = 0;
   bool met = true;
 
-  ObjectRay(const TurnedRay& ray, const dvec3& origin, double t_min, double t_max, const VoxelBox& box) {
+  ObjectRay(const TurnedRay& ray, dvec3 origin, double room, double t_min, double t_max, const VoxelBox& box) {
     note_block(SimtBlock::object);
     glsl::ScarpVoxelClip clip{t_min, t_max, -1, false};
     for (int axis = 0; axis < 3; ++axis) {
-      met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], 0, ray.speed[axis], ray.back,
-                                   box.low[axis], box.high[axis], false, 0, clip) &&
+      if (ray.given[axis] == 0) origin[axis] = glsl::scarp_voxel_level(origin[axis], room);
+      met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], room, ray.speed[axis],
+                                   ray.back, box.low[axis], box.high[axis], false, 0, clip) &&
             met;
     }
     met = met && clip.t <= clip.t_out;
@@ -256,7 +257,7 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
       const auto& [turn, ties, room] = all.turns[object.turn];
       if (turned.turn != object.turn) turned.set(object.turn, turn, ties[0], ray.direction);
       const VoxelTarget& target = all.targets[object.model];
-      ObjectRay begun(turned, turn * (ray.origin - object.origin), ray.t_min, t_max, target.box);
+      ObjectRay begun(turned, turn * (ray.origin - object.origin), room, ray.t_min, t_max, target.box);
       if (!begun.met) continue;
       marched_grid = &target;
       marched_address = std::uint64_t{object.model} << kGridBits;

@@ -103,9 +103,9 @@ struct VoxelEmbreePeer::Scene {
                              ray.t_min,
                              best ? best.t : ray.t_max,
                              {}};
-      const auto quantised = quantise(in_grid, question.directions[id], s.target.box);
-      if (!quantised) continue;
-      const VoxelHit hit = s.model->march().cpu(s.target, *quantised, nullptr);
+      QuantisedRay quantised;
+      if (!quantise(in_grid, question.directions[id], s.target.box, quantised)) continue;
+      const VoxelHit hit = s.model->march().cpu(s.target, quantised, nullptr);
       if (!hit || (best && hit.t == best.t && args->primID > best.part)) continue;
       best.status = HitStatus::hit, best.face = hit.face, best.t = hit.t;
       best.voxel = hit.voxel, best.part = args->primID;

@@ -83,7 +83,27 @@ struct Counts {
   std::int64_t rays = 0, hits = 0, judged = 0, wrong = 0;
 };
 
-// Rays that have been traced one by one, to be traced together.
+// Sums of all threads, one per kind of rays.
+template <std::size_t kKinds>
+class Total {
+ public:
+  void add(const std::array<Counts, kKinds>& part) {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 0; i < kKinds; ++i) {
+      counts_[i].rays += part[i].rays;
+      counts_[i].hits += part[i].hits;
+      counts_[i].judged += part[i].judged;
+      counts_[i].wrong += part[i].wrong;
+    }
+  }
+  const std::array<Counts, kKinds>& counts() const { return counts_; }
+
+ private:
+  std::mutex mutex_;
+  std::array<Counts, kKinds> counts_;
+};
+
+// Rays that have been answered one by one, to be asked together.
 struct Together {
   VoxelPacket packet;
   std::array<VoxelHit, VoxelPacket::kRays> expected;
@@ -127,8 +147,7 @@ struct FirstWrong {
 
 std::array<Counts, kRayKinds> leaks_of_grids(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
   const auto exact = voxel_marches().subspan(1);
-  std::array<Counts, kRayKinds> total;
-  std::mutex mutex;
+  Total<kRayKinds> total;
   const std::int64_t grids = (options.rays + kRaysPerGrid - 1) / kRaysPerGrid;
   parallel_for(grids, 4, [&](std::int64_t begin, std::int64_t end) {
     std::array<Counts, kRayKinds> counts;
@@ -173,15 +192,9 @@ std::array<Counts, kRayKinds> leaks_of_grids(const VoxelLeaksOptions& options, F
       }
       ask_together();
     }
-    const std::lock_guard lock(mutex);
-    for (std::size_t i = 0; i < total.size(); ++i) {
-      total[i].rays += counts[i].rays;
-      total[i].hits += counts[i].hits;
-      total[i].judged += counts[i].judged;
-      total[i].wrong += counts[i].wrong;
-    }
+    total.add(counts);
   });
-  return total;
+  return total.counts();
 }
 
 constexpr std::int64_t kRaysPerScene = 512;
@@ -189,8 +202,7 @@ constexpr std::array<const char*, 2> kSceneNames = {"turned objects: exact direc
 
 // Judged: all but rays whose quantised direction passes an edge on either side.
 std::array<Counts, 2> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
-  std::array<Counts, 2> total;
-  std::mutex mutex;
+  Total<2> total;
   const std::int64_t scenes = (options.rays + kRaysPerScene - 1) / kRaysPerScene;
   parallel_for(scenes, 4, [&](std::int64_t begin, std::int64_t end) {
     std::array<Counts, 2> counts;
@@ -222,15 +234,9 @@ std::array<Counts, 2> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWro
         first_wrong.tell(fmt::format("scene {}, ray {}", index, i));
       }
     }
-    const std::lock_guard lock(mutex);
-    for (std::size_t i = 0; i < total.size(); ++i) {
-      total[i].rays += counts[i].rays;
-      total[i].hits += counts[i].hits;
-      total[i].judged += counts[i].judged;
-      total[i].wrong += counts[i].wrong;
-    }
+    total.add(counts);
   });
-  return total;
+  return total.counts();
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ void add_composite(Program& program) {
                          .value = "NAME",
                          .help = "their opacity channel, which their colours are multiplied by",
                          .fallback = "none"});
-  add_tone_option(command, o.no_tone_curve, o.output, Topic::general);
+  add_tone_option(command, &o.no_tone_curve, o.output, Topic::general);
   add_depth_options(command, o.depth);
   command.example("scarp composite terrain.exr ship.exr -o both.png");
   command.runs([options, &command] {

@@ -21,13 +21,13 @@ constexpr NumberRange kExaggerations{.least = 0, .most = kMostOfGround, .above_l
 void set_exaggeration(const std::string& text, FieldOptions& options, Exaggeration* exaggeration) {
   if (text == "auto") {
     if (!exaggeration) throw WrongUsage("--exaggeration 'auto': applies to pictures only (give a number)");
-    exaggeration->chosen = true;
+    *exaggeration = {.given = true, .chosen = true};
     return;
   }
   const std::string wrong = number_in(kExaggerations)(text);
   if (!wrong.empty()) throw WrongUsage("--exaggeration " + wrong);
   options.exaggeration = std::strtod(text.c_str(), nullptr);
-  if (exaggeration) exaggeration->chosen = false;
+  if (exaggeration) *exaggeration = {.given = true};
 }
 
 }  // namespace

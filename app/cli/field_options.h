@@ -14,6 +14,7 @@ enum class BeyondBorders { none, wraps, mirrors };
 
 /// --exaggeration as typed, beside FieldOptions::exaggeration.
 struct Exaggeration {
+  bool given = false;   ///< a factor, or `auto`
   bool chosen = false;  ///< `auto`: by the relief of the raster
 };
 /// Returns the factor at which a relief is a tenth of the longer side of the ground, both in metres, rounded down to 1,

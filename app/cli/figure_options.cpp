@@ -240,7 +240,7 @@ FigureScale scale_of(double pixels_wide, double metres_per_pixel, bool map) {
 
 }  // namespace
 
-void settle_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format) {
+void check_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format) {
   if (options.any().empty()) return;
   if (format.layers) {
     throw Error(fmt::format("{} is not drawn into {}, which holds numbers for further work (name the output *.png)",
@@ -257,7 +257,7 @@ void settle_figure(const FigureOptions& options, const PictureSettings& settings
   if (options.legend && settings.comanche.iterations) {
     throw Error("--legend is not available with --iterations (use --look steps)");
   }
-  const bool ramp = settings.look == Look::shaded || settings.look == Look::comanche;
+  const bool ramp = entry_of(settings.look).lit;
   if (options.legend && ramp && settings.ground.natural) {
     throw Error("--legend has no colour scale to show with --ground natural (leave one of them out)");
   }
@@ -268,7 +268,7 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
   if (options.any().empty()) return {};
   const Scene& scene = subject.scene;
   const Camera& camera = subject.camera;
-  const double per_pixel = settings.look == Look::comanche ? settings.comanche.scale : 1;
+  const double per_pixel = entry_of(settings.look).large_pixels ? settings.comanche.scale : 1;
   const double width = per_pixel * settings.width, height = per_pixel * settings.height;
   Figure figure{.title = options.title};
   if (options.layout == "beside") figure.layout = FigureLayout::beside;
@@ -300,7 +300,7 @@ void add_legend(const FigureOptions& options, const PictureSettings& settings, c
 
 #else
 
-void settle_figure(const FigureOptions& options, const PictureSettings&, const PictureFormat&) {
+void check_figure(const FigureOptions& options, const PictureSettings&, const PictureFormat&) {
   if (!options.graticule.empty()) graticule_spacing(options.graticule);
   if (!options.any().empty())
     throw Error(fmt::format("{}: this scarp was built without Cairo (SCARP_CAIRO=OFF)", options.any()));

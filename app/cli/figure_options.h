@@ -28,8 +28,8 @@ struct FigureOptions {
 /// `top`: the option --top, and `output` the file's name; both must outlive the command.
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output);
 
-/// Checks everything that does not need the field. Throws Error.
-void settle_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
+/// Checks the options that do not depend on the field. Throws Error.
+void check_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
 
 /// The contents of a figure.
 struct FigureSubject {

@@ -87,7 +87,7 @@ void add_frame_options(Command& command, FrameOptions& o) {
                              .rules = {needs("--path FILE or --turntable", several)}});
 }
 
-void settle_frames(const FrameOptions& o, const std::string& output) {
+void check_frames(const FrameOptions& o, const std::string& output) {
   if (o.several() && place_of_number(output).count == 0) {
     throw Error(fmt::format("output '{}': frames need a place for their number (name it frame-####.png)", output));
   }

@@ -23,8 +23,8 @@ struct FrameOptions {
 
 void add_frame_options(Command& command, FrameOptions& options);
 
-/// Throws Error if several frames have an output without a placeholder for their number.
-void settle_frames(const FrameOptions& options, const std::string& output);
+/// Throws Error where several frames have an output without a place for their number.
+void check_frames(const FrameOptions& options, const std::string& output);
 
 /// Converts positions of a table to world metres.
 struct PathPlaces {

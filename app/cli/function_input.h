@@ -12,8 +12,6 @@ namespace scarp::cli {
 
 /// Without --march.
 constexpr const char* kFunctionMarch = "lipschitz-local";
-/// Without --haze: share over the extent.
-constexpr double kFunctionHaze = 0.2;
 /// Without --view and --fov.
 constexpr ViewSettings kFunctionView{.azimuth_deg = 190, .elevation_deg = 14, .distance = 0.5, .fov_deg = 45};
 

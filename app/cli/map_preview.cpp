@@ -20,6 +20,7 @@
 #include "app/cli/picture_output.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
+#include "scarp/render/frame/picture_request.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp::cli {
@@ -33,12 +34,11 @@ std::string kept(std::string path, const MapInput& input) {
 // The ground below a map is shaded, but without cast shadows, which could be mistaken for those of the map.
 PictureSettings settings_of(const MapInput& input, const Scene& scene) {
   constexpr int kLongerSide = 1000;
-  PictureSettings picture;
-  picture.width = kLongerSide;
-  picture.grid_north_azimuth = input.georeference().grid_north_azimuth;
-  picture.shadows = false;
-  fit_size_to_scene(picture_box(scene), picture);
-  return picture;
+  PictureRequest request;
+  request.shadows = false;
+  return resolve(request, {.grid_north_azimuth = input.georeference().grid_north_azimuth,
+                           .map = picture_box(scene),
+                           .size = {kLongerSide, kLongerSide}});
 }
 
 Scene scene_of(const MapInput& input) {

@@ -53,6 +53,17 @@ std::vector<double> ground_numbers_from(std::string_view text, std::size_t least
   return numbers;
 }
 
+std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example) {
+  constexpr double kMost = 1e9;  // of a slip; the picture's own limit is far below
+  const std::string form = fmt::format("WIDTHxHEIGHT in pixels, for example {}", example);
+  const auto numbers = numbers_from(text, 'x', 2, 2, option, form);
+  for (const double number : numbers) {
+    if (number != std::floor(number) || std::abs(number) > kMost)
+      throw Error(fmt::format("{} '{}': expected {}", option, text, form));
+  }
+  return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
+}
+
 std::function<std::string(const std::string& text)> number_in(const NumberRange& range) {
   return [range](const std::string& text) -> std::string {
     // As CLI11 will read it.

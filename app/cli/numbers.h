@@ -2,6 +2,7 @@
 // Numbers in options: several in one value ("315,45", "1280x720"), ranges, and integers of any size.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -37,7 +38,10 @@ std::function<std::string(const std::string& text)> number_in(const NumberRange&
 std::vector<double> ground_numbers_from(std::string_view text, std::size_t least, std::size_t most,
                                         std::string_view option, std::string_view form);
 
-/// Formats a length above 0 for messages, with at least three digits and without an exponent: "0.25", "17.3", "3660".
+/// Width and height in pixels, "WIDTHxHEIGHT". Throws Error as numbers_from() does; `example` is "1280x720".
+std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example);
+
+/// A length above 0 for messages, three digits of it at least and no power of ten: "0.25", "17.3", "3660".
 std::string metres_text(double metres);
 
 }  // namespace scarp::cli

@@ -71,7 +71,7 @@ std::string range_text(const NumberRange& range, const std::string& value) {
 
 std::string placeholder(const Option& option, const Binding& to) {
   if (!option.value.empty()) return option.value;
-  if (std::holds_alternative<bool*>(to)) return {};
+  if (std::holds_alternative<bool*>(to) || std::holds_alternative<Off>(to)) return {};
   if (option.unit == "metres") return "M";
   if (option.unit == "degrees") return "DEG";
   return std::holds_alternative<double*>(to) || std::holds_alternative<std::optional<double>*>(to) ? "F" : "N";
@@ -101,6 +101,14 @@ std::string set_bool(bool& value, const std::string& text, bool flag) {
   }
   value = text == "true";
   return {};
+}
+
+template <class Whole>
+std::string set_whole(std::optional<Whole>& value, const NumberRange& range, const std::string& text) {
+  Whole number = 0;
+  const std::string wrong = set_whole(number, range, text);
+  if (wrong.empty()) value = number;
+  return wrong;
 }
 
 template <class Number>
@@ -153,7 +161,9 @@ std::string listed(std::span<const std::string_view> words, std::string_view las
   return text;
 }
 
-bool Declared::flag() const { return std::holds_alternative<bool*>(to) && option.value.empty(); }
+bool Declared::flag() const {
+  return std::holds_alternative<Off>(to) || (std::holds_alternative<bool*>(to) && option.value.empty());
+}
 
 std::string Declared::synopsis() const {
   std::string text = option.names;
@@ -197,10 +207,18 @@ void set_value(const Declared& declared, const std::string& text) {
     wrong = fmt::format("'{}': expected {}", text, listed(words, "or"));
   } else if (const auto* flag = std::get_if<bool*>(&declared.to)) {
     wrong = set_bool(**flag, text, declared.flag());
+  } else if (const auto* off = std::get_if<Off>(&declared.to)) {
+    bool on = false;
+    wrong = set_bool(on, text, true);
+    if (wrong.empty()) *off->what = !on;
   } else if (const auto* whole = std::get_if<int*>(&declared.to)) {
     wrong = set_whole(**whole, range, text);
+  } else if (const auto* perhaps_whole = std::get_if<std::optional<int>*>(&declared.to)) {
+    wrong = set_whole(**perhaps_whole, range, text);
   } else if (const auto* small = std::get_if<std::uint32_t*>(&declared.to)) {
     wrong = set_whole(**small, range, text);
+  } else if (const auto* perhaps_small = std::get_if<std::optional<std::uint32_t>*>(&declared.to)) {
+    wrong = set_whole(**perhaps_small, range, text);
   } else if (const auto* large = std::get_if<std::uint64_t*>(&declared.to)) {
     wrong = set_whole(**large, range, text);
   } else if (const auto* number = std::get_if<double*>(&declared.to)) {

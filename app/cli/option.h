@@ -79,11 +79,16 @@ struct Rule {
 /// "has no effect without --water M".
 Rule needs(const std::string& what, std::function<bool()> met, unsigned of = kEveryInput);
 
-/// The variable that receives the value. A Setter parses the text itself and throws Error or WrongUsage. bool* without
-/// a value name is a flag.
+/// Where the value goes. A Setter parses the text itself and throws Error or WrongUsage. bool* without a value name,
+/// and Off, are flags.
 using Setter = std::function<void(const std::string& text)>;
-using Binding = std::variant<bool*, int*, std::uint32_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
-                             std::vector<std::string>*, Setter>;
+/// The value that a flag switches off.
+struct Off {
+  std::optional<bool>* what;
+};
+using Binding =
+    std::variant<bool*, Off, int*, std::optional<int>*, std::uint32_t*, std::optional<std::uint32_t>*, std::uint64_t*,
+                 double*, std::optional<double>*, std::string*, std::vector<std::string>*, Setter>;
 
 struct Option {
   std::string names;                    ///< "-o,--output", "--fov"; "IN" for positional arguments
@@ -98,6 +103,7 @@ struct Option {
   std::string note{};                   ///< further details: "0: none"
   bool repeats = false;                 ///< for several values: one per mention; otherwise any number
   std::string fallback{};               ///< the default in words; empty: the value of the variable
+  std::function<std::string()> now{};   ///< what a Setter has set, as text; empty: nothing
   Topic topic = Topic::general;         //
   bool common = false;                  ///< shown by a plain `--help`
   bool required = false;                //

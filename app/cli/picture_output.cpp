@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -38,13 +37,6 @@ std::vector<std::uint8_t> with_figure(const Image& image, const std::vector<std:
 }
 
 }  // namespace
-
-void fit_size_to_scene(const WorldBox& box, PictureSettings& picture) {
-  const dvec3 size = box.high - box.low;
-  const double pixels_per_metre = picture.width / std::max(size.x, size.y);
-  picture.width = std::max(1, static_cast<int>(std::lround(size.x * pixels_per_metre)));
-  picture.height = std::max(1, static_cast<int>(std::lround(size.y * pixels_per_metre)));
-}
 
 std::optional<MapPlace> place_of_map(const Camera& camera, int width, int height, const Georeference& georeference,
                                      int cols, int rows) {

@@ -16,11 +16,8 @@
 
 namespace scarp::cli {
 
-/// Gives a map the shape of the scene, its longer side as long as the picture is wide.
-void fit_size_to_scene(const WorldBox& box, PictureSettings& picture);
-
-/// Returns the georeference of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster with
-/// this many rows. Nullopt without a georeference.
+/// The place of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster of so many rows.
+/// Nullopt without a georeference.
 std::optional<MapPlace> place_of_map(const Camera& camera, int width, int height, const Georeference& georeference,
                                      int cols, int rows);
 

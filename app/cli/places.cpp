@@ -35,7 +35,7 @@ void add_coordinates_option(Command& command, std::string& coordinates, Option o
 
 TypedPlace typed_place(const std::string& text, std::string_view option) {
   const auto numbers = numbers_from(text, ',', 2, 3, option, "X,Y or X,Y,Z, for example 500,300 or 500,300,1200");
-  return {numbers[0], numbers[1], numbers.size() > 2 ? std::optional(numbers[2]) : std::nullopt};
+  return {numbers[0], numbers[1], numbers.size() > 2 ? std::optional(numbers[2]) : std::nullopt, text};
 }
 
 Places::Places(const PlaceRaster& raster, Coordinates coordinates, double exaggeration)

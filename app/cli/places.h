@@ -23,6 +23,7 @@ void add_coordinates_option(Command& command, std::string& coordinates, Option o
 struct TypedPlace {
   double x = 0, y = 0;
   std::optional<double> z{};
+  std::string text{};  ///< for messages
 };
 /// Throws Error "OPTION 'TEXT': expected ...".
 TypedPlace typed_place(const std::string& text, std::string_view option);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The options of `scarp render`.
+// The options of `scarp render`, with their types.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,33 +13,50 @@
 #include "app/cli/frames.h"
 #include "app/cli/look_options.h"
 #include "app/cli/open_input.h"
-#include "scarp/render/frame/picture.h"
+#include "app/cli/places.h"
+#include "scarp/render/frame/picture_request.h"
 
 namespace scarp::cli {
 
 constexpr double kComancheFov = 60;       // degrees, without --fov
 constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
 
-/// Texts are parsed later, where messages can name the option.
+/// --view.
+struct TypedView {
+  double azimuth_deg = 0, elevation_deg = 0;
+  std::optional<double> distance{};
+};
+
+/// --area: edges in coordinates of --coords, with the text for messages.
+struct TypedArea {
+  double west = 0, south = 0, east = 0, north = 0;
+  std::string text;
+};
+
+/// From where a picture is seen.
+struct CameraOptions {
+  std::optional<TypedView> view;
+  std::optional<TypedPlace> eye, target;
+  std::optional<double> eye_above;
+  std::optional<double> fov_deg;
+  std::optional<TypedArea> area;
+  std::string coordinates = "local";
+  bool top = false;
+};
+
 struct RenderOptions : InputOptions {
   std::string output;
-  PictureSettings picture;
-  LookOptions look_options;
+  PictureRequest picture;
+  PictureFileNames picture_files;
+  CameraOptions camera;
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
-  std::string size, look = "shaded", steps_range, sun, sky, view, eye, target, area, coordinates = "local";
   std::string voxel_drawing = "compute";
-  std::optional<double> eye_above;
-  const PictureFormat* format = nullptr;  ///< of the output
-  double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;
-  bool top = false, no_shadows = false, no_plinth = false, no_tone_curve = false;
+  bool no_plinth = false;
   bool full = false;  ///< reads all samples of large rasters
   int threads = 0;
-  std::vector<std::string> given;  ///< names of the options that were typed
-  std::vector<std::string> typed;  ///< and their values
-
-  bool is_given(std::string_view option) const;
+  std::vector<std::string> typed;  ///< the values that were typed: files among them are not written over
 };
 
 /// Declares the options of pictures; if `written`, those of files, figures and several frames as well.
@@ -46,5 +64,11 @@ void declare_picture(Command& command, RenderOptions& options, bool written);
 
 /// Adds the subcommand and declares its options.
 Command& declare_render(Program& program, RenderOptions& options);
+
+/// Returns the view of the options over the defaults of a look.
+ViewSettings view_of(const CameraOptions& camera, Look look);
+
+/// Checks whatever needs neither the input nor the output. Throws Error.
+void check_picture(const RenderOptions& options);
 
 }  // namespace scarp::cli

@@ -6,7 +6,7 @@
 
 namespace scarp::cli {
 
-/// `view` holds the typed values. The options must be consistent. Throws Error.
-void render_input(InputKind kind, RenderOptions options, const ViewSettings& view);
+/// The options are consistent with each other. Throws Error.
+void render_input(InputKind kind, RenderOptions options);
 
 }  // namespace scarp::cli

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 
 #include "app/cli/mesh_options.h"
-#include "app/cli/numbers.h"
-#include "app/cli/picture_output.h"
+#include "app/cli/picture_format.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 
@@ -32,16 +33,28 @@ SceneDetail detail_of(const Camera& camera, int aa) {
   return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
 }
 
+// How far the camera's rays go: infinitely far, except over ground that wraps round. There, unless it is asked for, as
+// far as pictures are about, and from outside of the box farther: ways to a field of which twice are as far as its
+// corners behind. They are farther off than the field's longer side and the way to it by less than half of that side,
+// and who sees all of a field is farther away.
+double reach_of(const PictureRequest& asked, double across, const Scene& scene, const WorldBox& box,
+                const Camera& camera) {
+  constexpr double kFarthestCorner = 2;
+  if (asked.reach) return *asked.reach;
+  if (!scene.wraps()) return std::numeric_limits<double>::infinity();
+  return across + kFarthestCorner * length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
+}
+
 }  // namespace
 
 void RenderStage::open() {
   Watch watch;
   const MeshInput mesh(options_.mesh);
-  input_ = open_render_input(kind_, options_, typed_view_);
-  options_.typed.insert(options_.typed.end(), input_.files.begin(), input_.files.end());
+  const PictureFiles files = read_picture_files(options_.picture_files, options_.picture);
+  input_ = open_render_input(kind_, options_, files, size_);
   stop_if_interrupted();
   read_s_ = watch.lap();
-  places_.emplace(input_.raster, find_coordinates(options_.coordinates), exaggeration());
+  places_.emplace(input_.raster, find_coordinates(options_.camera.coordinates), exaggeration());
   input_.scene = mesh.with_mesh(std::move(input_.scene), *places_);
   input_.notes.insert(input_.notes.end(), mesh.notes().begin(), mesh.notes().end());
   if (input_.coarse_voxels) {
@@ -50,12 +63,26 @@ void RenderStage::open() {
     put_on_device(input_.scene);
   }
   stop_if_interrupted();
-  if (options_.top && options_.size.empty()) fit_size_to_scene(map_box(), options_.picture);
-  facts_.heights = input_.heights;
-  facts_.area = !options_.area.empty();
-  if (kind_ == InputKind::function) facts_.function_reach = options_.march_settings.function.reach;
-  finish_look(options_.look_options, input_.across, input_.heights, input_.exaggeration, options_.picture);
+  subject_ = input_.subject;
+  subject_.files.ramp_stops = files.ramp_stops, subject_.files.detail_texture = files.detail_texture;
+  subject_.size = size_;
+  if (options_.camera.top) subject_.map = map_box();
+  if (!options_.output.empty()) subject_.alpha = picture_format_of(options_.output).map;
+  picture_ = picture(options_, nullptr);
+  facts_.heights = subject_.heights;
+  facts_.area = options_.camera.area.has_value();
+  facts_.function_reach = input_.function_reach;
   build_s_ = watch.lap();
+}
+
+PictureSettings RenderStage::picture(const RenderOptions& options, const Camera* camera) const {
+  PictureSubject subject = subject_;
+  if (camera) subject.box = scene_box();
+  if (options.picture_files != options_.picture_files) {
+    const PictureFiles files = read_picture_files(options.picture_files, options.picture);
+    subject.files.ramp_stops = files.ramp_stops, subject.files.detail_texture = files.detail_texture;
+  }
+  return resolve(options.picture, subject, camera);
 }
 
 void RenderStage::put_on_device(const Scene& scene) {
@@ -77,14 +104,15 @@ WorldBox RenderStage::scene_box() const {
 }
 
 void RenderStage::finish(Camera& camera, const RenderOptions& options) {
-  camera.set_reach(reach_of(options.look_options, input_.across, scene_, scene_box(), camera));
-  // The reference march must stop where the march does.
-  if (kind_ == InputKind::function && options.picture.look == Look::error)
-    camera.set_reach(std::min(camera.reach(), options.march_settings.function.reach));
-  if (input_.coarse_voxels) put_on_device(input_.scene.coarser(detail_of(camera, options.picture.aa)));
+  camera.set_reach(reach_of(options.picture, subject_.across, scene_, scene_box(), camera));
+  // The judge has to stop where the march does.
+  if (kind_ == InputKind::function && look_of(options.picture) == Look::error)
+    camera.set_reach(std::min(camera.reach(), input_.function_reach));
+  if (input_.coarse_voxels)
+    put_on_device(input_.scene.coarser(detail_of(camera, resolve(options.picture, subject_).aa)));
 }
 
-bool RenderStage::restyles(const Declared& option) const {
+bool RenderStage::serves(const Declared& option) const {
   switch (option.option.topic) {
     case Topic::picture:
       return option.name != "--no-plinth";
@@ -102,21 +130,15 @@ bool RenderStage::restyles(const Declared& option) const {
   }
 }
 
-bool RenderStage::may_read_otherwise(const RenderOptions& options) const {
-  if (kind_ != InputKind::terrain || reads_all_samples(options) == reads_all_samples(options_)) return false;
-  // Averaging, with blocks of at least 2 x 2, leaves at least a quarter of the allowed samples.
+bool RenderStage::serves(const RenderOptions& options) const {
+  if (kind_ != InputKind::terrain || reads_all_samples(options) == input_.all_samples) return true;
+  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least.
   const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
-  return 4 * samples >= Decimation{}.above;
-}
-
-RenderOptions RenderStage::restyled(RenderOptions options) const {
-  settle_again(kind_, input_, options_, options);
-  finish_look(options.look_options, input_.across, input_.heights, input_.exaggeration, options.picture);
-  return options;
+  return 4 * samples < Decimation{}.above;
 }
 
 Camera RenderStage::framed(const ViewSettings& view) {
-  const FieldView found = input_.framed(scene_, view);
+  const FieldView found = input_.framed(scene_, view, picture_);
   raised_ = std::max(raised_, found.raised);
   return found.camera;
 }
@@ -128,7 +150,7 @@ double RenderStage::exaggeration() const {
 
 dvec3 RenderStage::typed_eye() const {
   constexpr std::string_view kEye = "--eye";
-  const TypedPlace eye = typed_place(options_.eye, kEye);
+  const TypedPlace& eye = *options_.camera.eye;
   if (eye.z) return places_->world(eye, input_.scene, kEye);
   return above_surface(places_->world(dvec3(eye.x, eye.y, 0), kEye), kEye);
 }
@@ -136,51 +158,49 @@ dvec3 RenderStage::typed_eye() const {
 // --eye-above over the surface at (x, y) of `at`, or over water that covers it.
 dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
   dvec3 eye = places_->on_surface(at, input_.scene, what);
-  if (options_.picture.water) eye.z = std::max(eye.z, options_.picture.water->level * exaggeration());
-  return eye + dvec3(0, 0, *options_.eye_above * exaggeration());
+  if (picture_.water) eye.z = std::max(eye.z, picture_.water->level * exaggeration());
+  return eye + dvec3(0, 0, *options_.camera.eye_above * exaggeration());
 }
 
 // The area that --top shows.
 WorldBox RenderStage::map_box() const {
+  if (scene_.box().empty() && scene_.endless() && !scene_.terrain())
+    throw Error(
+        "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
+        "--eye and --target)");
   WorldBox box = picture_box(scene_);
-  if (options_.area.empty()) return box;
+  const auto& area = options_.camera.area;
+  if (!area) return box;
   constexpr std::string_view kArea = "--area";
-  const auto edges =
-      ground_numbers_from(options_.area, 4, 4, kArea, "W,S,E,N in coordinates of --coords, for example 0,0,500,300");
-  const dvec3 low = places_->world(dvec3(edges[0], edges[1], 0), kArea),
-              high = places_->world(dvec3(edges[2], edges[3], 0), kArea);
+  const dvec3 low = places_->world(dvec3(area->west, area->south, 0), kArea),
+              high = places_->world(dvec3(area->east, area->north, 0), kArea);
   if (!(low.x < high.x && low.y < high.y))
-    throw Error(fmt::format("{} '{}': expected W below E, and S below N", kArea, options_.area));
+    throw Error(fmt::format("{} '{}': expected W below E, and S below N", kArea, area->text));
   box.low.x = low.x, box.low.y = low.y, box.high.x = high.x, box.high.y = high.y;
   return box;
 }
 
 Camera RenderStage::camera() {
-  const int width = options_.picture.width, height = options_.picture.height;
-  if (options_.top && scene_.box().empty() && scene_.endless() && !scene_.terrain())
-    throw Error(
-        "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
-        "--eye and --target)");
-  if (options_.top) return Camera::top(map_box(), width, height);
-  if (!options_.eye.empty()) {
-    const dvec3 target = !options_.target.empty()
-                             ? places_->world(typed_place(options_.target, "--target"), input_.scene, "--target")
+  const CameraOptions& asked = options_.camera;
+  const int width = picture_.width, height = picture_.height;
+  if (asked.top) return Camera::top(map_box(), width, height);
+  if (asked.eye) {
+    const dvec3 target = asked.target    ? places_->world(*asked.target, input_.scene, "--target")
                          : input_.target ? *input_.target
                                          : picture_box(scene_).middle();
     return Camera::look_at(typed_eye(), target, input_.view.fov_deg, width, height);
   }
-  if (options_.view.empty()) {
+  if (!asked.view) {
     if (input_.eye) return Camera::look_at(*input_.eye, *input_.target, input_.view.fov_deg, width, height);
-    if (options_.picture.look == Look::comanche && scene_.terrain() && !input_.viewed) {
-      return flight_camera(*scene_.terrain(), options_.picture.grid_north_azimuth, input_.view.fov_deg, width, height);
-    }
+    if (picture_.look == Look::comanche && scene_.terrain() && !input_.viewed)
+      return flight_camera(*scene_.terrain(), picture_.grid_north_azimuth, input_.view.fov_deg, width, height);
   }
   return framed(input_.view);
 }
 
 PathPlaces RenderStage::path_places() const {
   PathPlaces path{*places_, input_.scene};
-  if (options_.eye_above)
+  if (options_.camera.eye_above)
     path.above_surface = [this](const dvec3& at, const std::string& what) { return above_surface(at, what); };
   return path;
 }

@@ -13,14 +13,15 @@
 #include "app/cli/render_input.h"
 #include "app/cli/render_options.h"
 #include "app/cli/seen.h"
+#include "scarp/render/frame/picture_request.h"
 
 namespace scarp::cli {
 
 class RenderStage {
  public:
-  /// `view` holds the typed values. The options must be consistent.
-  RenderStage(InputKind kind, RenderOptions options, const ViewSettings& view)
-      : options_(std::move(options)), kind_(kind), typed_view_(view) {}
+  /// The options are consistent with each other; `size` is that of pictures for which they ask none.
+  RenderStage(InputKind kind, RenderOptions options, ImageSize size = PictureSubject{}.size)
+      : options_(std::move(options)), kind_(kind), size_(size) {}
   RenderStage(const RenderStage&) = delete;
   RenderStage& operator=(const RenderStage&) = delete;
 
@@ -29,8 +30,12 @@ class RenderStage {
 
   const RenderOptions& options() const { return options_; }
   InputKind kind() const { return kind_; }
-  PictureSettings& picture() { return options_.picture; }
-  const PictureSettings& picture() const { return options_.picture; }
+  /// The settings of the options, for any camera.
+  const PictureSettings& picture() const { return picture_; }
+  /// The settings of the options, or of others that serves() accepts, for a camera; null: for any camera. Throws Error
+  /// naming a file, or a setting that is out of range.
+  PictureSettings picture(const RenderOptions& options, const Camera* camera) const;
+  PictureSettings picture(const Camera& camera) const { return picture(options_, &camera); }
   /// The scene as it was read. scene() may have coarser voxels or be on a device.
   const Scene& given_scene() const { return input_.scene; }
   const Scene& scene() const { return scene_; }
@@ -54,18 +59,15 @@ class RenderStage {
   /// A camera that frames the scene.
   Camera framed(const ViewSettings& view);
   PathPlaces path_places() const;
-  /// Sets the properties that depend on the camera: reach, and coarser voxels.
+  /// Sets how far the camera's rays go, and makes voxels as coarse as it sees them.
   void finish(Camera& camera) { finish(camera, options_); }
-  /// The same for options of restyled().
   void finish(Camera& camera, const RenderOptions& options);
 
-  /// Whether restyled() can apply another value of the option without reading the inputs again.
-  bool restyles(const Declared& option) const;
-  /// Whether a raster may have other samples for other options, settled, because it is large (reads_all_samples()).
-  bool may_read_otherwise(const RenderOptions& options) const;
-  /// Completes other settled options from the input. They differ from options() only in options for which restyles() is
-  /// true.
-  RenderOptions restyled(RenderOptions options) const;
+  /// Whether the input, as it was opened, has pictures for another value of the option.
+  bool serves(const Declared& option) const;
+  /// Whether it has them for other options, which differ by such options alone. They may need other samples of a large
+  /// raster.
+  bool serves(const RenderOptions& options) const;
 
  private:
   WorldBox map_box() const;
@@ -73,9 +75,11 @@ class RenderStage {
   dvec3 typed_eye() const;
   dvec3 above_surface(const dvec3& at, std::string_view what) const;
 
-  RenderOptions options_;
+  const RenderOptions options_;
   InputKind kind_;
-  ViewSettings typed_view_;
+  ImageSize size_;
+  PictureSubject subject_{};
+  PictureSettings picture_{};
   RenderInput input_{Scene({}, {})};
   std::optional<Places> places_;
   Scene scene_{{}, {}};

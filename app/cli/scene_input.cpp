@@ -18,29 +18,17 @@ using Json = nlohmann::ordered_json;
 
 bool is_scene_path(const std::string& path) { return extension_of(path) == ".json"; }
 
-// For options that need something from the command line or the file.
-void require(bool there, const std::vector<std::string>& given, std::initializer_list<std::string_view> names,
-             std::string_view what) {
+// For options that need something that the command line or the file may have.
+struct Asked {
+  std::string_view option;
+  bool given;
+};
+void require(bool there, std::initializer_list<Asked> options, std::string_view what) {
   if (there) return;
-  for (const std::string& option : given) {
-    if (std::find(names.begin(), names.end(), option) != names.end())
-      throw Error(fmt::format("{} has no effect {}", option, what));
+  for (const Asked& one : options) {
+    if (one.given) throw Error(fmt::format("{} has no effect {}", one.option, what));
   }
 }
-
-// Applies the file's settings, unless the option was given.
-class Taking {
- public:
-  explicit Taking(const std::vector<std::string>& given) : given_(given) {}
-
-  template <class From, class To>
-  void operator()(const std::optional<From>& from, const char* option, To& to) const {
-    if (from && std::find(given_.begin(), given_.end(), option) == given_.end()) to = *from;
-  }
-
- private:
-  const std::vector<std::string>& given_;
-};
 
 }  // namespace
 
@@ -51,74 +39,70 @@ bool is_scene_input(const std::vector<std::string>& inputs) {
   return true;
 }
 
-PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given) {
-  const Taking take(given);
-  settings.materials = file.materials;
-  if (std::find(given.begin(), given.end(), "--haze") == given.end())
-    settings.haze_distance = file.haze_distance.value_or(kUnlimited);
-  // Large pixels have their own picture size.
-  if (settings.look != Look::comanche) {
-    take(file.picture.width, "--size", settings.width);
-    take(file.picture.height, "--size", settings.height);
-    take(file.picture.aa, "--aa", settings.aa);
-    take(file.sun.shadows, "--no-shadows", settings.shadows);
-  }
-  take(file.picture.samples, "--samples", settings.samples);
-  take(file.picture.ao_distance, "--ao-distance", settings.ao_distance);
-  take(file.picture.seed, "--seed", settings.seed);
-  take(file.sun.azimuth_deg, "--sun", settings.sun.azimuth_deg);
-  take(file.sun.altitude_deg, "--sun", settings.sun.altitude_deg);
-  take(file.sun.size_deg, "--sun-size", settings.sun.size_deg);
-  if (file.sky.kind && std::find(given.begin(), given.end(), "--sky") == given.end())
-    settings.sky.kind = find_sky(*file.sky.kind);
-  take(file.sky.turbidity, "--sky-turbidity", settings.sky.turbidity);
-  require(settings.sky.kind == SkyKind::scattering, given, {"--sky-turbidity"},
-          "without --sky scattering, or such a sky in the scene file");
-  if (settings.sky.kind == SkyKind::scattering && file.fog && file.fog->sun_tint)
-    throw Error("--sky scattering has no effect on the sun_tint of the fog in the scene file (remove the key)");
-  require(settings.sky.kind == SkyKind::plain, given, {"--sun-tint"},
-          "with a scattering sky, which colours the fog (add --sky plain)");
-  require(settings.samples > 0, given, {"--seed", "--sun-size", "--ao-distance"},
-          "without --samples N, or samples in the scene file");
-  validate(settings);
-  return settings;
-}
-
-void take_environment(const SceneFile& file, const std::vector<std::string>& given, LookOptions& options) {
-  const Taking take(given);
+PictureRequest request_of(const SceneFile& file) {
+  PictureRequest r;
+  r.materials = file.materials;
+  r.haze = 0, r.haze_distance = file.haze_distance;
+  r.width = file.picture.width, r.height = file.picture.height, r.aa = file.picture.aa;
+  r.samples = file.picture.samples, r.ao_distance = file.picture.ao_distance, r.seed = file.picture.seed;
+  r.shadows = file.sun.shadows;
+  r.sun_azimuth_deg = file.sun.azimuth_deg, r.sun_altitude_deg = file.sun.altitude_deg;
+  r.sun_size_deg = file.sun.size_deg;
+  if (file.sky.kind) r.sky = find_sky(*file.sky.kind);
+  r.sky_turbidity = file.sky.turbidity;
   if (const auto& water = file.water) {
-    take(std::optional(water->level), "--water", options.water);
-    take(water->srgb, "--water-colour", options.water_settings.srgb);
-    take(water->turbidity, "--turbidity", options.water_settings.turbidity);
-    take(water->waves, "--waves", options.water_settings.waves);
-    take(water->wavelength, "--wavelength", options.water_settings.wavelength);
-    take(water->reflection, "--no-reflection", options.water_settings.reflection);
-    take(water->refraction, "--no-refraction", options.water_settings.refraction);
+    r.water_level = water->level, r.water_srgb = water->srgb, r.water_turbidity = water->turbidity;
+    r.waves = water->waves, r.wavelength = water->wavelength;
+    r.reflection = water->reflection, r.refraction = water->refraction;
   }
-  // --fog replaces the fog of the file, whose numbers belong to its kind.
-  if (const auto& fog = file.fog; fog && options.fog.empty()) {
-    options.fog = fog->kind;
-    take(fog->visibility, "--visibility", options.visibility);
-    take(fog->base, "--fog-base", options.fog_base);
-    take(fog->falloff, "--fog-falloff", options.fog_falloff);
-    take(fog->sun_tint, "--sun-tint", options.fog_settings.sun_tint);
+  if (const auto& fog = file.fog) {
+    r.fog = find_fog(fog->kind), r.visibility = fog->visibility;
+    r.fog_base = fog->base, r.fog_falloff = fog->falloff, r.sun_tint = fog->sun_tint;
   }
-  require(options.water.has_value(), given,
-          {"--water-colour", "--turbidity", "--waves", "--wavelength", "--no-reflection", "--no-refraction"},
-          "without --water M, or water in the scene file");
-  const bool foggy = !options.fog.empty() && options.fog != "none";
-  require(foggy, given, {"--visibility", "--sun-tint"}, "without --fog KIND, or fog in the scene file");
-  require(options.fog == "height", given, {"--fog-base", "--fog-falloff"},
-          "without --fog height, or such fog in the scene file");
-  require(!foggy, given, {"--haze"}, "with the fog of the scene file, which replaces it (add --fog none)");
+  return r;
 }
 
-ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given) {
-  const Taking take(given);
-  take(file.camera.azimuth_deg, "--view", view.azimuth_deg);
-  take(file.camera.elevation_deg, "--view", view.elevation_deg);
-  take(file.camera.distance, "--view", view.distance);
-  take(file.camera.fov_deg, "--fov", view.fov_deg);
+void check_effect(const PictureRequest& asked, const SceneFile& file) {
+  const PictureRequest all = merged(asked, request_of(file));
+  require(all.water_level.has_value(),
+          {{"--water-colour", asked.water_srgb.has_value()},
+           {"--turbidity", asked.water_turbidity.has_value()},
+           {"--waves", asked.waves.has_value()},
+           {"--wavelength", asked.wavelength.has_value()},
+           {"--no-reflection", asked.reflection.has_value()},
+           {"--no-refraction", asked.refraction.has_value()}},
+          "without --water M, or water in the scene file");
+  const FogKind fog = all.fog.value_or(FogKind::none);
+  require(fog != FogKind::none,
+          {{"--visibility", asked.visibility.has_value()}, {"--sun-tint", asked.sun_tint.has_value()}},
+          "without --fog KIND, or fog in the scene file");
+  require(fog == FogKind::height,
+          {{"--fog-base", asked.fog_base.has_value()}, {"--fog-falloff", asked.fog_falloff.has_value()}},
+          "without --fog height, or such fog in the scene file");
+  require(fog == FogKind::none, {{"--haze", asked.haze.has_value()}},
+          "with the fog of the scene file, which replaces it (add --fog none)");
+  const bool scatters = all.sky == SkyKind::scattering;
+  require(scatters, {{"--sky-turbidity", asked.sky_turbidity.has_value()}},
+          "without --sky scattering, or such a sky in the scene file");
+  if (scatters && file.fog && file.fog->sun_tint)
+    throw Error("--sky scattering has no effect on the sun_tint of the fog in the scene file (remove the key)");
+  require(!scatters, {{"--sun-tint", asked.sun_tint.has_value()}},
+          "with a scattering sky, which colours the fog (add --sky plain)");
+  require(all.samples.value_or(0) > 0,
+          {{"--seed", asked.seed.has_value()},
+           {"--sun-size", asked.sun_size_deg.has_value()},
+           {"--ao-distance", asked.ao_distance.has_value()}},
+          "without --samples N, or samples in the scene file");
+}
+
+ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look look) {
+  ViewSettings view = view_of(camera, look);
+  if (!camera.view) {
+    view.azimuth_deg = file.camera.azimuth_deg.value_or(view.azimuth_deg);
+    view.elevation_deg = file.camera.elevation_deg.value_or(view.elevation_deg);
+    view.distance = file.camera.distance.value_or(view.distance);
+  }
+  if (!camera.fov_deg) view.fov_deg = file.camera.fov_deg.value_or(view.fov_deg);
   return view;
 }
 

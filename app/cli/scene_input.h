@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/look_options.h"
+#include "app/cli/render_options.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/picture.h"
+#include "scarp/render/frame/picture_request.h"
 #include "scarp/scene/file/scene_file.h"
 
 namespace scarp::cli {
@@ -16,14 +16,12 @@ namespace scarp::cli {
 /// Whether the input is a scene. Throws Error if there are other inputs as well.
 bool is_scene_input(const std::vector<std::string>& inputs);
 
-/// Returns the settings with those of the file, its materials and its haze. Options in `given` ("--size") take
-/// precedence.
-PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given);
-/// Adds the water and the fog of the file to the options, unless they were given. Throws Error naming the first given
-/// option that has no effect without water or fog.
-void take_environment(const SceneFile& file, const std::vector<std::string>& given, LookOptions& options);
-/// The same for a view, if the file has no eye.
-ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given);
+/// Returns the picture that the file itself asks for.
+PictureRequest request_of(const SceneFile& file);
+/// Throws Error naming the first option of the request that has no effect together with the file.
+void check_effect(const PictureRequest& asked, const SceneFile& file);
+/// Returns the view of the options, completed by that of the file, which has no eye.
+ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look look);
 
 /// Describes a scene: for --json, and as lines of text.
 nlohmann::ordered_json describe_scene(const std::string& path);

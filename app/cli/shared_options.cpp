@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/shared_options.h"
 
+#include <utility>
+
 #include "scarp/base/file_name.h"
 
 namespace scarp::cli {
@@ -24,14 +26,14 @@ void add_threads_option(Command& command, int& threads) {
                          .common = true});
 }
 
-void add_tone_option(Command& command, bool& no_tone_curve, const std::string& output, Topic topic, Looks looks) {
+void add_tone_option(Command& command, Binding to, const std::string& output, Topic topic, Looks looks) {
   const Rule tones{"has no effect on .exr files, which hold linear light",
                    [&output] { return extension_of(output) != ".exr"; }};
-  command.add(&no_tone_curve, {.names = "--no-tone-curve",
-                               .help = "clip bright colours instead of compressing them",
-                               .topic = topic,
-                               .looks = looks,
-                               .rules = {tones}});
+  command.add(std::move(to), {.names = "--no-tone-curve",
+                              .help = "clip bright colours instead of compressing them",
+                              .topic = topic,
+                              .looks = looks,
+                              .rules = {tones}});
 }
 
 void add_json_option(Command& command, bool& json) {

@@ -14,7 +14,7 @@ void add_output_option(Command& command, std::string& output, const std::string&
 /// Declares --threads.
 void add_threads_option(Command& command, int& threads);
 /// Declares --no-tone-curve for pictures in the file `output`, which must outlive the command.
-void add_tone_option(Command& command, bool& no_tone_curve, const std::string& output, Topic topic, Looks looks = {});
+void add_tone_option(Command& command, Binding to, const std::string& output, Topic topic, Looks looks = {});
 /// Declares --json.
 void add_json_option(Command& command, bool& json);
 

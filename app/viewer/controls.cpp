@@ -72,12 +72,14 @@ class Maker {
       control.choices = scales_.marches, control.choice = scales_.march;
     } else if (const auto* flag = std::get_if<bool*>(&declared.to)) {
       make_flag(declared, **flag, control);
+    } else if (const auto* off = std::get_if<cli::Off>(&declared.to)) {
+      make_flag(declared, !off->what->value_or(true), control);
     } else if (option.value == "LOW,HIGH") {
       make_pair(declared, control);
     } else if (option.value == "AZ,ALT") {
       control.kind = ControlKind::angles;
-      const SunSettings& sun = opening_.options->picture.sun;
-      control.numbers = {sun.azimuth_deg, sun.altitude_deg};
+      const std::vector<double> angles = cli::numbers_from(now(declared), ',', 2, 2, declared.name, option.value);
+      control.numbers = {angles[0], angles[1]};
     } else if (option.value == "RRGGBB") {
       make_colour(declared, control);
     } else if (!option.choices.empty()) {
@@ -92,6 +94,11 @@ class Maker {
  private:
   // The last value that was typed; empty: none.
   std::string typed(const cli::Declared& declared) const { return opening_.command().value(declared.name); }
+  // The value in force, as text.
+  std::string now(const cli::Declared& declared) const {
+    std::string text = declared.option.now ? declared.option.now() : typed(declared);
+    return text.empty() ? first_default(declared) : text;
+  }
 
   static void make_flag(const cli::Declared& declared, bool value, Control& control) {
     control.kind = ControlKind::flag;
@@ -105,10 +112,10 @@ class Maker {
     control.kind = ControlKind::choice;
     for (const std::string& choice : declared.option.choices) {
       // Large pixels have a different size and camera from the window.
-      if (declared.name != "--look" || choice != name_of(Look::comanche)) control.choices.push_back(choice);
+      if (declared.name != "--look" || !entry_of(find_look(choice)).large_pixels) control.choices.push_back(choice);
     }
     const auto* text = std::get_if<std::string*>(&declared.to);
-    control.choice = text ? **text : typed(declared);
+    control.choice = text ? **text : now(declared);
     if (control.choice.empty()) control.choice = first_default(declared);
   }
 
@@ -128,7 +135,7 @@ class Maker {
 
   void make_colour(const cli::Declared& declared, Control& control) const {
     control.kind = ControlKind::colour;
-    const std::string text = typed(declared).empty() ? declared.default_text : typed(declared);
+    const std::string text = now(declared);
     unsigned rgb = 0;
     std::from_chars(text.data(), text.data() + text.size(), rgb, 16);
     for (int i = 0; i < 3; ++i) control.numbers[static_cast<std::size_t>(i)] = (rgb >> (16 - 8 * i) & 255) / 255.0;
@@ -141,6 +148,12 @@ class Maker {
     if (const auto* whole = std::get_if<int*>(&declared.to)) {
       control.whole = true;
       value = **whole;
+    } else if (const auto* perhaps_whole = std::get_if<std::optional<int>*>(&declared.to)) {
+      control.whole = true;
+      value = (*perhaps_whole)->value_or(static_cast<int>(usual.value_or(0)));
+    } else if (const auto* perhaps_small = std::get_if<std::optional<std::uint32_t>*>(&declared.to)) {
+      control.whole = true;
+      value = (*perhaps_small)->value_or(static_cast<std::uint32_t>(usual.value_or(0)));
     } else if (const auto* small = std::get_if<std::uint32_t*>(&declared.to)) {
       control.whole = true;
       value = **small;
@@ -148,8 +161,8 @@ class Maker {
       value = **number;
       control.may_rest = !std::isfinite(value) || !usual;
     } else if (const auto* perhaps = std::get_if<std::optional<double>*>(&declared.to)) {
-      control.may_rest = true;
-      value = (*perhaps)->value_or(NAN);
+      value = (*perhaps)->value_or(usual.value_or(NAN));
+      control.may_rest = !usual;
     } else if (declared.name == "--exaggeration") {
       value = scales_.exaggeration;
     } else {
@@ -196,7 +209,8 @@ class Maker {
 
 std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales,
                                  const std::function<bool(const cli::Declared&)>& at_once) {
-  const cli::Use use{opening.kind, opening.options->look, cli::march_of(*opening.options, opening.kind)};
+  const cli::Use use{opening.kind, name_of(opening.options->picture.look),
+                     cli::march_of(*opening.options, opening.kind)};
   const Maker maker(opening, scales);
   std::vector<Control> controls;
   for (const cli::Declared& declared : opening.command().options()) {

@@ -7,22 +7,35 @@
 namespace scarp::viewer {
 namespace {
 
-int side_of_pixel(const PictureSettings& picture) {
-  return picture.look == Look::comanche ? picture.comanche.scale : 1;
+int side_of_pixel(const PictureRequest& picture) {
+  return entry_of(look_of(picture)).large_pixels ? picture.comanche.scale : 1;
 }
 
 }  // namespace
 
-FilmSize film_size(const PictureSettings& picture, int width, int height) {
+ImageSize film_size(const PictureRequest& picture, int width, int height) {
   const auto pixels = [side = side_of_pixel(picture)](int length) {
     return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) / side)));
   };
   return {pixels(width), pixels(height)};
 }
 
-FilmSize window_size(const PictureSettings& picture) {
+PictureRequest for_window(PictureRequest picture, int width, int height) {
+  const ImageSize size = film_size(picture, width, height);
+  if (entry_of(look_of(picture)).large_pixels) {
+    picture.low_resolution = size;
+  } else {
+    picture.width = size.width, picture.height = size.height;
+  }
+  return picture;
+}
+
+std::optional<ImageSize> window_size(const PictureRequest& picture) {
   const int side = side_of_pixel(picture);
-  return {picture.width * side, picture.height * side};
+  if (picture.low_resolution)
+    return ImageSize{picture.low_resolution->width * side, picture.low_resolution->height * side};
+  if (picture.width && picture.height) return ImageSize{*picture.width, *picture.height};
+  return {};
 }
 
 }  // namespace scarp::viewer

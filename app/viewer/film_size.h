@@ -2,19 +2,18 @@
 // How many pixels are rendered for a window.
 #pragma once
 
-#include "scarp/render/frame/picture.h"
+#include "scarp/render/frame/picture_request.h"
 
 namespace scarp::viewer {
 
-struct FilmSize {
-  int width, height;  ///< in pixels, each at least 1
-};
+/// Returns the size of the picture that fills a window of width x height pixels: in large pixels for the look comanche.
+/// The image is then up to half a large pixel smaller or larger than the window. Each side is at least 1.
+ImageSize film_size(const PictureRequest& picture, int width, int height);
 
-/// The size of the picture that fills a window of width x height pixels, in the units of PictureSettings: large pixels
-/// for the look comanche. The image is then up to half a large pixel smaller or larger than the window.
-FilmSize film_size(const PictureSettings& picture, int width, int height);
+/// Returns the request with the size that fills a window.
+PictureRequest for_window(PictureRequest picture, int width, int height);
 
-/// The window size that the settings' own picture size fills.
-FilmSize window_size(const PictureSettings& picture);
+/// Returns the window that the size of the request fills; nullopt: it asks for none.
+std::optional<ImageSize> window_size(const PictureRequest& picture);
 
 }  // namespace scarp::viewer

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "app/cli/kept_inputs.h"
-#include "app/cli/render_settle.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 
@@ -16,7 +15,7 @@ namespace scarp::viewer {
 namespace {
 
 cli::Use use_of(cli::InputKind kind, const cli::ViewOptions& options) {
-  return {kind, options.look, cli::march_of(options, kind)};
+  return {kind, name_of(options.picture.look), cli::march_of(options, kind)};
 }
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
@@ -73,17 +72,15 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
                        const cli::Command& command) {
   cli::ViewOptions& o = *options;
   o.moves = true;
-  o.given = command.given();
   o.typed = command.typed_values();
   const cli::InputKind kind = cli::kind_of_input(command, o);
   command.require_effect(use_of(kind, o));
-  const ViewSettings view = cli::settle_picture(o);
-  cli::require_places(o);
+  cli::check_picture(o);
   require_png(o.screenshot);
   keep_inputs(o);
   std::vector<GivenOption> given;
   for (const cli::Command::Typed& one : command.all_typed()) given.push_back({one.option->name, one.values});
-  return {std::move(program), std::move(options), kind, view, std::move(given)};
+  return {std::move(program), std::move(options), kind, std::move(given)};
 }
 
 Opening opening_of(const std::string& file) {

@@ -24,14 +24,14 @@ struct Opening {
   std::shared_ptr<cli::Program> program;  ///< its declarations are bound to `options`
   std::shared_ptr<cli::ViewOptions> options;
   cli::InputKind kind;
-  ViewSettings view;
-  /// All options typed or set in the window, the newest last; those without an effect at present are not in `options`.
+  /// Everything that was typed or set in the window, the newest last; those that have no effect now are not in
+  /// `options`.
   std::vector<GivenOption> given{};
 
   const cli::Command& command() const { return *program->find("view"); }
 };
 
-/// Checks and settles the options typed for `command` of `program`. Throws Error and WrongUsage.
+/// Checks the options that were typed for `command` of `program`, and takes them over. Throws Error and WrongUsage.
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
                        const cli::Command& command);
 

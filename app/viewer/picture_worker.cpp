@@ -28,11 +28,11 @@ class Watch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-WorkedPicture begun(const PictureRequest& request, std::uint64_t generation) {
+WorkedPicture begun(const ViewRequest& request, std::uint64_t generation) {
   WorkedPicture worked;
   worked.generation = generation;
   worked.large_pixels = std::any_of(request.sides.begin(), request.sides.end(),
-                                    [](const PictureSide& side) { return side.settings.look == Look::comanche; });
+                                    [](const PictureSide& side) { return entry_of(side.settings.look).large_pixels; });
   return worked;
 }
 
@@ -63,7 +63,7 @@ PictureWorker::~PictureWorker() {
   thread_.join();
 }
 
-std::uint64_t PictureWorker::request(PictureRequest request) {
+std::uint64_t PictureWorker::request(ViewRequest request) {
   std::uint64_t generation;
   {
     const std::scoped_lock lock(mutex_);
@@ -98,7 +98,7 @@ int PictureWorker::rows_for(double pixels_per_second, int width, int height) {
 std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings& settings) {
   std::vector<PictureSettings> stages{settings};
   // Other looks trace one ray per pixel.
-  if (settings.look != Look::shaded && settings.look != Look::comanche) return stages;
+  if (!entry_of(settings.look).lit) return stages;
   for (PictureSettings next = settings; next.aa > 1 || next.samples > 0;) {
     // Anti-aliasing multiplies the rays of samples, and costs as its square.
     if (next.aa > 1) {
@@ -125,7 +125,7 @@ bool PictureWorker::stopped() const {
 
 void PictureWorker::work() {
   for (;;) {
-    PictureRequest request;
+    ViewRequest request;
     std::uint64_t generation;
     {
       std::unique_lock lock(mutex_);
@@ -154,7 +154,7 @@ bool PictureWorker::deliver(WorkedPicture worked) {
 }
 
 // Returns whether the next stage is wanted, as the two below.
-bool PictureWorker::render_moving(const PictureRequest& request, std::uint64_t generation) {
+bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t generation) {
   std::int64_t most_pixels = 0;  // of one side
   WorkedPicture worked = begun(request, generation);
   const Watch watch;
@@ -179,7 +179,7 @@ bool PictureWorker::render_moving(const PictureRequest& request, std::uint64_t g
   return deliver(std::move(worked)) && !outdated(generation);
 }
 
-bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t generation) {
+bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t generation) {
   std::vector<std::vector<PictureSettings>> stages;
   std::size_t count = 1;
   for (const PictureSide& side : request.sides) {
@@ -212,7 +212,7 @@ bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t 
   return true;
 }
 
-void PictureWorker::judge(const PictureRequest& request, std::uint64_t generation) {
+void PictureWorker::judge(const ViewRequest& request, std::uint64_t generation) {
   WorkedVerdict verdict;
   verdict.generation = generation;
   try {

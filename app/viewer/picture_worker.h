@@ -38,7 +38,7 @@ struct PictureSide {
   std::function<std::optional<JudgedRays>(const Camera& camera, const Progress& progress)> judge{};
 };
 
-struct PictureRequest {
+struct ViewRequest {
   std::function<Camera(int width, int height)> camera;
   std::vector<PictureSide> sides;  ///< at least one
   bool moving = false;             ///< more requests will follow soon: only the first stage is started
@@ -67,9 +67,9 @@ class PictureWorker {
   PictureWorker(const PictureWorker&) = delete;
   PictureWorker& operator=(const PictureWorker&) = delete;
 
-  /// Replaces the previous request. Returns its generation.
-  std::uint64_t request(PictureRequest request);
-  /// Returns the newest picture not yet taken.
+  /// Replaces the request before. Returns its generation.
+  std::uint64_t request(ViewRequest request);
+  /// The newest picture that was not taken yet.
   std::optional<WorkedPicture> take();
   /// Returns the newest verdict not yet taken.
   std::optional<WorkedVerdict> take_verdict();
@@ -87,9 +87,9 @@ class PictureWorker {
 
  private:
   void work();
-  bool render_moving(const PictureRequest& request, std::uint64_t generation);
-  bool render_at_rest(const PictureRequest& request, std::uint64_t generation);
-  void judge(const PictureRequest& request, std::uint64_t generation);
+  bool render_moving(const ViewRequest& request, std::uint64_t generation);
+  bool render_at_rest(const ViewRequest& request, std::uint64_t generation);
+  void judge(const ViewRequest& request, std::uint64_t generation);
   bool deliver(WorkedPicture worked);
   bool outdated(std::uint64_t generation) const;
   bool stopped() const;
@@ -97,7 +97,7 @@ class PictureWorker {
   std::function<void()> ready_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::optional<PictureRequest> next_;
+  std::optional<ViewRequest> next_;
   std::optional<WorkedPicture> done_;
   std::optional<WorkedVerdict> verdict_;
   std::uint64_t generation_ = 0;

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "app/cli/device_option.h"
-#include "app/cli/look_options.h"
 #include "app/viewer/film_size.h"
 #include "scarp/base/error.h"
 #include "scarp/march/function/function_table.h"
@@ -18,7 +17,6 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr std::array<Look, 5> kLooks = {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error};
 constexpr int kJudgedRays = 1000;
 constexpr ErrorSettings kOneCell{.tolerance = 1};
 
@@ -54,14 +52,22 @@ Subject::Subject(Opening opening, int width, int height)
       device_(stage().there().device.empty() ? "the CPU" : stage().there().device) {}
 
 Subject::Side Subject::open(Opening opening) const {
-  auto opened = std::make_shared<Opened>(opening);
-  const FilmSize size = film_size(opened->stage.picture(), width_, height_);
-  opened->stage.picture().width = size.width, opened->stage.picture().height = size.height;
+  cli::RenderOptions options = *opening.options;
+  const ImageSize film = film_size(options.picture, width_, height_);
+  if (options.picture.width || entry_of(look_of(options.picture)).large_pixels)
+    options.picture = for_window(options.picture, width_, height_);
+  auto opened = std::make_shared<Opened>(opening, std::move(options), film);
   opened->stage.open();
-  auto options = std::make_shared<const cli::RenderOptions>(opened->stage.options());
-  // Settings of the input itself, for the controls.
-  opening.options->picture = options->picture, opening.options->look_options = options->look_options;
-  return {std::move(opening), std::move(opened), std::move(options)};
+  return side_by(opened, std::move(opening));
+}
+
+// The options of the opening then show what is in force, for the controls.
+Subject::Side Subject::side_by(const std::shared_ptr<Opened>& opened, Opening opening) {
+  const cli::RenderStage& stage = opened->stage;
+  auto options = std::make_shared<const cli::RenderOptions>(*opening.options);
+  PictureSettings settings = stage.picture(*options, nullptr);
+  opening.options->picture = merged(options->picture, stage.input().subject.own);
+  return {std::move(opening), opened, std::move(options), std::move(settings)};
 }
 
 Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or_like) const {
@@ -69,13 +75,10 @@ Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or
     if (!side) continue;
     const cli::RenderStage& stage = side->opened->stage;
     const std::vector<std::string> names = differences(side->opened->opening, opening);
-    if (!std::all_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return stage.restyles(*opening.command().find(name)); }) ||
-        stage.may_read_otherwise(*opening.options))
-      continue;
-    auto options = std::make_shared<const cli::RenderOptions>(stage.restyled(*opening.options));
-    opening.options->picture = options->picture, opening.options->look_options = options->look_options;
-    return {std::move(opening), side->opened, std::move(options)};
+    if (stage.serves(*opening.options) && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+          return stage.serves(*opening.command().find(name));
+        }))
+      return side_by(side->opened, std::move(opening));
   }
   return open(std::move(opening));
 }
@@ -102,7 +105,10 @@ void Subject::reopen() {
 std::vector<std::string> Subject::comparisons() const {
   std::vector<std::string> words;
   for (const std::string& march : marches_for(opening().kind)) words.push_back("march " + march);
-  for (const Look look : kLooks) words.push_back("look " + std::string(name_of(look)));
+  for (const LookEntry& look : looks()) {
+    // Large pixels have another size, and levels a number.
+    if (!look.large_pixels && look.look != Look::level) words.push_back("look " + std::string(look.name));
+  }
   return words;
 }
 
@@ -134,24 +140,25 @@ void Subject::compare(const std::string& with) {
 
 // As in `scarp render`.
 PictureSide Subject::picture_side(const Side& side, int width, int height) {
+  auto shown = std::make_shared<cli::RenderOptions>(*side.options);
+  shown->picture = for_window(shown->picture, width, height);
+  const std::shared_ptr<const cli::RenderOptions> options = shown;
   PictureSide picture;
-  picture.settings = side.options->picture;
-  const FilmSize size = film_size(picture.settings, width, height);
-  picture.settings.width = size.width, picture.settings.height = size.height;
-  picture.render = [opened = side.opened, options = side.options](const Camera& seen, const PictureSettings& asked,
-                                                                  const Progress& progress) {
+  picture.settings = side.opened->stage.picture(*options, nullptr);
+  picture.render = [opened = side.opened, options](const Camera& seen, const PictureSettings& asked,
+                                                   const Progress& progress) {
     Camera camera = seen;
-    PictureSettings settings = asked;
     cli::RenderStage& stage = opened->stage;
     stage.finish(camera, *options);
-    cli::see_from_afar(options->look_options, stage.scene_box(), camera, settings);
-    cli::look_through(stage.there(), camera, settings.look == Look::shaded ? settings.aa : 1);
+    PictureSettings settings = asked;
+    settings.fog.visibility = stage.picture(*options, &camera).fog.visibility;
+    cli::look_through(stage.there(), camera, entry_of(settings.look).antialiased ? settings.aa : 1);
     return render_picture(stage.scene(), camera, settings, progress);
   };
   // Coarser voxels differ in every picture, and the look comanche has its own rays.
-  if (side.opened->stage.input().coarse_voxels || picture.settings.look == Look::comanche) return picture;
-  picture.judge = [opened = side.opened, options = side.options](
-                      const Camera& seen, const Progress& progress) -> std::optional<JudgedRays> {
+  if (side.opened->stage.input().coarse_voxels || entry_of(picture.settings.look).large_pixels) return picture;
+  picture.judge = [opened = side.opened, options](const Camera& seen,
+                                                  const Progress& progress) -> std::optional<JudgedRays> {
     Camera camera = seen;
     cli::RenderOptions judged = *options;
     judged.picture.look = Look::error;  // rays end where the judge's rays end
@@ -180,12 +187,13 @@ std::vector<Control> Subject::controls(const std::optional<StepScale>& steps) co
   ControlScales scales;
   const cli::RenderInput& input = stage().input();
   scales.exaggeration = stage().exaggeration();
-  scales.low = input.heights.low / input.exaggeration, scales.high = input.heights.high / input.exaggeration;
-  if (input.across > 0) scales.across = input.across;
+  scales.low = input.subject.heights.low / input.subject.exaggeration;
+  scales.high = input.subject.heights.high / input.subject.exaggeration;
+  if (input.subject.across > 0) scales.across = input.subject.across;
   if (steps) scales.steps_low = steps->low, scales.steps_high = steps->high;
   scales.marches = marches_for(opening().kind);
   scales.march = stage().given_scene().marches();
-  return controls_of(opening(), scales, [&](const cli::Declared& declared) { return stage().restyles(declared); });
+  return controls_of(opening(), scales, [&](const cli::Declared& declared) { return stage().serves(declared); });
 }
 
 }  // namespace scarp::viewer

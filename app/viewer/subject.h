@@ -23,6 +23,8 @@ class Subject {
 
   const Opening& opening() const { return main_.opening; }
   const cli::RenderStage& stage() const { return main_.opened->stage; }
+  /// The settings of the picture, for any camera and of any size.
+  const PictureSettings& settings() const { return main_.settings; }
   /// The camera of the options.
   const Camera& first_camera() const { return first_camera_; }
   /// Where rays are traced: a device's name, or "the CPU".
@@ -53,7 +55,8 @@ class Subject {
  private:
   // The stage belongs to the worker once opened; the options record how the inputs were opened.
   struct Opened {
-    explicit Opened(Opening of) : opening(std::move(of)), stage(opening.kind, *opening.options, opening.view) {}
+    Opened(Opening of, cli::RenderOptions options, ImageSize size)
+        : opening(std::move(of)), stage(opening.kind, std::move(options), size) {}
     Opening opening;
     cli::RenderStage stage;
     std::optional<Scene> judges{};  // once requested
@@ -61,11 +64,13 @@ class Subject {
   struct Side {
     Opening opening;
     std::shared_ptr<Opened> opened;
-    std::shared_ptr<const cli::RenderOptions> options;
+    std::shared_ptr<const cli::RenderOptions> options;  ///< as typed; those of the opening show what is in force
+    PictureSettings settings{};                         ///< for any camera
   };
 
   Side open(Opening opening) const;
-  // Without reading the inputs again, if possible.
+  static Side side_by(const std::shared_ptr<Opened>& opened, Opening opening);
+  // Without reading the inputs again, if it can be.
   Side side_of(Opening opening, const Side& like, const Side* or_like) const;
   std::optional<Side> beside(const Side& main) const;
   OptionChange comparison() const;

@@ -30,10 +30,10 @@ std::string render_command(const Opening& opening, const cli::Places& places, co
     left_out.emplace_back("--mesh-at");
     mesh = " --mesh-at=" + cli::local_mesh_at(opening.options->mesh, places);
   }
-  const PictureSettings& picture = opening.options->picture;
-  const bool large_pixels = picture.look == Look::comanche;
+  const PictureRequest& picture = opening.options->picture;
+  const bool large_pixels = entry_of(look_of(picture)).large_pixels;
   if (large_pixels) left_out.emplace_back("--lowres");
-  const FilmSize size = film_size(picture, width, height);
+  const ImageSize size = film_size(picture, width, height);
   std::string text = fmt::format("scarp render{}{} -o {} {} {}x{}", opening.command().typed_words(left_out), mesh,
                                  output, large_pixels ? "--lowres" : "--size", size.width, size.height);
   if (pose.mode == MoveMode::top) {

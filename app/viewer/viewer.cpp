@@ -56,8 +56,7 @@ class Viewer {
       width_ = played_->width, height_ = played_->height;
     } else {
       const KeptSettings kept = read_settings(settings_file());
-      const bool typed = !options_.size.empty() || !options_.look_options.lowres.empty();
-      const FilmSize size = typed ? window_size(options_.picture) : FilmSize{kept.width, kept.height};
+      const ImageSize size = window_size(options_.picture).value_or(ImageSize{kept.width, kept.height});
       width_ = size.width, height_ = size.height;
       shows_panel_ = kept.panel;
     }
@@ -104,8 +103,9 @@ class Viewer {
 
   void navigate(const Camera& first) {
     const cli::RenderInput& input = subject_->stage().input();
-    // Single rays are traced on the CPU.
-    navigator_ = std::make_unique<Navigator>(subject_->stage().given_scene(), first, input.view.fov_deg, input.across);
+    // Rays of single points are the CPU's.
+    navigator_ =
+        std::make_unique<Navigator>(subject_->stage().given_scene(), first, input.view.fov_deg, input.subject.across);
     frames_ = std::make_unique<ReadingFrames>(input.raster);
     camera_.reset();
     line_from_.reset();
@@ -166,7 +166,7 @@ class Viewer {
   }
 
   void drag_sun(const dvec2& drag) {
-    const SunSettings& sun = subject_->opening().options->picture.sun;
+    const SunSettings sun = subject_->settings().sun;
     const dvec2 to = dragged_sun({sun.azimuth_deg, sun.altitude_deg}, drag, size());
     change({"--sun", fmt::format("{:.2f},{:.2f}", to.x, to.y)});
   }
@@ -423,7 +423,7 @@ class Viewer {
     shown_ = std::move(worked);
     unpresented_ = true;
     show_sides();
-    if (is_complete() && subject_->opening().options->picture.look == Look::steps) describe();
+    if (is_complete() && subject_->settings().look == Look::steps) describe();
     if (saves_ && is_complete()) save_picture();
   }
 

@@ -118,10 +118,11 @@ struct VoxelObjects::Query {
     }
     return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}, to.room};
   }
-  std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const Hit* from) {
+  // Returns false for a ray that misses the object's box.
+  bool quantise_at(std::uint32_t index, double t_max, const Hit* from, QuantisedRay& quantised) {
     VoxelRay local = in_grid(index, t_max);
     if (from && from->part == index) local.start_voxel = from->voxel + normal_of(from->face);
-    return quantise(local, direction, scene.targets_[scene.objects_[index].model].box);
+    return quantise(local, direction, scene.targets_[scene.objects_[index].model].box, quantised);
   }
   VoxelHit rounded(std::uint32_t index, double t_max, const Hit* from, MarchStats* stats,
                    const VoxelFilter* accept = nullptr) {
@@ -171,11 +172,11 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* 
     if (rounding_) {
       hit = query.rounded(index, t_max, from, stats ? &steps : nullptr, accept ? &counts : nullptr);
     } else {
-      const auto quantised = query.quantised(index, t_max, from);
-      if (!quantised) return t_max;
+      QuantisedRay quantised;
+      if (!query.quantise_at(index, t_max, from, quantised)) return t_max;
       const VoxelTarget& target = targets_[object.model];
-      hit = models_[object.model]->march().cpu(target, *quantised, stats ? &steps : nullptr);
-      if (accept && hit && !counts(hit)) hit = march_voxel_planes_accepted(target, *quantised, counts, &steps);
+      hit = models_[object.model]->march().cpu(target, quantised, stats ? &steps : nullptr);
+      if (accept && hit && !counts(hit)) hit = march_voxel_planes_accepted(target, quantised, counts, &steps);
     }
     if (stats) {
       ++stats->boxes;
@@ -202,8 +203,8 @@ bool VoxelObjects::occluded(const Ray& ray, const Hit* from) const {
     const Object& object = objects_[index];
     if (rounding_) {
       blocked = static_cast<bool>(query.rounded(index, ray.t_max, from, nullptr));
-    } else if (const auto quantised = query.quantised(index, ray.t_max, from)) {
-      blocked = models_[object.model]->march().occluded(targets_[object.model], *quantised);
+    } else if (QuantisedRay quantised; query.quantise_at(index, ray.t_max, from, quantised)) {
+      blocked = models_[object.model]->march().occluded(targets_[object.model], quantised);
     }
     return blocked ? -std::numeric_limits<double>::infinity() : ray.t_max;
   });

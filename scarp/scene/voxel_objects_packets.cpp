@@ -135,10 +135,10 @@ class VoxelObjects::PacketQuery {
                          packet_.t_max[i],
                          start_voxel,
                          turn.room};
-      const auto quantised = quantise(ray, directions_[i], target.box);
-      if (!quantised) return;
+      QuantisedRay quantised;
+      if (!quantise(ray, directions_[i], target.box, quantised)) return;
       MarchStats stats;
-      const VoxelHit hit = march.cpu(target, *quantised, &stats);
+      const VoxelHit hit = march.cpu(target, quantised, &stats);
       packet_.steps += stats.steps;
       meeting.met |= std::uint64_t{1} << i;
       if (!hit) return;

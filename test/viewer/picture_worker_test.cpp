@@ -21,7 +21,7 @@ struct Asked {
 
 class Worker : public testing::Test {
  protected:
-  PictureRequest request(bool moving, int aa = 2, int samples = 4) {
+  ViewRequest request(bool moving, int aa = 2, int samples = 4) {
     PictureSettings settings;
     settings.width = 400, settings.height = 300;
     settings.aa = aa, settings.samples = samples;
@@ -100,7 +100,7 @@ TEST_F(Worker, RunsAllStages) {
 
 TEST_F(Worker, SidesHaveTheirOwnSizes) {
   const auto worker = make();
-  PictureRequest both = request(false, 1, 0);
+  ViewRequest both = request(false, 1, 0);
   std::vector<dvec2> cameras;  // of the worker's thread, until it has converged
   PictureSettings large;
   large.look = Look::comanche;
@@ -152,8 +152,8 @@ TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
   EXPECT_EQ(PictureWorker::refinement_of(counted).size(), 1u);
 }
 
-TEST_F(Worker, CompletesBothSides) {
-  PictureRequest both = request(false, 4, 16);
+TEST_F(Worker, BothSidesAreCompleteAtTheEnd) {
+  ViewRequest both = request(false, 4, 16);
   PictureSettings counted = both.sides.front().settings;
   counted.look = Look::steps;
   both.sides.push_back(side(counted));
@@ -172,7 +172,7 @@ TEST_F(Worker, CompletesBothSides) {
 }
 
 TEST_F(Worker, JudgesTheCompletePicture) {
-  PictureRequest judged = request(false);
+  ViewRequest judged = request(false);
   judged.sides.front().judge = [](const Camera& camera, const Progress& progress) -> std::optional<JudgedRays> {
     if (!progress(0)) throw Interrupted();
     JudgedRays rays;

@@ -51,7 +51,7 @@ Picture render(const Scene& given, const Camera& camera, const PictureSettings& 
   return render_picture(seen, camera, settings, progress);
 }
 
-PictureRequest request_from(const Scene& scene, double turn, bool moving) {
+ViewRequest request_from(const Scene& scene, double turn, bool moving) {
   PictureSettings settings;
   settings.width = 96, settings.height = 64;
   settings.aa = 2, settings.samples = 2;
@@ -70,7 +70,7 @@ TEST(SharedScene, CanBeQueriedWhileRendering) {
   constexpr int kRequests = 60;
   int pictures = 0, read = 0;
   for (int i = 0; i < kRequests; ++i) {
-    const PictureRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
+    const ViewRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
     const Camera camera = request.camera(96, 64);
     worker.request(request);
     // Reads until there is a picture, so that the threads run concurrently.
@@ -93,8 +93,8 @@ TEST(SharedScene, CanBeQueriedWhileRendering) {
   }
   EXPECT_GT(pictures, 0);
   EXPECT_GT(read, 0);
-  // The last picture equals that of a separate rendering.
-  const PictureRequest last = request_from(scene, 1, false);
+  // The last picture is the one that is rendered alone.
+  const ViewRequest last = request_from(scene, 1, false);
   const std::uint64_t generation = worker.request(last);
   std::optional<WorkedPicture> worked;
   for (int i = 0; i < 60'000; ++i) {

@@ -72,7 +72,7 @@ TEST_F(WindowOptions, AreSuspendedWithoutEffect) {
   // Without water there are no waves; with water, they are back.
   const Opening dry = with(wavy, {{"--water", {}}});
   EXPECT_EQ(words_of(dry), "");
-  EXPECT_FALSE(dry.options->picture.water);
+  EXPECT_FALSE(dry.options->picture.water_level);
   EXPECT_EQ(words_of(with(dry, {{"--water", "12"}})), " --waves=0.1 --water=12");
   const Opening counted = with(wavy, {{"--look", "steps"}});
   EXPECT_EQ(words_of(counted), " --look=steps");

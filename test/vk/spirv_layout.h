@@ -8,21 +8,26 @@
 #include <span>
 #include <vector>
 
+#include "test/vk/spirv_operations.h"
+
 namespace scarp::test {
 
 using Offsets = std::vector<std::uint32_t>;
 
+/// Adds the offset of a member, by the id of its struct, if this operation (spirv_operations.h) decorates one with it.
+inline void add_offset(std::uint32_t code, std::span<const std::uint32_t> words,
+                       std::map<std::uint32_t, Offsets>& structs) {
+  if (code != spirv_op::kMemberDecorate || words[3] != spirv_decoration::kOffset) return;
+  Offsets& offsets = structs[words[1]];
+  offsets.resize(std::max<std::size_t>(offsets.size(), words[2] + 1));
+  offsets[words[2]] = words[4];
+}
+
 /// The offsets of the members of each struct, in their order; names do not survive optimisation.
 inline std::vector<Offsets> struct_offsets(std::span<const std::uint32_t> spirv) {
-  constexpr std::uint32_t kOpMemberDecorate = 72, kOffset = 35, kHeaderWords = 5;
   std::map<std::uint32_t, Offsets> structs;
-  for (std::size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
-    const std::uint32_t *word = &spirv[at], operation = word[0] & 0xffff;
-    if (operation != kOpMemberDecorate || word[3] != kOffset) continue;
-    Offsets& offsets = structs[word[1]];
-    offsets.resize(std::max<std::size_t>(offsets.size(), word[2] + 1));
-    offsets[word[2]] = word[4];
-  }
+  each_operation(spirv,
+                 [&](std::uint32_t code, std::span<const std::uint32_t> words) { add_offset(code, words, structs); });
   std::vector<Offsets> all;
   for (const auto& [type, offsets] : structs) all.push_back(offsets);
   return all;
@@ -30,12 +35,11 @@ inline std::vector<Offsets> struct_offsets(std::span<const std::uint32_t> spirv)
 
 /// Whether arrays of the shader have elements of this many bytes.
 inline bool has_array_stride(std::span<const std::uint32_t> spirv, std::uint32_t stride) {
-  constexpr std::uint32_t kOpDecorate = 71, kArrayStride = 6, kHeaderWords = 5;
-  for (std::size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
-    const std::uint32_t* word = &spirv[at];
-    if ((word[0] & 0xffff) == kOpDecorate && word[2] == kArrayStride && word[3] == stride) return true;
-  }
-  return false;
+  bool found = false;
+  each_operation(spirv, [&](std::uint32_t code, std::span<const std::uint32_t> words) {
+    found |= code == spirv_op::kDecorate && words[2] == spirv_decoration::kArrayStride && words[3] == stride;
+  });
+  return found;
 }
 
 inline bool has_struct(std::span<const std::uint32_t> spirv, const Offsets& offsets) {
@@ -49,39 +53,34 @@ inline bool has_struct(std::span<const std::uint32_t> spirv, const Offsets& offs
 template <class T>
 bool is_laid_out_like(std::span<const std::uint32_t> spirv) {
   static_assert(alignof(T) == 4 && sizeof(T) % 4 == 0);
-  constexpr std::uint32_t kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23, kTypeArray = 28, kTypeRuntimeArray = 29,
-                          kTypeStruct = 30, kConstant = 43, kMemberDecorate = 72, kOffset = 35, kHeaderWords = 5;
   std::map<std::uint32_t, Offsets> offsets;
   std::map<std::uint32_t, std::uint32_t> bytes, constants;
   std::vector<std::uint32_t> structs;
   bool gaps = false;
   // Decorations come before types, and types before those that have them.
-  for (std::size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
-    const std::uint32_t *word = &spirv[at], operation = word[0] & 0xffff, words = word[0] >> 16;
-    if (operation == kMemberDecorate && word[3] == kOffset) {
-      Offsets& of = offsets[word[1]];
-      of.resize(std::max<std::size_t>(of.size(), word[2] + 1));
-      of[word[2]] = word[4];
-    } else if (operation == kTypeInt || operation == kTypeFloat) {
-      bytes[word[1]] = word[2] / 8;
-    } else if (operation == kTypeVector) {
-      bytes[word[1]] = bytes[word[2]] * word[3];
-    } else if (operation == kConstant) {
-      constants[word[2]] = word[3];
-    } else if (operation == kTypeArray) {
-      bytes[word[1]] = bytes[word[2]] * constants[word[3]];
-    } else if (operation == kTypeRuntimeArray) {
-      bytes[word[1]] = 0;
-    } else if (operation == kTypeStruct && offsets.contains(word[1])) {
+  each_operation(spirv, [&](std::uint32_t code, std::span<const std::uint32_t> words) {
+    using namespace spirv_op;
+    add_offset(code, words, offsets);
+    if (code == kTypeInt || code == kTypeFloat) {
+      bytes[words[1]] = words[2] / 8;
+    } else if (code == kTypeVector) {
+      bytes[words[1]] = bytes[words[2]] * words[3];
+    } else if (code == kConstant) {
+      constants[words[2]] = words[3];
+    } else if (code == kTypeArray) {
+      bytes[words[1]] = bytes[words[2]] * constants[words[3]];
+    } else if (code == kTypeRuntimeArray) {
+      bytes[words[1]] = 0;
+    } else if (code == kTypeStruct && offsets.contains(words[1])) {
       std::uint32_t size = 0;
-      for (std::uint32_t member = 0; member + 2 < words; ++member) {
-        gaps |= offsets[word[1]][member] != size;
-        size += bytes[word[2 + member]];
+      for (std::size_t member = 0; member + 2 < words.size(); ++member) {
+        gaps |= offsets[words[1]][member] != size;
+        size += bytes[words[2 + member]];
       }
-      bytes[word[1]] = size;
+      bytes[words[1]] = size;
       structs.push_back(size);
     }
-  }
+  });
   return !gaps && std::find(structs.begin(), structs.end(), sizeof(T)) != structs.end();
 }
 

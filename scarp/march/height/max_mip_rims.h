@@ -63,7 +63,7 @@ struct Rim {
   const HeightField& field;
   const WalkGround<T, UpsideDown>& ground;
   const Axis &x, &y;
-  const GridRay& ray;
+  const GridRay ray;
   double seam, seam_step;
 
   double off(int axis) const { return rounding_of_line(field, ray, axis, seam); }
@@ -151,6 +151,21 @@ struct Rim {
       return answered || !all;
     });
     return answered;
+  }
+
+  // How far along a line of an axis, in cells, a ray that crosses it may be from a node and be within the allowance of
+  // both lines when it crosses the other one.
+  double beside_node(int axis) const {
+    const double slope = std::abs(ray.direction[1 - axis]) / std::abs(ray.direction[axis]);
+    const double off = std::max(this->off(0), this->off(1));
+    return off + off * (slope < kQuickRim ? slope : 0.0);
+  }
+  // When a ray that crosses a line of an axis at t passes the nearest line of the other one; NaN: not between t and
+  // `last`.
+  double node_time(double t, int axis, double last) const {
+    const Axis& other = axis == 0 ? y : x;
+    const double node = (std::round(other.at(t)) - other.origin) * other.per_direction;
+    return node > t && node < last ? node : std::numeric_limits<double>::quiet_NaN();
   }
 
   // Whether a ray that leaves the ground over a line of an axis, into a hole, may sink through the rim before it leaves

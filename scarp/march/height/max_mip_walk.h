@@ -19,9 +19,8 @@
 #include "scarp/march/height/walk_ground.h"
 #include "scarp/march/height/walk_query.h"
 
-// Internal linkage, although in a header (included by one file), lets the compiler inline single-use functions. Without
-// it the traversal's state spills to memory and rays take 10 % longer. For the same reason the common path through a
-// cell is inlined, and the rare ones are not.
+// Internal linkage lets the compiler inline what is used once: otherwise the state spills to memory, and rays take 10 %
+// longer. For the same reason the common path through a cell is inlined, and the rare ones are not.
 namespace scarp::max_mip {
 namespace {
 
@@ -283,9 +282,9 @@ class Walk {
     }
   }
 
-  // Traverses one copy of the grid; returns true if the ray has left for the next one. Keeps, in locals, the block at
-  // the current level and the times at which the ray leaves it through its two far lines. Descending one level only
-  // compares the time of the middle line. No cell is ever computed from a position.
+  // Traverses one copy of the grid (coarse blocks may extend beyond it); returns true if the ray has left for the next.
+  // Keeps, in locals, the block at the current level and the times at which the ray leaves it through its two far
+  // lines. Descending one level only compares the time of the middle line. No cell is ever computed from a position.
   bool walk() {
     const bool falling = dz_ < 0;
     const Axis x = x_, y = y_;
@@ -296,11 +295,11 @@ class Walk {
     const double rounding = ground_.kRoundingOfCode * upright + rounding_;
     const double code_z = (z_ - base - rounding) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - base) * per_step;
-    // A coarse block may extend beyond the last row or column; the traversal does not.
     const double t_exit = std::min(x.exit_time(), y.exit_time()), t_end = Wraps ? std::min(t_end_, t_exit) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
     const double beside_node = Holes ? widest_rounding_of_line(field_, grid_ray(), seam_) : 0;
+    const double at_node[] = {Holes ? rim(grid_ray()).beside_node(0) : 0, Holes ? rim(grid_ray()).beside_node(1) : 0};
     // Passing the corner of a hole or block, in over one line and out over the other, does not leave the ground.
     const auto cuts_corner = [&](bool out_over_x, double begin, double end) {
       if (through_ != (out_over_x ? Through::y_line : Through::x_line)) return end <= begin;
@@ -320,6 +319,11 @@ class Walk {
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const std::uint16_t maximum = ground_.maximum(entry);
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maximum, t_lowest))) {
+          // The line that it came over may have ground behind it, with a node that the ray passes.
+          if (Holes && begun_ && side_ != Side::below && !below_rim_ &&
+              passes_node(after_x_ ? y.at(t_in) : x.at(t_in), at_node[!after_x_]) &&
+              touches(rim(grid_ray()).node_time(t_in, !after_x_, t_out)))
+            break;
           // With holes, the last cell may be one: the side is unknown at the next.
           if (!Holes) {
             side_ = Side::above;
@@ -371,9 +375,8 @@ class Walk {
       }
       if (Holes) {
         if (side_ != Side::below && !below_rim_ && t_line <= t_end &&
-            passes_node(through_x ? y.at(t_line) : x.at(t_line), beside_node) && touches(t_line)) {
+            passes_node(through_x ? y.at(t_line) : x.at(t_line), beside_node) && touches(t_line))
           break;
-        }
         begun_ = true;
       }
       if (!falling && lowest_code > highest_code) break;
@@ -483,10 +486,9 @@ class Walk {
   // of neighbours that share the place count as one. Returns true if the query is answered.
   bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;
-    if (lists()) {
-      if (!wanted_.all->empty() && t - wanted_.all->back().t <= rounding_of_node_time(field_, grid_ray(), seam_))
-        return false;
-    }
+    if (lists() && !wanted_.all->empty() &&
+        t - wanted_.all->back().t <= rounding_of_node_time(field_, grid_ray(), seam_))
+      return false;
     const int on_way_col = std::exchange(col_, col), on_way_row = std::exchange(row_, row);
     const double on_way_t = std::exchange(t_in_, t);
     const bool answered = answer(0.0, false, &place);
@@ -668,7 +670,6 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-
   const HeightField& field_;
   double seam_, seam_step_;
   const WalkGround<T, UpsideDown> ground_;
@@ -689,8 +690,7 @@ class Walk {
   bool after_x_ = false;                                       // whether the last line crossed was of constant column
   double cell_end_ = std::numeric_limits<double>::infinity();  // when the ray leaves the current cell
   bool from_outside_ = false;                                  // whether the ray entered through the border
-  // With holes: whether some cell has been left; only in the first cell can the ray start below.
-  bool begun_ = false;
+  bool begun_ = false;      // with holes: whether a cell has been left; only in the first one can the ray start below
   bool slow_ = false;       // with holes: whether rims are followed
   bool below_rim_ = false;  // whether it has sunk below the adjacent rim, from outside or over a hole
   Hit& answer_;

@@ -166,10 +166,10 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
   };
   if (from) go_on_from(*from);
   while (rest.t_min <= rest.t_max) {
-    const auto quantised = quantise(rest, direction, target.box);
-    if (!quantised) break;
+    QuantisedRay quantised;
+    if (!quantise(rest, direction, target.box, quantised)) break;
     MarchStats part;
-    VoxelHit hit = march(target, *quantised, stats ? &part : nullptr);
+    VoxelHit hit = march(target, quantised, stats ? &part : nullptr);
     if (stats) stats->steps += part.steps;
     if (!hit) break;
     if (hit.face == VoxelFace::inside && came_by) hit.face = *came_by;

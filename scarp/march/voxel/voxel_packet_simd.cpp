@@ -15,7 +15,7 @@
 // foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/ray_numbers_simd.h"
-#include "scarp/march/voxel/voxel_looks_simd.h"
+#include "scarp/march/voxel/voxel_lookups_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -32,9 +32,9 @@ HWY_INLINE VI wide_product(VI distance, VI speed) {
   const VI upper = hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(du, distance)));
   return hn::Add(product(distance, speed), hn::ShiftLeft<32>(product(upper, speed)));
 }
-template <class Look>
+template <class Lookup>
 HWY_INLINE VI times(VI distance, VI speed) {
-  if constexpr (Look::kWide) return wide_product(distance, speed);
+  if constexpr (Lookup::kWide) return wide_product(distance, speed);
   return product(distance, speed);
 }
 // 0 <= a < 2^52.
@@ -161,7 +161,7 @@ HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPac
 }
 
 // quantise() of voxel_ray.cpp, the same operations in the same order. Starts rays that enter the box, and returns them.
-template <class Look>
+template <class Lookup>
 HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
                     LaneWalk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
@@ -259,16 +259,16 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     chosen.append(end, walk.end[i] + to);
     chosen.append(speed, walk.speed[i] + to);
     chosen.append(side, walk.down[i] + to);
-    if constexpr (!Look::kSingle) chosen.append(slowness_of(speed), walk.slowness[i] + to);
+    if constexpr (!Lookup::kSingle) chosen.append(slowness_of(speed), walk.slowness[i] + to);
   }
-  if constexpr (Look::kTravels) {
+  if constexpr (Lookup::kTravels) {
     const VI speed[3] = {hn::Load(di, packet.speed[0] + o), hn::Load(di, packet.speed[1] + o),
                          hn::Load(di, packet.speed[2] + o)};
     chosen.append(travel_per_voxel(speed), walk.slowness[0] + to);
   }
   chosen.append(entered, walk.crossed + to);
   chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
-  if constexpr (Look::kDescends) chosen.append(hn::Set(di, LaneWalk::kAllMoved), walk.moved + to);
+  if constexpr (Lookup::kDescends) chosen.append(hn::Set(di, LaneWalk::kAllMoved), walk.moved + to);
   walk.lanes += hn::CountTrue(di, in);
   hn::Store(t, dd, packet.t_in + o);
   return in;
@@ -314,10 +314,10 @@ HWY_NOINLINE void finish_all(VoxelPacket& packet, LaneWalk& walk) {
   }
 }
 
-template <class Look>
-HWY_INLINE LookResult look_at(const Look& look, const VI (&voxel)[3], const VI (&at)[3], const VI (&down)[3], MI alive,
-                              const LaneWalk& walk, std::size_t o) {
-  if constexpr (Look::kDescends) {
+template <class Lookup>
+HWY_INLINE LookupResult look_at(const Lookup& look, const VI (&voxel)[3], const VI (&at)[3], const VI (&down)[3],
+                                MI alive, const LaneWalk& walk, std::size_t o) {
+  if constexpr (Lookup::kDescends) {
     return look(voxel, at, down, alive, hn::Load(di, walk.moved + o));
   } else {
     return look(voxel, at, down, alive);
@@ -326,8 +326,8 @@ HWY_INLINE LookResult look_at(const Look& look, const VI (&voxel)[3], const VI (
 
 // VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; returns those still in the box. The others
 // do not change. kOrdered: ties are crossed in the order x, y, z of the grid.
-template <class Look, bool kOrdered>
-HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std::size_t o, MI alive) {
+template <class Lookup, bool kOrdered>
+HWY_INLINE MI advance(const Lookup& look, VoxelPacket& packet, LaneWalk& walk, std::size_t o, MI alive) {
   const VI one = hn::Set(di, 1), zero = hn::Zero(di);
   VI at[3], next[3], speed[3], down[3], voxel[3], end[3];
   for (int i = 0; i < 3; ++i) {
@@ -336,7 +336,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     speed[i] = hn::Load(di, walk.speed[i] + o), down[i] = hn::Load(di, walk.down[i] + o);
     voxel[i] = hn::Xor(at[i], down[i]);
   }
-  const LookResult seen = look_at(look, voxel, at, down, alive, walk, o);
+  const LookupResult seen = look_at(look, voxel, at, down, alive, walk, o);
   const MI solid = hn::And(alive, seen.solid);
   if (!hn::AllFalse(di, solid)) {
     walk.solid[o / N] |= bits_of(solid);
@@ -351,25 +351,25 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
   VI out[3];
   for (int i = 0; i < 3; ++i) {
     out[i] = next[i];
-    if constexpr (!Look::kSingle) {
+    if constexpr (!Lookup::kSingle) {
       const VI planes = lesser(seen.planes[i], hn::Sub(end[i], at[i]));
       out[i] = hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(hn::Sub(planes, one)));
     }
   }
-  VI of_x = times<Look>(out[0], speed[1]);
+  VI of_x = times<Lookup>(out[0], speed[1]);
   if constexpr (!kOrdered) of_x = hn::Add(of_x, hn::Set(di, ties.bits >> 3 & 1));
-  const MI y_first = hn::Lt(times<Look>(out[1], speed[0]), of_x);
+  const MI y_first = hn::Lt(times<Lookup>(out[1], speed[0]), of_x);
   VI distance = hn::IfThenElse(y_first, out[1], out[0]), pace = hn::IfThenElse(y_first, speed[1], speed[0]);
-  VI of_xy = times<Look>(distance, speed[2]);
+  VI of_xy = times<Lookup>(distance, speed[2]);
   if constexpr (!kOrdered)
     of_xy = hn::Add(of_xy, hn::IfThenElse(y_first, hn::Set(di, ties.bits >> 5 & 1), hn::Set(di, ties.bits >> 4 & 1)));
-  const MI z_first = hn::Lt(times<Look>(out[2], pace), of_xy);
+  const MI z_first = hn::Lt(times<Lookup>(out[2], pace), of_xy);
   const VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
 
   VI crossed[3];
-  if constexpr (Look::kSingle) {
+  if constexpr (Lookup::kSingle) {
     for (int i = 0; i < 3; ++i) crossed[i] = hn::IfThenElseZero(hn::Eq(axis, hn::Set(di, i)), one);
-    if constexpr (Look::kTravels) {
+    if constexpr (Lookup::kTravels) {
       distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
       MI travels = hn::And(alive, hn::Gt(seen.planes[0], zero));
       for (int i = 0; i < 3; ++i) travels = hn::And(travels, hn::Lt(hn::Add(at[i], crossed[i]), end[i]));
@@ -395,7 +395,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     slowness = hn::IfThenElse(hn::RebindMask(dd, y_first), hn::Load(dd, walk.slowness[1] + o), slowness);
     slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, walk.slowness[2] + o), slowness);
     for (int i = 0; i < 3; ++i) {
-      VI ahead = hn::Sub(times<Look>(distance, speed[i]), times<Look>(next[i], pace));
+      VI ahead = hn::Sub(times<Lookup>(distance, speed[i]), times<Lookup>(next[i], pace));
       // Planes at the same s that come after the last one.
       if constexpr (kOrdered) {
         if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
@@ -418,12 +418,12 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     crossed[i] = hn::IfThenElseZero(alive, crossed[i]);
     const VI from = at[i];
     at[i] = hn::Add(at[i], crossed[i]);
-    if constexpr (Look::kDescends) moved = hn::Or(moved, hn::Xor(at[i], from));
+    if constexpr (Lookup::kDescends) moved = hn::Or(moved, hn::Xor(at[i], from));
     hn::Store(at[i], di, walk.at[i] + o);
     hn::Store(hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i])), di, walk.next[i] + o);
     inside = hn::And(inside, hn::Lt(at[i], end[i]));
   }
-  if constexpr (Look::kDescends) hn::Store(moved, di, walk.moved + o);
+  if constexpr (Lookup::kDescends) hn::Store(moved, di, walk.moved + o);
   hn::Store(hn::IfThenElse(alive, axis, hn::Load(di, walk.crossed + o)), di, walk.crossed + o);
   return inside;
 }
@@ -459,17 +459,17 @@ HWY_INLINE void wake(LaneWalk& walk) {
   }
 }
 
-template <class Look, bool kOrdered>
+template <class Lookup, bool kOrdered>
 std::uint64_t march_with_ties(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                               std::uint64_t rays) {
-  const Look look(target);
+  const Lookup look(target);
   std::uint64_t met = 0;
   LaneWalk walk;
   walk.ties = stand.ties;
   packet.hits = 0;
   for (std::size_t o = 0; o < packet.count; o += N) {
     if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;
-    met |= bits_of(enter<Look>(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
+    met |= bits_of(enter<Lookup>(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
   }
   wake(walk);
   for (std::size_t live = walk.lanes; live > 0;) {
@@ -477,7 +477,7 @@ std::uint64_t march_with_ties(const VoxelTarget& target, const VoxelStand& stand
     for (std::size_t o = 0; o < walk.lanes; o += N) {
       std::uint64_t& alive = walk.alive[o / N];
       if (alive == 0) continue;
-      alive = bits_of(advance<Look, kOrdered>(look, packet, walk, o, lanes_of(alive)));
+      alive = bits_of(advance<Lookup, kOrdered>(look, packet, walk, o, lanes_of(alive)));
       live += static_cast<std::size_t>(hn::CountTrue(di, lanes_of(alive)));
     }
     // Only if that saves vectors.
@@ -491,10 +491,10 @@ std::uint64_t march_with_ties(const VoxelTarget& target, const VoxelStand& stand
   return met;
 }
 
-template <class Look>
+template <class Lookup>
 std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
-  return stand.ties.bits >> 3 == 0 ? march_with_ties<Look, true>(target, stand, packet, rays)
-                                   : march_with_ties<Look, false>(target, stand, packet, rays);
+  return stand.ties.bits >> 3 == 0 ? march_with_ties<Lookup, true>(target, stand, packet, rays)
+                                   : march_with_ties<Lookup, false>(target, stand, packet, rays);
 }
 
 bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
@@ -556,29 +556,29 @@ bool is_wide(const VoxelBox& box) {
 
 std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                            std::uint64_t rays) {
-  return is_wide(target.box) ? march<PlanesLook<true>>(target, stand, packet, rays)
-                             : march<PlanesLook<false>>(target, stand, packet, rays);
+  return is_wide(target.box) ? march<PlanesLookup<true>>(target, stand, packet, rays)
+                             : march<PlanesLookup<false>>(target, stand, packet, rays);
 }
 std::uint64_t march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
-  return march<CubesLook>(target, stand, packet, rays);
+  return march<CubesLookup>(target, stand, packet, rays);
 }
 std::uint64_t march_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                             std::uint64_t rays) {
-  return march<SpheresLook>(target, stand, packet, rays);
+  return march<SpheresLookup>(target, stand, packet, rays);
 }
 std::uint64_t march_cubes_jump(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                std::uint64_t rays) {
-  return march<CubesJumpLook>(target, stand, packet, rays);
+  return march<CubesJumpLookup>(target, stand, packet, rays);
 }
 std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                             std::uint64_t rays) {
-  return march<OctantsLook>(target, stand, packet, rays);
+  return march<OctantsLookup>(target, stand, packet, rays);
 }
 std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                            std::uint64_t rays) {
-  if (is_wide(target.box)) return march<BricksLook<true, true>>(target, stand, packet, rays);
-  return target.bricks->levels().size() > 1 ? march<BricksLook<false, true>>(target, stand, packet, rays)
-                                            : march<BricksLook<false, false>>(target, stand, packet, rays);
+  if (is_wide(target.box)) return march<BricksLookup<true, true>>(target, stand, packet, rays);
+  return target.bricks->levels().size() > 1 ? march<BricksLookup<false, true>>(target, stand, packet, rays)
+                                            : march<BricksLookup<false, false>>(target, stand, packet, rays);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ VoxelTies::VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame) {
 VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(direction), inverse(1.0 / direction) {
   // Divisions dominate the cost here; the one by the longest component is already done.
   const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
-  auto& [speed, slowness, step, own_ties, after, exact, t_per_s] = quantised;
+  auto& [speed, slowness, step, own_ties, after, exact, plain, t_per_s] = quantised;
   own_ties = ties;
   const std::uint32_t y_x = ties.bits >> 3 & 1, z_x = ties.bits >> 4 & 1, z_y = ties.bits >> 5 & 1;
   after = {static_cast<std::uint8_t>(6 ^ (y_x << 1 | z_x << 2)), static_cast<std::uint8_t>(4 ^ (y_x | z_y << 2)),
@@ -75,11 +75,19 @@ VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(d
     step[axis] = direction[axis] == 0 ? ties.up(axis) : direction[axis] < 0 ? -1 : 1;
   }
   t_per_s = static_cast<double>(1 << (kDirectionBits - kPlaceBits)) * per_longest;
+  plain = speed[0] >= kSlow && speed[1] >= kSlow && speed[2] >= kSlow && std::isfinite(t_per_s);
 }
 
-std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& ray_direction, const VoxelBox& box) {
+namespace {
+
+// kPlain: for a plain direction and no start voxel, which nearly all rays have. Without tests for the others, a ray
+// through many objects takes 3 to 6 % less time.
+template <bool kPlain>
+bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const VoxelBox& box,
+                 QuantisedRay& quantised) {
   const QuantisedDirection& direction = ray_direction.quantised;
-  if (!std::isfinite(direction.t_per_s)) return {};
+  if (!kPlain && !std::isfinite(direction.t_per_s)) return false;
+  const bool has_start = !kPlain && ray.start_voxel;
   const VoxelTies ties = direction.ties;
   const double late = direction.exact ? ray.room : std::max(ray.room, kTouch * 0x1p-20);
   // Clip to the box. If planes are crossed at the same t, the last one is the entry face.
@@ -89,18 +97,19 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
   for (int axis = 0; axis < 3; ++axis) {
     double& origin = from[axis];
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
-    if (ray_direction.given[axis] == 0) {
+    if (!kPlain && ray_direction.given[axis] == 0) {
       origin = on_plane(origin, ray.room);
-      if (!(step > 0 ? origin >= low && origin < high : origin > low && origin <= high)) return {};
+      if (!(step > 0 ? origin >= low && origin < high : origin > low && origin <= high)) return false;
       continue;
     }
-    const double early = direction.speed[axis] < kSlow ? ray.room : 0;
+    const bool slow = !kPlain && direction.speed[axis] < kSlow;
+    const double early = slow ? ray.room : 0;
     const double t_near = ((step > 0 ? low - early : high + early) - origin) * ray_direction.inverse[axis];
     const double t_far = ((step > 0 ? high + late : low - late) - origin) * ray_direction.inverse[axis];
     bool outside = false;
-    if (ray.start_voxel) {
+    if (has_start) {
       const int start = (*ray.start_voxel)[axis];
-      if (step > 0 ? start >= high : start < low) return {};
+      if (step > 0 ? start >= high : start < low) return false;
       outside = step > 0 ? start < low : start >= high;
     }
     if (outside || t_near >= t) {
@@ -109,20 +118,22 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
     }
     t_out = std::min(t_out, t_far);
   }
-  if (!(t <= t_out)) return {};
+  if (!(t <= t_out)) return false;
+  const bool starts_inside = has_start && entered < 0;
+  if (starts_inside && !box.contains(*ray.start_voxel)) return false;
 
-  std::optional<QuantisedRay> result(QuantisedRay{direction, {}, {}, VoxelFace::inside, t, ray.t_max});
-  const bool starts_inside = ray.start_voxel && entered < 0;
-  if (starts_inside && !box.contains(*ray.start_voxel)) return {};
-  if (entered >= 0) result->face = face_of(entered, direction.step[entered]);
-  const bool comes_in = t > ray.t_min;  // along its path, not at its start
+  quantised.direction = direction;
+  quantised.face = entered >= 0 ? face_of(entered, direction.step[entered]) : VoxelFace::inside;
+  quantised.t = t;
+  quantised.t_max = ray.t_max;
+  const bool comes_in = t > ray.t_min;  // along its way, not where it starts
   for (int axis = 0; axis < 3; ++axis) {
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     // Not beyond the box, where only rounding could place it.
     double place = from[axis] + t * ray_direction.given[axis];
     place = place > low ? place : low;
     place = place < high ? place : high;
-    int& voxel = result->voxel[axis];
+    int voxel;
     if (axis == entered) {
       place = step > 0 ? low : high;
       voxel = step > 0 ? low : high - 1;
@@ -132,20 +143,35 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
       voxel = voxel_at(place, step);
     }
     const double distance = step > 0 ? voxel + 1 - place : place - voxel, units = distance * kVoxelPlaces;
-    std::int64_t next = std::clamp<std::int64_t>(
-        direction.speed[axis] < kSlow ? rounded_up(units) : static_cast<std::int64_t>(units + 0.5), 0, kVoxelPlaces);
+    const bool slow = !kPlain && direction.speed[axis] < kSlow, level = slow && direction.speed[axis] == 0;
+    std::int64_t next =
+        std::clamp<std::int64_t>(slow ? rounded_up(units) : static_cast<std::int64_t>(units + 0.5), 0, kVoxelPlaces);
     // Planes behind that are not crossed yet.
     const bool exact = distance == 1 && direction.exact;
-    if (comes_in && next >= kVoxelPlaces - kTouch && direction.speed[axis] != 0 && axis != entered &&
+    if (comes_in && next >= kVoxelPlaces - kTouch && !level && axis != entered &&
         (!exact || ties.before(entered, axis)) && voxel != (step > 0 ? low : high - 1)) {
       voxel -= step;
       next = 0;
     }
     // On the border and leaving.
-    if (voxel < low || voxel >= high) return {};
-    result->to_plane[axis] = direction.speed[axis] == 0 ? QuantisedRay::kNever : next;
+    if (voxel < low || voxel >= high) return false;
+    quantised.voxel[axis] = voxel;
+    quantised.to_plane[axis] = level ? QuantisedRay::kNever : next;
   }
-  return result;
+  return true;
+}
+
+}  // namespace
+
+bool quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box, QuantisedRay& quantised) {
+  const bool plain = direction.quantised.plain && !ray.start_voxel;
+  return plain ? quantise_as<true>(ray, direction, box, quantised) : quantise_as<false>(ray, direction, box, quantised);
+}
+
+std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box) {
+  QuantisedRay quantised;
+  if (!quantise(ray, direction, box, quantised)) return {};
+  return quantised;
 }
 
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelBox& box) {

@@ -110,6 +110,7 @@ struct QuantisedDirection {
   VoxelTies ties;
   std::array<std::uint8_t, 3> after;  ///< per axis, a bit for each axis that is crossed after it
   bool exact;                         ///< speeds are the components of the given direction, without rounding
+  bool plain;                         ///< no speed is below kSlow, and t_per_s is finite
   double t_per_s;                     ///< t per unit of s = n / d; not finite if the direction is too short
 };
 
@@ -140,7 +141,10 @@ struct QuantisedRay {
   }
 };
 
-/// Returns nullopt if the ray misses the box within its range. The box's sides are at most 16,384.
+/// Returns false if the ray misses the box within its range; `quantised` then means nothing. The box's sides are at
+/// most 16,384.
+bool quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box, QuantisedRay& quantised);
+/// The same with nullopt for a miss, which takes longer: compilers clear an empty optional.
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box);
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelBox& box);
 

@@ -26,9 +26,6 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 7> kLookNames = {"shaded", "hillshade", "height", "steps",
-                                                        "error",  "comanche",  "level"};
-
 constexpr int kMaxSide = 65536;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr int kMaxSamples = 4096;
@@ -196,10 +193,6 @@ Picture render_steps(const Scene& scene, const Camera& camera, const PictureSett
 
 }  // namespace
 
-std::string_view name_of(Look look) { return kLookNames[static_cast<std::size_t>(look)]; }
-
-Look find_look(std::string_view name) { return static_cast<Look>(find_setting("look", kLookNames, name)); }
-
 bool uses_tone_curve(const PictureSettings& settings) {
   const bool counts = settings.look == Look::comanche && settings.comanche.iterations;
   return settings.tone_curve && !settings.unlit && !counts;
@@ -366,7 +359,7 @@ Picture render_picture(const Scene& scene, const Camera& camera, const PictureSe
   Picture picture = render_look(scene, camera, settings, progress);
   Image& image = picture.image;
   if (settings.alpha && image.alpha.empty()) find_alpha(scene, camera, settings, image);
-  if (settings.look == Look::comanche) image = scaled_up(image, settings.comanche.scale);
+  if (entry_of(settings.look).large_pixels) image = scaled_up(image, settings.comanche.scale);
   return picture;
 }
 

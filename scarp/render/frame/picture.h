@@ -1,18 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders a picture of a scene in one of several looks. A look maps the hits of camera rays to colours.
-//
-//   shaded    materials lit by sun and sky, with exact hard shadows (or, with `samples`, soft shadows and ambient
-//             occlusion); water, haze or fog, sky
-//   hillshade grey by the angle to the sun, without shadows, see hillshade_look.h
-//   height    grey, linear in height, see height_look.h
-//   steps     steps of the march per ray, as a colour ramp from the minimum to the maximum in the picture, or over a
-//             given range
-//   comanche  like `shaded`, in few large pixels, see comanche.h
-//   error     errors of the march, see error_look.h
-//   level     maxima of a level of the pyramid, see level_look.h
-//
-// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps`, `error` and `level` trace one ray through
-// the centre of each pixel.
+// Renders a picture of a scene in one of several looks (look/look.h).
 #pragma once
 
 #include <cstdint>
@@ -31,6 +18,7 @@
 #include "scarp/render/light/sun.h"
 #include "scarp/render/look/comanche.h"
 #include "scarp/render/look/error_look.h"
+#include "scarp/render/look/look.h"
 #include "scarp/render/surface/ground_paint.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/water.h"
@@ -38,13 +26,6 @@
 #include "scarp/scene/scene.h"
 
 namespace scarp {
-
-enum class Look { shaded, hillshade, height, steps, error, comanche, level };
-
-/// Returns "shaded", "hillshade", "height", "steps", "error", "comanche" or "level".
-std::string_view name_of(Look look);
-/// Returns the look with this name. Throws Error listing the names if `name` is unknown.
-Look find_look(std::string_view name);
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 

@@ -327,5 +327,41 @@ TEST(SteepRims, HaveHeightsAtTheirNodes) {
   }
 }
 
+// A ray passes the corner of the ground so: over its column's line into a block without ground, just before the row's
+// line. The block is left out of the walk where the ray ends above all that it knows, but the corner is beside it.
+TEST(SteepRims, CornerBesideABlockWithoutGroundIsHitWhereverTheRangeEnds) {
+  constexpr int kSide = 9, kCol = 4, kRow = 3;
+  constexpr double kCorner = 0.125, kDrop = 16, kAcross = 0x1p-6, kAlong = 5.5;
+  for (int turn = 0; turn < 8; ++turn) {
+    const bool west = turn & 1, north = turn & 2, swap = turn & 4;
+    // Column and row of the pattern as column and row of the field.
+    const auto at = [&](double col, double row) {
+      const dvec2 place(west ? kSide - 1 - col : col, north ? kSide - 1 - row : row);
+      return swap ? dvec2(place.y, place.x) : place;
+    };
+    std::vector<float> samples(kSide * kSide, kNone);
+    for (int row = kRow; row < kSide; ++row) {
+      for (int col = kCol; col < kSide; ++col) {
+        const dvec2 place = at(col, row);
+        float& sample = samples[static_cast<std::size_t>(place.y) * kSide + static_cast<std::size_t>(place.x)];
+        sample = row == kRow && col == kCol ? static_cast<float>(kCorner) : row + col < 2 * (kSide - 1) ? 2.0f : 0.0f;
+      }
+    }
+    const HeightField field = HeightField::view(samples.data(), kSide, kSide);
+    SteepRays rays(field);
+    for (const double late : {0.0, 2.0, 4.0, 8.0}) {
+      for (const double t_max : {1.00001, 1.001, 1.01, 1.02, 1.1}) {
+        // It crosses the column's line a few roundings before t = 1.
+        const dvec2 from = at(kCol + kAcross - late * 0x1p-51, kRow - kAlong);
+        const dvec2 along = at(-kAcross, kAlong) - at(0, 0);
+        Ray ray{{from.x, field.depth() - from.y, kCorner + kDrop}, {along.x, -along.y, -kDrop}};
+        ray.t_max = t_max;
+        rays.expect_hit(ray, 1);
+      }
+    }
+    rays.check();
+  }
+}
+
 }  // namespace
 }  // namespace scarp::test

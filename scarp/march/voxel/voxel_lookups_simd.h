@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // How far the marches of voxel_packet_simd.cpp advance at once: a structure per technique, all lanes at a time.
 // Compiled once per instruction set.
-#if defined(SCARP_MARCH_VOXEL_LOOKS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SCARP_MARCH_VOXEL_LOOKS_SIMD_H
-#undef SCARP_MARCH_VOXEL_LOOKS_SIMD_H
+#if defined(SCARP_MARCH_VOXEL_LOOKUPS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SCARP_MARCH_VOXEL_LOOKUPS_SIMD_H
+#undef SCARP_MARCH_VOXEL_LOOKUPS_SIMD_H
 #else
-#define SCARP_MARCH_VOXEL_LOOKS_SIMD_H
+#define SCARP_MARCH_VOXEL_LOOKUPS_SIMD_H
 #endif
 
 #include <cstddef>
@@ -50,7 +50,7 @@ HWY_INLINE VI lesser(VI a, VI b) { return hn::BitCast(di, hn::Min(hn::BitCast(di
 #endif
 // Result of a lookup: whether voxels are solid, and otherwise how many planes may be crossed along each axis. `at` are
 // the voxels, mirrored along negative directions.
-struct LookResult {
+struct LookupResult {
   MI solid;
   VI planes[3];
 };
@@ -94,12 +94,12 @@ HWY_INLINE VI gather_masks(const VoxelGrid& grid, VI brick) {
 
 // One plane at a time.
 template <bool kWideBox>
-struct PlanesLook {
+struct PlanesLookup {
   static constexpr bool kSingle = true, kTravels = false, kWide = kWideBox, kDescends = false;
   const VoxelGrid& grid;
 
-  explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+  explicit PlanesLookup(const VoxelTarget& target) : grid(*target.grid) {}
+  HWY_INLINE LookupResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
     const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
     const VI mask = gather_masks(grid, hn::IfThenElseZero(alive, index_in(brick, grid.bricks())));
     const VI one = hn::Set(di, 1);
@@ -108,12 +108,12 @@ struct PlanesLook {
 };
 
 // Cubes around voxels, or ahead of them: a byte each.
-struct CubesLook {
+struct CubesLookup {
   static constexpr bool kSingle = false, kTravels = false, kWide = false, kDescends = false;
   const VoxelBytes& bytes;
 
-  explicit CubesLook(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+  explicit CubesLookup(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
+  HWY_INLINE LookupResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
     const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
     const VI distance = gather_bytes(bytes.data(), index);
     return {hn::Eq(distance, hn::Zero(di)), {distance, distance, distance}};
@@ -121,37 +121,37 @@ struct CubesLook {
 };
 
 // One plane, then all planes within `planes[0]` voxels of travel: a byte each.
-struct SpheresLook {
+struct SpheresLookup {
   static constexpr bool kSingle = true, kTravels = true, kWide = false, kDescends = false;
   const VoxelBytes& bytes;
 
-  explicit SpheresLook(const VoxelTarget& target) : bytes(target.spheres->distances()) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+  explicit SpheresLookup(const VoxelTarget& target) : bytes(target.spheres->distances()) {}
+  HWY_INLINE LookupResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
     const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
     const VI distance = gather_bytes(bytes.data(), index);
     return {hn::Eq(distance, hn::Set(di, EmptySpheres::kSolid)), {distance, distance, distance}};
   }
 };
 
-struct CubesJumpLook {
+struct CubesJumpLookup {
   static constexpr bool kSingle = true, kTravels = true, kWide = false, kDescends = false;
-  CubesLook cubes;
+  CubesLookup cubes;
 
-  explicit CubesJumpLook(const VoxelTarget& target) : cubes(target) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
-    LookResult seen = cubes(v, at, down, alive);
+  explicit CubesJumpLookup(const VoxelTarget& target) : cubes(target) {}
+  HWY_INLINE LookupResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
+    LookupResult seen = cubes(v, at, down, alive);
     seen.planes[0] = hn::Sub(seen.planes[0], hn::Set(di, 1));
     return seen;
   }
 };
 
-struct OctantsLook {
+struct OctantsLookup {
   static constexpr bool kSingle = false, kTravels = false, kWide = false, kDescends = false;
   const VoxelBytes& bytes;
   ivec3 size;
 
-  explicit OctantsLook(const VoxelTarget& target) : bytes(target.octants->sides()), size(target.grid->size()) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&down)[3], MI alive) const {
+  explicit OctantsLookup(const VoxelTarget& target) : bytes(target.octants->sides()), size(target.grid->size()) {}
+  HWY_INLINE LookupResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&down)[3], MI alive) const {
     const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 1)),
                              hn::Or(hn::And(down[1], hn::Set(di, 2)), hn::And(down[2], hn::Set(di, 4))));
     const VI z = hn::Add(v[2], product(octant, hn::Set(di, size.z)));
@@ -163,19 +163,19 @@ struct OctantsLook {
 
 // Blocks of 2^level voxels, as in voxel_bricks.cpp. kCoarse: in grids with levels above sectors.
 template <bool kWideBox, bool kCoarse>
-struct BricksLook {
+struct BricksLookup {
   static constexpr bool kSingle = false, kTravels = false, kWide = kWideBox, kDescends = kCoarse;
   const VoxelGrid& grid;
   const BrickMasks& bricks;
 
-  explicit BricksLook(const VoxelTarget& target) : grid(*target.grid), bricks(*target.bricks) {}
+  explicit BricksLookup(const VoxelTarget& target) : grid(*target.grid), bricks(*target.bricks) {}
   static HWY_INLINE MI pair_empty(VI mask, VI bit) {
     const VI pair = shifted(mask, hn::And(bit, hn::Set(di, kEven)));
     return hn::Eq(hn::And(pair, hn::Set(di, static_cast<std::int64_t>(kPair))), hn::Zero(di));
   }
   // moved: the bits of the voxel that the last step has changed, on any axis. The ray was in the cells above them.
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive,
-                                   [[maybe_unused]] VI moved = hn::Zero(di)) const {
+  HWY_INLINE LookupResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive,
+                                     [[maybe_unused]] VI moved = hn::Zero(di)) const {
     const VI zero = hn::Zero(di), one = hn::Set(di, 1);
     const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 64)),
                              hn::Or(hn::And(down[1], hn::Set(di, 128)), hn::And(down[2], hn::Set(di, 256))));
