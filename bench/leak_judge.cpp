@@ -178,10 +178,10 @@ LeakJudge::Piece LeakJudge::piece(const Place& place, Real t, bool south_east) c
   return {z(t) - height(h, u, v), dz_ - (hu + twist * v) * dx_ - (hv + twist * u) * dy_, -twist * dx_ * dy_};
 }
 
-// How long the ray has been in the cell (or triangle) at t, or will be; within its own range. `room`: cells beside its
-// lines that do not count.
+// Time for which the ray has been in the cell (or triangle) at t, or will be, within its range. `room`: width in cells
+// next to its lines that does not count.
 LeakJudge::Real LeakJudge::time_in_cell(const Place& place, Real t, bool back, Real room) const {
-  // Ahead, a cell is followed to its end, wherever the ray ends.
+  // Forwards, a cell is followed to its end, even beyond the end of the ray.
   const bool moves = dx_ != 0 || dy_ != 0;
   Real time = back ? t - t0_ : moves ? std::numeric_limits<Real>::infinity() : t1_ - t;
   const auto axis = [&](Real position, Real d) {
@@ -322,7 +322,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
                         (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t)) * (high_ - low_));
     if (deepest(*place, t) < asked - kCounted / kRoundings * b) return "never strictly below";
   }
-  // Near a hole, which may be what the ray comes out of, only time that it is certain to have been over the cell.
+  // Near a hole, from which the ray may have come, only the time counts for which it is certainly over the cell.
   const Real unsure = holes_between(t, t) ? e + std::max(allowance(0), allowance(1)) : 0;
   const Real before = time_in_cell(*place, t, true, unsure);
   if (risen(*place, t, before) > 2 * b + std::abs(c)) return "a way out of the ground";

@@ -94,7 +94,7 @@ class Maker {
  private:
   // The last value that was typed; empty: none.
   std::string typed(const cli::Declared& declared) const { return opening_.command().value(declared.name); }
-  // The value in force, as text.
+  // The current value, as text.
   std::string now(const cli::Declared& declared) const {
     std::string text = declared.option.now ? declared.option.now() : typed(declared);
     return text.empty() ? first_default(declared) : text;

@@ -67,9 +67,9 @@ class PictureWorker {
   PictureWorker(const PictureWorker&) = delete;
   PictureWorker& operator=(const PictureWorker&) = delete;
 
-  /// Replaces the request before. Returns its generation.
+  /// Replaces the previous request. Returns the new generation.
   std::uint64_t request(ViewRequest request);
-  /// The newest picture that was not taken yet.
+  /// The newest picture that has not been taken yet.
   std::optional<WorkedPicture> take();
   /// Returns the newest verdict not yet taken.
   std::optional<WorkedVerdict> take_verdict();

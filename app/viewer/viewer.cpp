@@ -103,7 +103,7 @@ class Viewer {
 
   void navigate(const Camera& first) {
     const cli::RenderInput& input = subject_->stage().input();
-    // Rays of single points are the CPU's.
+    // The CPU traces rays of single points.
     navigator_ =
         std::make_unique<Navigator>(subject_->stage().given_scene(), first, input.view.fov_deg, input.subject.across);
     frames_ = std::make_unique<ReadingFrames>(input.raster);

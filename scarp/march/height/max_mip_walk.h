@@ -319,7 +319,7 @@ class Walk {
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const std::uint16_t maximum = ground_.maximum(entry);
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maximum, t_lowest))) {
-          // The line that it came over may have ground behind it, with a node that the ray passes.
+          // There may be ground behind the line that it crossed, with a node that the ray passes.
           if (Holes && begun_ && side_ != Side::below && !below_rim_ &&
               passes_node(after_x_ ? y.at(t_in) : x.at(t_in), at_node[!after_x_]) &&
               touches(rim(grid_ray()).node_time(t_in, !after_x_, t_out)))
