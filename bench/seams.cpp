@@ -120,7 +120,7 @@ std::vector<SeamTerrain> terrains(std::uint64_t seed) {
   };
   const Placement far{.origin = {123456.7, 123456.7, 0}},
       askew{.turn = turned(0.6, {0, 0, 1}), .origin = {1e3, -2e3, 5}};
-  // On the surface of the earth, counted from its centre.
+  // On the surface of the Earth, relative to its centre.
   const Placement earth{.turn = turned(0.9, {1, 2, 3}), .origin = {4.1e6, 3.2e6, -3.7e6}};
   std::vector<SeamTerrain> all;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
