@@ -19,7 +19,7 @@ class BulletSweeper {
   BulletSweeper(const BulletSweeper&) = delete;
   BulletSweeper& operator=(const BulletSweeper&) = delete;
 
-  /// The first contact's share of the motion. The capsule is a sphere or upright.
+  /// The first contact as a fraction of the motion. The capsule is a sphere or upright.
   std::optional<double> sweep(const Capsule& capsule, const dvec3& motion) const;
 
  private:

@@ -83,7 +83,7 @@ struct MapsOptions {
   std::vector<int> sizes{1024, 2048, 4096};
   std::string kind = "fbm";  ///< or "ridged"
   std::uint64_t seed = 1;
-  int observer_height = 2;                   ///< metres; the observer stands in the middle
+  int observer_height = 2;                   ///< metres; the observer is in the middle
   int azimuth_deg = 135, altitude_deg = 20;  ///< of the sun
   int repeats = 3;
   std::int64_t judged = 100'000;  ///< nodes per map that are also decided by a ray

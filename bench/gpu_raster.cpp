@@ -4,7 +4,7 @@
 // visibility.
 //
 // Both surfaces are the triangles, so depths are equal except for rounding. In a pixel the reciprocal of the view
-// depth, 1/z, changes by g_x, g_y per pixel, from the triangle that the ray has met; with v = 2^-24 the two may differ
+// depth, 1/z, changes by g_x, g_y per pixel, from the triangle that the ray has hit; with v = 2^-24 the two may differ
 // by
 //
 //   s_x |g_x| + s_y |g_y|         corners are drawn s pixels beside their places: 2^-(bits + 1) by the grid of places

@@ -16,16 +16,16 @@ constexpr double kNear = 1.0;
 
 struct Judgement {
   std::int64_t judged = 0;  ///< rays in the sample
-  double miss_rate = 0;     ///< share of the judge's hits that the engine does not report
-  double false_rate = 0;    ///< share of the judge's misses that the engine reports as hits
+  double miss_rate = 0;     ///< fraction of the judge's hits that the engine does not report
+  double false_rate = 0;    ///< fraction of the judge's misses that the engine reports as hits
   std::optional<double>
       error_p99;          ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
-  double wrong_rate = 0;  ///< share of all rays where one reports a hit and the other does not
+  double wrong_rate = 0;  ///< fraction of all rays where one reports a hit and the other does not
   double late_rate =
-      0;  ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
+      0;  ///< fraction of the judge's hits that are reported more than kNear behind: the first hit was lost
   double early_rate = 0;  ///< the same, in front of it
-  double off_rate = 0;    ///< share of all rays that are wrong, late or early
-  double exhausted = 0;   ///< share of rays that the engine gave up; they count as not reported
+  double off_rate = 0;    ///< fraction of all rays that are wrong, late or early
+  double exhausted = 0;   ///< fraction of rays that the engine gave up; they count as not reported
   double steps = 0;       ///< mean positions evaluated per ray, MarchStats::steps
   double cell_tests = 0;  ///< mean cells intersected per ray
 };

@@ -47,7 +47,7 @@ struct LeakField {
   HeightTarget target() const { return {&field, &pyramid}; }
 };
 
-/// All grounds, with Embree where asked for. Deterministic by seed; `large` is the side of the large one, in samples.
+/// All grounds, with Embree if requested. Deterministic by seed; `large` is the side of the large one, in samples.
 std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embree);
 
 }  // namespace scarp::bench

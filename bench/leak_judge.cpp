@@ -75,7 +75,7 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   if (field_.settings().solid && from_outside_ && *c0_ < -bound(t0_) && c0 && *c0 < -bound(in)) must_hit_ = true;
 }
 
-// Moves the ray up or down so that it begins on the surface of its cell.
+// Moves the ray up or down so that it starts on the surface of its cell.
 void LeakJudge::put_on_surface() {
   const CellHeights h = *field_.cell_heights(ray_.start_cell);
   const Real u = clamped(x(t0_) - ray_.start_cell.col), v = clamped(y(t0_) - ray_.start_cell.row);
@@ -178,10 +178,10 @@ LeakJudge::Piece LeakJudge::piece(const Place& place, Real t, bool south_east) c
   return {z(t) - height(h, u, v), dz_ - (hu + twist * v) * dx_ - (hv + twist * u) * dy_, -twist * dx_ * dy_};
 }
 
-// How long the ray has been in the cell (or triangle) at t, or will be; within its own range. `room`: cells beside its
-// lines that do not count.
+// Time for which the ray has been in the cell (or triangle) at t, or will be, within its range. `room`: width in cells
+// next to its lines that does not count.
 LeakJudge::Real LeakJudge::time_in_cell(const Place& place, Real t, bool back, Real room) const {
-  // Ahead, a cell is followed to its end, wherever the ray ends.
+  // Forwards, a cell is followed to its end, even beyond the end of the ray.
   const bool moves = dx_ != 0 || dy_ != 0;
   Real time = back ? t - t0_ : moves ? std::numeric_limits<Real>::infinity() : t1_ - t;
   const auto axis = [&](Real position, Real d) {
@@ -311,7 +311,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
     const bool at_side = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
     return at_side ? nullptr : "a wall inside the ground";
   }
-  // Rims are touched within a bound of their own.
+  // Touches of rims have their own bound.
   const bool at_rim = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
   if (std::abs(c) > 2 * (at_rim ? std::max(b, bound_at_rim(hit, place->h, t, e)) : b)) return "not on the surface";
 
@@ -322,7 +322,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
                         (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t)) * (high_ - low_));
     if (deepest(*place, t) < asked - kCounted / kRoundings * b) return "never strictly below";
   }
-  // Near a hole, which may be what the ray comes out of, only time that it is certain to have been over the cell.
+  // Near a hole, from which the ray may have come, only the time counts for which it is certainly over the cell.
   const Real unsure = holes_between(t, t) ? e + std::max(allowance(0), allowance(1)) : 0;
   const Real before = time_in_cell(*place, t, true, unsure);
   if (risen(*place, t, before) > 2 * b + std::abs(c)) return "a way out of the ground";
@@ -331,7 +331,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const Real above =
       z(came) - (triangles_ ? height_of_triangle(place->h, u_in + v_in > 1, u_in, v_in) : height(place->h, u_in, v_in));
   if (before > 0 && above > 0) return nullptr;
-  // At the entry of its cell: the ray came through the cell before, if no other lies in between.
+  // At the entry of its cell: the ray came through the previous cell, if no other is in between.
   constexpr Real kBack = 0x1p-8L;  // of a cell
   const Real speed = std::max(std::abs(dx_), std::abs(dy_));
   if (speed > 0 && before * speed < 0x1p-20L) {

@@ -7,7 +7,7 @@
 //
 //   sqrt(3) e side sqrt(1 + x^2 + y^2) / (W pixel)     x, y: tangents of the angles at the picture's corner
 //
-// for L = 32: 1e-3 pixel at a depth of 1.6 voxels in the post's picture, 2e-5 from where its camera stands. A
+// for L = 32: 1e-3 pixel at a depth of 1.6 voxels in the post's picture, 2e-5 from the position of its camera. A
 // difference beyond the margin of 1e-3 pixel is not due to rounding. Along the axis of the face that was hit, t is off
 // by e.
 #pragma once

@@ -3,7 +3,7 @@
 // an empty voxel is a quad, projected to the picture; a pixel shows the nearest quad that covers its middle.
 //
 //   corner  (X, Y, W) = (right, up, forward) . (corner - eye), X and Y in pixels; W = 1 without perspective
-//   edge    e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign tells the side, e / |(e_x, e_y)| pixels away
+//   edge    e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign gives the side, e / |(e_x, e_y)| pixels away
 //   inside  all four edges have the sign of the quad; right for quads that reach behind the eye, too
 //   depth   at (x, y) that of the plane: t = (k - eye_a) / direction_a
 //

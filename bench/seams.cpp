@@ -120,7 +120,7 @@ std::vector<SeamTerrain> terrains(std::uint64_t seed) {
   };
   const Placement far{.origin = {123456.7, 123456.7, 0}},
       askew{.turn = turned(0.6, {0, 0, 1}), .origin = {1e3, -2e3, 5}};
-  // On the surface of the earth, counted from its centre.
+  // On the surface of the Earth, relative to its centre.
   const Placement earth{.turn = turned(0.9, {1, 2, 3}), .origin = {4.1e6, 3.2e6, -3.7e6}};
   std::vector<SeamTerrain> all;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
@@ -179,8 +179,7 @@ Ray placed_ray(const SeamTerrain& to, const Ray& ray) {
   return world;
 }
 
-// Whether a hit is where the ray meets the ground, to the accuracy that is promised: a thousandth of a cell,
-// vertically.
+// Whether a hit is where the ray hits the ground, to the promised accuracy: a thousandth of a cell, vertically.
 bool is_on_ground(const SeamTerrain& of, const Ray& ray, const Hit& hit, std::uint64_t seed) {
   const long double t = hit.t, z = ray.origin.z + ray.direction.z * t, room = 1e-3L * of.cell;
   if (std::abs(hit.height - z) > room || z < of.base - room || z > of.base + kRelief + room) return false;

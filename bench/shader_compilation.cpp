@@ -49,7 +49,7 @@ void use_radv(const std::string& family) {
   const std::pair<const char*, std::string> variables[] = {
       {"VK_DRIVER_FILES", manifests}, {"VK_ICD_FILENAMES", manifests},  // the same for older loaders
       {"RADV_FORCE_FAMILY", family},  {"MESA_SHADER_CACHE_DISABLE", "true"},
-      {"NODEVICE_SELECT", "1"},  // Mesa's layer that sorts devices, which asks the window system
+      {"NODEVICE_SELECT", "1"},  // Mesa's layer that sorts devices, which queries the window system
   };
   for (const auto& [name, value] : variables) ::setenv(name, value.c_str(), 1);
   // Figures are those of the driver's defaults.

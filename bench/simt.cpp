@@ -65,7 +65,7 @@ struct Contender {
   std::optional<SimtNaive> naive;  // nullopt: max-mip
   Judgement judged{};
   std::array<SimtBundle, kBundles.size()> bundles{};  // sums over all bundles of a size
-  double second_pass = 0;                             // share of rays
+  double second_pass = 0;                             // fraction of rays
 };
 
 std::vector<Judge::Answer> answers_of(const March& march, const RaySet& set, const Judge& judge) {

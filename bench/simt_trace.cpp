@@ -48,7 +48,7 @@ glsl::uint highest_of(glsl::uvec2 quad) {
 }  // namespace
 }  // namespace scarp::bench
 
-// The text and its host stay in this file: the library and its tests have hosts of their own.
+// The text and its host stay in this file: the library and its tests have their own hosts.
 #undef SCARP_GLSL_BEGIN
 #undef SCARP_GLSL_END
 #define SCARP_GLSL_BEGIN  \

@@ -31,7 +31,7 @@ constexpr std::uint64_t kMasks = std::uint64_t{1} << 41, kMarks = std::uint64_t{
 }  // namespace
 }  // namespace scarp::bench
 
-// The text and its host stay in this file: the library and its tests have hosts of their own.
+// The text and its host stay in this file: the library and its tests have their own hosts.
 #undef SCARP_GLSL_BEGIN
 #undef SCARP_GLSL_END
 #define SCARP_GLSL_BEGIN  \

@@ -103,7 +103,7 @@ class Total {
   std::array<Counts, kKinds> counts_;
 };
 
-// Rays that have been answered one by one, to be asked together.
+// Rays that have been traced one by one, to be traced together.
 struct Together {
   VoxelPacket packet;
   std::array<VoxelHit, VoxelPacket::kRays> expected;

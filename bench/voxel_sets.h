@@ -15,8 +15,8 @@
 
 namespace scarp::bench {
 
-/// standard: a ball of radius 15.5, each voxel with a colour of its own. degenerate: one voxel, in the far corner.
-/// empty: none. far-wall: a layer at the end of z.
+/// standard: a ball of radius 15.5, each voxel with its own colour. degenerate: one voxel, in the far corner. empty:
+/// none. far-wall: a layer at the end of z.
 inline constexpr std::array<std::string_view, 4> kVoxelSets = {"standard", "degenerate", "empty", "far-wall"};
 
 constexpr int kObjectSide = 32;

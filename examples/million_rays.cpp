@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A million rays in one call: the part of a terrain that an oblique view sees, and how much of that lies in shadow.
+// A million rays in one call: the part of a terrain that an oblique view sees, and how much of that is in shadow.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

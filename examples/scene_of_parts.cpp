@@ -18,7 +18,7 @@ int main() {
   const auto tower = scarp::Voxels::copy(volume.data(), {4, 4, 40}, {.side = 5.0});
   const auto ball = scarp::scene_shape(scarp::DistanceField(scarp::make_shape(scarp::shape::Sphere{.radius = 30})));
 
-  // The parts' places in metres. Two balls share one field.
+  // The positions of the parts in metres. Two balls share one field.
   const scarp::Scene scene = scarp::combine({{terrain},
                                              {tower, {.origin = {300, 500, 25}}},
                                              {ball, {.origin = {500, 500, 120}}},

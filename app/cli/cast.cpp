@@ -49,7 +49,7 @@ constexpr std::string_view kFirstHit = "marches of other fields return the first
 // Below the options in the help.
 constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
   x,y,z                 origin
-  dx,dy,dz              direction; t counts in its length
+  dx,dy,dz              direction; its length is the unit of t
   or tx,ty,tz           target instead of a direction: t is 1 there, and the ray ends there
   t_min,t_max           optional range of t (0 to infinity; 0 to 1 with a target)
   start_col,start_row   optional cell of the terrain on whose surface the ray starts
@@ -63,7 +63,7 @@ Coordinates (--crs), also of --mesh-at; z is always in metres:
   lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
 
 Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row, position u,v in
-the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For other inputs than terrain also
+the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For inputs other than terrain also
 object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.)";
 
 struct CastOptions : InputOptions {

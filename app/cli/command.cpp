@@ -282,7 +282,7 @@ void Program::run(int argc, char** argv) {
     const auto subs = app.get_subcommands();
     wrong = what_is_wrong(error, app, subs.empty() ? nullptr : subs.front());
   }
-  // Help is printed whatever else was typed.
+  // Help is printed regardless of other arguments.
   const auto topic_of = [](const CLI::Option& option) {
     return option.results().empty() ? std::string() : option.results().front();
   };

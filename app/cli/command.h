@@ -58,7 +58,7 @@ class Command {
   const std::vector<Typed>& all_typed() const { return typed_; }
   /// The names of the options that were typed and have no effect.
   std::vector<std::string> without_effect(const Use& use) const;
-  /// Sets the variables and runs. Throws WrongUsage, and whatever the subcommand throws.
+  /// Sets the variables and runs. Throws WrongUsage and the exceptions of the subcommand.
   void run(std::vector<Typed> typed);
 
  private:
@@ -84,7 +84,7 @@ class Program {
   std::vector<const Command*> commands() const;
   const Command* find(std::string_view name) const;
 
-  /// Parses and runs. Throws WrongUsage, and whatever the subcommand throws.
+  /// Parses and runs. Throws WrongUsage and the exceptions of the subcommand.
   void run(int argc, char** argv);
   /// The words of the command line after the program's name.
   const std::vector<std::string>& words() const { return words_; }

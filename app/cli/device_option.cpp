@@ -37,10 +37,11 @@ void add_device_option(Command& command, std::string& device) {
 void add_voxel_drawing_option(Command& command, std::string& drawing, const std::string& device) {
   command.add(&drawing, {.names = "--voxel-drawing",
                          .value = "WAY",
-                         .help = "how the device answers the camera's rays over voxels, with the same picture: by a "
-                                 "hierarchy of boxes, or by drawing the boxes as triangles",
+                         .help = "method for camera rays over voxels on the device",
                          .choices = {"compute", "proxies"},
                          .closed = true,
+                         .note = "compute: hierarchy of boxes; proxies: boxes drawn as triangles; the picture is the "
+                                 "same",
                          .inputs = {kVoxels | kScene, "only voxels are drawn"},
                          .rules = {needs("--device NAME", [&device] { return !device.empty(); })}});
 }

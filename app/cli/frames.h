@@ -23,7 +23,7 @@ struct FrameOptions {
 
 void add_frame_options(Command& command, FrameOptions& options);
 
-/// Throws Error where several frames have an output without a place for their number.
+/// Throws Error if several frames have an output without a place for their number.
 void check_frames(const FrameOptions& options, const std::string& output);
 
 /// Converts positions of a table to world metres.

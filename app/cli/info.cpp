@@ -167,7 +167,7 @@ void add_info(Program& program) {
   const auto options = std::make_shared<InfoOptions>();
   add_raster_inputs(command, options->inputs, kEveryFile, false);
   add_json_option(command, options->json);
-  add_function_option(command, options->function, "side of the ground about (0, 0) to examine");
+  add_function_option(command, options->function, "side of the examined ground about (0, 0)");
   add_raster_options(command, options->raster);
   add_vox_options(command, options->vox);
   add_mesh_up_option(command, options->mesh);

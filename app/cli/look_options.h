@@ -12,7 +12,7 @@
 
 namespace scarp::cli {
 
-/// Files that a picture needs beside its input; empty: none.
+/// Files that a picture needs in addition to its input; empty: none.
 struct PictureFileNames {
   std::string ramp;  ///< .cpt, .txt, .clr or .png
   std::string detail_texture;
@@ -24,8 +24,8 @@ struct PictureFileNames {
 /// Declares the options. Both structures must outlive the command.
 void add_look_options(Command& command, PictureRequest& request, PictureFileNames& files);
 
-/// Reads the ramp and the detail texture. Throws Error naming the file, and if the ramp has heights of its own besides
-/// those of the request.
+/// Reads the ramp and the detail texture. Throws Error naming the file, also if both the ramp and the request define
+/// heights.
 PictureFiles read_picture_files(const PictureFileNames& files, const PictureRequest& request);
 
 /// The image of --overlay; no image without the option.

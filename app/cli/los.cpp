@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp los`: lines of sight between places of an elevation model.
+// `scarp los`: lines of sight between points of an elevation model.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -33,9 +33,9 @@ constexpr const char* kOutput = R"(Output, one row or line per line of sight:
   distance      horizontal, metres
   eye,target    heights above sea, metres
   clearance     least height of the line above the ground, metres; negative if blocked
-  clearance_at  distance of that place from the observer
-  block_x,y     place of the first ground that blocks, in --crs
-  block_height  of that ground above sea
+  clearance_at  distance of that point from the observer
+  block_x,y     position of the first blocking ground, in --crs
+  block_height  height of that ground above sea, metres
   block_at      its distance from the observer
 GeoJSON has longitude and latitude. With --parts each blocked line is two
 features, `visible` up to the obstruction and `blocked` beyond it.)";
@@ -198,13 +198,13 @@ void run(LosOptions options, const Command& command) {
 }  // namespace
 
 void add_los(Program& program) {
-  Command& command = program.add("los", "Test lines of sight between places of an elevation model");
+  Command& command = program.add("los", "Test lines of sight between points of an elevation model");
   const auto options = std::make_shared<LosOptions>();
   LosOptions& o = *options;
   add_sight_places(command, o.places);
   add_output_option(command, o.output, "result: .csv or .geojson; -: CSV to standard output", "csv geojson", false);
   command.add(&o.parts, {.names = "--parts",
-                         .help = "two lines in GeoJSON for each that is blocked: up to the obstruction, and beyond",
+                         .help = "split blocked lines in GeoJSON in two: up to the obstruction, and beyond it",
                          .common = true,
                          .rules = {needs("a .geojson output", [&o] { return is_json(o.output); })}});
   add_sight_heights(command, o.heights);

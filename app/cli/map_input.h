@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The input of subcommands that compute maps: one elevation model, places on it, and a plane in metres around a place.
+// The input of subcommands that compute maps: one elevation model, points on it, and a plane in metres around a point.
 #pragma once
 
 #include <optional>
@@ -57,7 +57,7 @@ class MapInput {
   SightCurvature curvature() const;
   std::string curvature_text() const;
 
-  /// Position in columns and rows. `what` begins messages. Throws Error for a place outside the samples.
+  /// Position in columns and rows. Messages start with `what`. Throws Error for a position outside the samples.
   dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// Position in columns and rows of a place that may lie outside.
   dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;

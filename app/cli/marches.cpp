@@ -80,7 +80,7 @@ void print_presets(const std::vector<Row>& rows) {
   }
 }
 
-// Name, guarantee and so on in columns; parameters and description, which are long, on lines of their own.
+// Name, guarantee and so on in columns; parameters and description, which are long, on separate lines.
 void print_plain(const std::vector<Row>& rows) {
   constexpr std::size_t kColumns = 4;
   std::array<std::size_t, kColumns> widths{};

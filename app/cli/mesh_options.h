@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangle meshes: added to any scene by --mesh, or as an input of their own.
+// Triangle meshes: added to any scene by --mesh, or as the input itself.
 #pragma once
 
 #include <nlohmann/json.hpp>

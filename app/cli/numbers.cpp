@@ -54,7 +54,7 @@ std::vector<double> ground_numbers_from(std::string_view text, std::size_t least
 }
 
 std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example) {
-  constexpr double kMost = 1e9;  // of a slip; the picture's own limit is far below
+  constexpr double kMost = 1e9;  // against typing errors; the picture's own limit is far below
   const std::string form = fmt::format("WIDTHxHEIGHT in pixels, for example {}", example);
   const auto numbers = numbers_from(text, 'x', 2, 2, option, form);
   for (const double number : numbers) {

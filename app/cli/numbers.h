@@ -41,7 +41,7 @@ std::vector<double> ground_numbers_from(std::string_view text, std::size_t least
 /// Width and height in pixels, "WIDTHxHEIGHT". Throws Error as numbers_from() does; `example` is "1280x720".
 std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example);
 
-/// A length above 0 for messages, three digits of it at least and no power of ten: "0.25", "17.3", "3660".
+/// A length above 0 for messages, with at least three digits and no exponent: "0.25", "17.3", "3660".
 std::string metres_text(double metres);
 
 }  // namespace scarp::cli

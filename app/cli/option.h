@@ -79,10 +79,10 @@ struct Rule {
 /// "has no effect without --water M".
 Rule needs(const std::string& what, std::function<bool()> met, unsigned of = kEveryInput);
 
-/// Where the value goes. A Setter parses the text itself and throws Error or WrongUsage. bool* without a value name,
-/// and Off, are flags.
+/// Destination of the value. A Setter parses the text itself and throws Error or WrongUsage. bool* without a value
+/// name, and Off, are flags.
 using Setter = std::function<void(const std::string& text)>;
-/// The value that a flag switches off.
+/// A value that a flag switches off.
 struct Off {
   std::optional<bool>* what;
 };
@@ -103,7 +103,7 @@ struct Option {
   std::string note{};                   ///< further details: "0: none"
   bool repeats = false;                 ///< for several values: one per mention; otherwise any number
   std::string fallback{};               ///< the default in words; empty: the value of the variable
-  std::function<std::string()> now{};   ///< what a Setter has set, as text; empty: nothing
+  std::function<std::string()> now{};   ///< the value set by a Setter, as text; empty: none
   Topic topic = Topic::general;         //
   bool common = false;                  ///< shown by a plain `--help`
   bool required = false;                //

@@ -16,7 +16,7 @@
 
 namespace scarp::cli {
 
-/// The place of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster of so many rows.
+/// The place of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster of this many rows.
 /// Nullopt without a georeference.
 std::optional<MapPlace> place_of_map(const Camera& camera, int width, int height, const Georeference& georeference,
                                      int cols, int rows);

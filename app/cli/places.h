@@ -59,8 +59,8 @@ class Places {
   double exaggeration_;
 };
 
-/// Returns z of the highest surface at (x, y), ground or whatever a vertical ray from above hits; nullopt if there is
-/// none. A plinth does not count.
+/// Returns z of the highest surface at (x, y), the hit of a vertical ray from above; nullopt if there is none. A plinth
+/// does not count.
 std::optional<double> surface_at(const Scene& scene, double x, double y);
 
 /// Horizontal bounds of a scene: of the samples of a raster alone, else of the box. z is 0 or that of the box.

@@ -93,7 +93,7 @@ void stop_if_interrupted() {
 
 Progress terminal_progress(std::string_view what) {
   if (::isatty(STDERR_FILENO) == 0) return [](double) { return !stop_wanted(); };
-  // std::function wants to copy its target: the count is shared.
+  // std::function copies its target: the count is shared.
   return [name = std::string(what), ticks = std::make_shared<int>(-1)](double share) {
     const int now = std::clamp(static_cast<int>(share * kTicks), 0, kTicks);
     if (*ticks < 0) {

@@ -32,7 +32,7 @@ void add_raster_output_options(Command& command, RasterOutput& options) {
                                   .common = true});
   command.add(&options.part, {.names = "--part",
                               .value = "I/N",
-                              .help = "part I of N of the output, as a raster of its own",
+                              .help = "part I of N of the output, as a separate raster",
                               .note = "bands of rows, from north to south",
                               .fallback = "all",
                               .common = true});

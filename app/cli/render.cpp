@@ -18,7 +18,7 @@
 namespace scarp::cli {
 namespace {
 
-// Whether the output can hold what is asked for.
+// Whether the output can hold the requested content.
 void check_output(const RenderOptions& options) {
   const PictureFormat& format = picture_format_of(options.output);
   const PictureSettings picture = resolve(options.picture, {});

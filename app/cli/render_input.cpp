@@ -19,11 +19,11 @@ namespace scarp::cli {
 namespace {
 
 // Samples, or pixels of an overlay, for a picture of everything: 4 x 4 to a pixel. The near ground of a slanted view
-// has pixels about four times as close as the mean, and the others have some to spare.
+// has pixels about four times as close as the mean, and other views have enough.
 constexpr std::int64_t kSamplesPerPixel = 16;
 
-// The samples that a picture shows. A small picture has as many as one of 1000 x 1000 pixels, which read as fast; views
-// of a part have as many as rasters that are read completely.
+// The samples that a picture shows. A small picture has as many as one of 1000 x 1000 pixels, which reads equally fast;
+// views of a part have as many as rasters that are read completely.
 std::int64_t samples_shown(const RenderOptions& options, ImageSize size) {
   constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const CameraOptions& camera = options.camera;
@@ -161,7 +161,7 @@ RenderInput with_defaults(InputKind kind, OpenedInput opened, const RenderOption
   return model(std::move(opened), options);
 }
 
-// The input of rays: large rasters in the detail of the picture, functions as far as one sees.
+// The input of rays: large rasters in the detail of the picture, functions up to the view distance.
 InputOptions input_of(InputKind kind, const RenderOptions& options, ImageSize size) {
   InputOptions input = options;
   if (kind == InputKind::terrain && !reads_all_samples(options)) {
@@ -176,7 +176,7 @@ InputOptions input_of(InputKind kind, const RenderOptions& options, ImageSize si
 
 }  // namespace
 
-// Looks that measure do.
+// Applies to looks that measure.
 bool reads_all_samples(const RenderOptions& options) {
   const Look look = look_of(options.picture);
   const bool measures = entry_of(look).measures;

@@ -131,7 +131,7 @@ void add_light_options(Command& command, RenderOptions& o) {
   };
   const PictureSettings usual;
   PictureRequest& picture = o.picture;
-  // The number of samples may stand in the scene's file.
+  // The scene file may set the number of samples.
   const Rule sampled = needs(
       "--samples N", [&picture] { return picture.samples.value_or(0) > 0; }, kEveryInput & ~kScene);
   const auto set_sun = [&picture](const std::string& text) {

@@ -33,7 +33,7 @@ struct TypedArea {
   std::string text;
 };
 
-/// From where a picture is seen.
+/// The viewpoint of a picture.
 struct CameraOptions {
   std::optional<TypedView> view;
   std::optional<TypedPlace> eye, target;
@@ -56,7 +56,7 @@ struct RenderOptions : InputOptions {
   bool no_plinth = false;
   bool full = false;  ///< reads all samples of large rasters
   int threads = 0;
-  std::vector<std::string> typed;  ///< the values that were typed: files among them are not written over
+  std::vector<std::string> typed;  ///< the typed values: files among them are not overwritten
 };
 
 /// Declares the options of pictures; if `written`, those of files, figures and several frames as well.
@@ -68,7 +68,7 @@ Command& declare_render(Program& program, RenderOptions& options);
 /// Returns the view of the options over the defaults of a look.
 ViewSettings view_of(const CameraOptions& camera, Look look);
 
-/// Checks whatever needs neither the input nor the output. Throws Error.
+/// Checks everything that needs neither the input nor the output. Throws Error.
 void check_picture(const RenderOptions& options);
 
 }  // namespace scarp::cli

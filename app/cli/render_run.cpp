@@ -61,7 +61,7 @@ class Render {
         [&](const ViewSettings& turned) { return stage_.framed(turned); }, stage_.path_places());
     std::vector<std::string> inputs = options().typed;
     inputs.insert(inputs.end(), stage_.input().files.begin(), stage_.input().files.end());
-    // Without --overwrite nothing is written over.
+    // Without --overwrite no file is overwritten.
     for (int i = 0; frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options().output, i), inputs);
     make_frames(frames, options().output, cameras, [&](Camera camera, const std::string& name) {
@@ -97,7 +97,7 @@ class Render {
                                 stage_.input().raster.rows};
     std::optional<Figure> figure = figure_of(options().figure, settings, subject);
     Picture picture = render_picture(stage_.scene(), camera, settings, progress);
-    // Green throughout is what the look of errors should be.
+    // The look of errors should be green throughout.
     look_if_blank(name, settings, camera, settings.look != Look::error && has_one_colour(picture.image));
     add_legend(options().figure, settings, subject, picture, figure);
     std::optional<MapPlace> place;
@@ -128,7 +128,7 @@ class Render {
     }
   }
 
-  // Contour lines of which nothing is seen.
+  // Contour lines that are invisible.
   void tell_of_contours(const PictureSettings& settings, const Camera& camera) const {
     const double interval = settings.ground.contours;
     if (!(interval > 0)) return;

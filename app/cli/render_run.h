@@ -6,7 +6,7 @@
 
 namespace scarp::cli {
 
-/// The options are consistent with each other. Throws Error.
+/// The options must be consistent with each other. Throws Error.
 void render_input(InputKind kind, RenderOptions options);
 
 }  // namespace scarp::cli

@@ -33,10 +33,10 @@ SceneDetail detail_of(const Camera& camera, int aa) {
   return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
 }
 
-// How far the camera's rays go: infinitely far, except over ground that wraps round. There, unless it is asked for, as
-// far as pictures are about, and from outside of the box farther: ways to a field of which twice are as far as its
-// corners behind. They are farther off than the field's longer side and the way to it by less than half of that side,
-// and who sees all of a field is farther away.
+// Maximum length of camera rays: infinite, except over wrapped ground. There, unless requested, the extent of the
+// picture, and from outside of the box twice the distance to the field in addition. That reaches the field's far
+// corners: their distance exceeds the sum of the longer side and the distance to the field by less than half of that
+// side, and a camera that sees a whole field is farther away.
 double reach_of(const PictureRequest& asked, double across, const Scene& scene, const WorldBox& box,
                 const Camera& camera) {
   constexpr double kFarthestCorner = 2;
@@ -105,7 +105,7 @@ WorldBox RenderStage::scene_box() const {
 
 void RenderStage::finish(Camera& camera, const RenderOptions& options) {
   camera.set_reach(reach_of(options.picture, subject_.across, scene_, scene_box(), camera));
-  // The judge has to stop where the march does.
+  // The judge must stop where the march does.
   if (kind_ == InputKind::function && look_of(options.picture) == Look::error)
     camera.set_reach(std::min(camera.reach(), input_.function_reach));
   if (input_.coarse_voxels)

@@ -19,7 +19,7 @@ namespace scarp::cli {
 
 class RenderStage {
  public:
-  /// The options are consistent with each other; `size` is that of pictures for which they ask none.
+  /// The options must be consistent with each other; `size` is the default size of pictures.
   RenderStage(InputKind kind, RenderOptions options, ImageSize size = PictureSubject{}.size)
       : options_(std::move(options)), kind_(kind), size_(size) {}
   RenderStage(const RenderStage&) = delete;
@@ -59,14 +59,14 @@ class RenderStage {
   /// A camera that frames the scene.
   Camera framed(const ViewSettings& view);
   PathPlaces path_places() const;
-  /// Sets how far the camera's rays go, and makes voxels as coarse as it sees them.
+  /// Sets the maximum length of the camera's rays, and coarsens voxels for it.
   void finish(Camera& camera) { finish(camera, options_); }
   void finish(Camera& camera, const RenderOptions& options);
 
-  /// Whether the input, as it was opened, has pictures for another value of the option.
+  /// Whether the opened input supports pictures with another value of the option.
   bool serves(const Declared& option) const;
-  /// Whether it has them for other options, which differ by such options alone. They may need other samples of a large
-  /// raster.
+  /// Whether it supports them with other options, which differ only by such options. They may need other samples of a
+  /// large raster.
   bool serves(const RenderOptions& options) const;
 
  private:

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 bool is_scene_path(const std::string& path) { return extension_of(path) == ".json"; }
 
-// For options that need something that the command line or the file may have.
+// For options that need another one on the command line or in the file.
 struct Asked {
   std::string_view option;
   bool given;

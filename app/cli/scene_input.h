@@ -16,7 +16,7 @@ namespace scarp::cli {
 /// Whether the input is a scene. Throws Error if there are other inputs as well.
 bool is_scene_input(const std::vector<std::string>& inputs);
 
-/// Returns the picture that the file itself asks for.
+/// Returns the picture request of the file itself.
 PictureRequest request_of(const SceneFile& file);
 /// Throws Error naming the first option of the request that has no effect together with the file.
 void check_effect(const PictureRequest& asked, const SceneFile& file);

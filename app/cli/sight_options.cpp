@@ -14,18 +14,18 @@ TablePlace typed_height_place(const std::string& text, std::string_view option) 
 
 void add_sight_heights(Command& command, SightHeights& heights) {
   command.add(&heights.observer, {.names = "--observer-height",
-                                  .help = "height of observers above ground that have none of their own",
+                                  .help = "default height of observers above ground",
                                   .unit = "metres",
                                   .range = {0, kMostOfGround},
                                   .common = true});
   command.add(&heights.target, {.names = "--target-height",
-                                .help = "height of targets above ground that have none of their own",
+                                .help = "default height of targets above ground",
                                 .unit = "metres",
                                 .range = {0, kMostOfGround},
                                 .common = true});
   command.add(&heights.datum, {.names = "--heights",
                                .value = "DATUM",
-                               .help = "what heights of places count from",
+                               .help = "reference of the heights of points",
                                .choices = {"ground", "sea"},
                                .closed = true,
                                .common = true});

@@ -14,7 +14,7 @@ namespace scarp::cli {
 
 struct SightHeights {
   double observer = 2, target = 0;  ///< metres
-  std::string datum = "ground";     ///< vertical reference of the heights of places
+  std::string datum = "ground";     ///< vertical reference of the heights of points
 };
 
 /// Declares --observer-height, --target-height and --heights.
@@ -23,7 +23,7 @@ void add_sight_heights(Command& command, SightHeights& heights);
 /// Parses X,Y or X,Y,HEIGHT. Throws Error "OPTION 'TEXT': expected ...".
 TablePlace typed_height_place(const std::string& text, std::string_view option);
 
-/// Lines between places.
+/// Lines between points.
 struct SightPlaces {
   std::vector<std::string> from, to;  ///< X,Y[,H]
   std::string lines;                  ///< a file

@@ -38,7 +38,7 @@ Command& declare_view(Program& program, ViewOptions& o) {
   command.example("scarp view dem.tif");
   command.example("scarp view city.vox --samples 16");
   command.example("scarp view dem.tif --march naive --look steps");
-  command.footer("In the window, F1 shows mouse and keys.");
+  command.footer("Press F1 in the window for a list of mouse and keyboard controls.");
   return command;
 }
 

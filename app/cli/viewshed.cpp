@@ -388,7 +388,7 @@ void add_viewshed(Program& program) {
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
   command.add(&o.mode, {.names = "--mode",
                         .value = "MODE",
-                        .help = "what pixels hold",
+                        .help = "content of pixels",
                         .choices = {"visible", "count", "dem", "ground", "angle", "NORMAL", "ACCUM", "DEM", "GROUND"},
                         .closed = true,
                         .common = true});

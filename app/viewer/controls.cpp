@@ -19,7 +19,7 @@ namespace {
 
 // Sliders without declared limits range from a fraction to a multiple of the default.
 constexpr double kSpan = 64;
-// Sliders of lengths go down to this share of the picture's extent, and those of heights beyond the highest ground.
+// Sliders of lengths go down to this fraction of the picture's extent, and those of heights beyond the highest ground.
 constexpr double kLeastLength = 1e-3, kBeyond = 0.25;
 constexpr double kMostCount = 100;  // of integers without a limit
 // Larger ranges get no slider.
@@ -94,7 +94,7 @@ class Maker {
  private:
   // The last value that was typed; empty: none.
   std::string typed(const cli::Declared& declared) const { return opening_.command().value(declared.name); }
-  // The value in force, as text.
+  // The current value, as text.
   std::string now(const cli::Declared& declared) const {
     std::string text = declared.option.now ? declared.option.now() : typed(declared);
     return text.empty() ? first_default(declared) : text;

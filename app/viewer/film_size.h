@@ -13,7 +13,7 @@ ImageSize film_size(const PictureRequest& picture, int width, int height);
 /// Returns the request with the size that fills a window.
 PictureRequest for_window(PictureRequest picture, int width, int height);
 
-/// Returns the window that the size of the request fills; nullopt: it asks for none.
+/// Returns the window that the size of the request fills; nullopt without a requested size.
 std::optional<ImageSize> window_size(const PictureRequest& picture);
 
 }  // namespace scarp::viewer

@@ -24,7 +24,7 @@ struct Opening {
   std::shared_ptr<cli::Program> program;  ///< its declarations are bound to `options`
   std::shared_ptr<cli::ViewOptions> options;
   cli::InputKind kind;
-  /// Everything that was typed or set in the window, the newest last; those that have no effect now are not in
+  /// Everything that was typed or set in the window, the newest last; those without current effect are not in
   /// `options`.
   std::vector<GivenOption> given{};
 

@@ -4,7 +4,7 @@
 //   while moving   few rows, as many as can be traced in a frame; one sample per pixel, hard shadows
 //   then           full resolution, one sample per pixel
 //   refining       more and more samples, see refinement_of()
-//   at rest        the settings as they were asked for: what `scarp render` writes
+//   at rest        the settings as requested: the picture of `scarp render`
 //   afterwards     some rays of the picture are judged
 //
 // A picture may have two sides, such as the same view by two marches. Each stage renders both.
@@ -67,9 +67,9 @@ class PictureWorker {
   PictureWorker(const PictureWorker&) = delete;
   PictureWorker& operator=(const PictureWorker&) = delete;
 
-  /// Replaces the request before. Returns its generation.
+  /// Replaces the previous request. Returns the new generation.
   std::uint64_t request(ViewRequest request);
-  /// The newest picture that was not taken yet.
+  /// The newest picture that has not been taken yet.
   std::optional<WorkedPicture> take();
   /// Returns the newest verdict not yet taken.
   std::optional<WorkedVerdict> take_verdict();

@@ -23,7 +23,7 @@ std::unique_ptr<CoordinateFrame> frame_of(const cli::PlaceRaster& raster, Coordi
   try {
     return std::make_unique<CoordinateFrame>(raster.georeference, raster.cols, raster.rows, coordinates);
   } catch (const Error&) {
-    return {};  // without a CRS, or one that PROJ does not know
+    return {};  // without a CRS, or one unknown to PROJ
   }
 }
 

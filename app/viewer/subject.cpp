@@ -61,7 +61,7 @@ Subject::Side Subject::open(Opening opening) const {
   return side_by(opened, std::move(opening));
 }
 
-// The options of the opening then show what is in force, for the controls.
+// The options of the opening then have the current values, for the controls.
 Subject::Side Subject::side_by(const std::shared_ptr<Opened>& opened, Opening opening) {
   const cli::RenderStage& stage = opened->stage;
   auto options = std::make_shared<const cli::RenderOptions>(*opening.options);
@@ -106,7 +106,7 @@ std::vector<std::string> Subject::comparisons() const {
   std::vector<std::string> words;
   for (const std::string& march : marches_for(opening().kind)) words.push_back("march " + march);
   for (const LookEntry& look : looks()) {
-    // Large pixels have another size, and levels a number.
+    // Large pixels have a different size, and levels a number.
     if (!look.large_pixels && look.look != Look::level) words.push_back("look " + std::string(look.name));
   }
   return words;

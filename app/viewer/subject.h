@@ -64,13 +64,13 @@ class Subject {
   struct Side {
     Opening opening;
     std::shared_ptr<Opened> opened;
-    std::shared_ptr<const cli::RenderOptions> options;  ///< as typed; those of the opening show what is in force
+    std::shared_ptr<const cli::RenderOptions> options;  ///< as typed; those of the opening have the current values
     PictureSettings settings{};                         ///< for any camera
   };
 
   Side open(Opening opening) const;
   static Side side_by(const std::shared_ptr<Opened>& opened, Opening opening);
-  // Without reading the inputs again, if it can be.
+  // Without rereading the inputs, if possible.
   Side side_of(Opening opening, const Side& like, const Side* or_like) const;
   std::optional<Side> beside(const Side& main) const;
   OptionChange comparison() const;

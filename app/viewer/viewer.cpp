@@ -103,7 +103,7 @@ class Viewer {
 
   void navigate(const Camera& first) {
     const cli::RenderInput& input = subject_->stage().input();
-    // Rays of single points are the CPU's.
+    // The CPU traces rays of single points.
     navigator_ =
         std::make_unique<Navigator>(subject_->stage().given_scene(), first, input.view.fov_deg, input.subject.across);
     frames_ = std::make_unique<ReadingFrames>(input.raster);
@@ -430,7 +430,7 @@ class Viewer {
   bool is_complete() const {
     return shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_;
   }
-  // Independent of the displayed picture: recordings end at the same view, however long pictures take.
+  // Independent of the displayed picture: recordings end at the same view, regardless of rendering times.
   bool compares() const { return !subject_->compared().empty(); }
 
   void show_sides() {

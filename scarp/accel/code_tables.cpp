@@ -20,7 +20,7 @@ constexpr float kHighest = std::numeric_limits<float>::max();
 Key key_of(float sample) { return glsl::float_key(std::bit_cast<std::uint32_t>(sample)); }
 float sample_of(Key key) { return std::bit_cast<float>(glsl::float_bits(key)); }
 
-// Key of a float near a place on the code scale.
+// Key of a float near a position on the code scale.
 Key key_near(const HeightCode& code, double place) {
   return key_of(static_cast<float>(std::clamp(code.base + code.step * place, -double{kHighest}, double{kHighest})));
 }

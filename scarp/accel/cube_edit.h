@@ -5,7 +5,8 @@
 // are searched from the box outwards: a step towards it lowers both distances by one, so that one beyond another that
 // keeps its distance keeps its own. They restart at 255; one pass with rising and one with falling coordinates then
 // spread distances among them and from their neighbours. Source of the passes: A. Rosenfeld, J. Pfaltz, "Distance
-// functions on digital pictures", Pattern Recognition 1968. Cost: the rows of these voxels, whatever the grid contains.
+// functions on digital pictures", Pattern Recognition 1968. Cost: the rows of these voxels, for any content of the
+// grid.
 #pragma once
 
 #include "scarp/accel/voxel_bytes.h"

@@ -86,7 +86,7 @@ struct GroundBuffers {
 // Quads lie in rows of ground_quad_stride() quads: level 1 on top, below it the other levels side by side.
 SCARP_FN uint ground_quad_stride(uint level_1_cols, uint top_level) { return level_1_cols + top_level; }
 
-/// Index of the quad of block (col, row) of a level, 1 .. top_level. The level begins where no coarser one can reach:
+/// Index of the quad of block (col, row) of a level, 1 .. top_level. The level starts where no coarser one can reach:
 /// level l has at most (level_1_cols >> (l - 1)) + 1 columns.
 SCARP_FN uint ground_quad(uint level_1_cols, uint level_1_rows, uint stride, uint level, uint col, uint row) {
   uint begin = level_1_rows * stride + level_1_cols - (level_1_cols >> (level - 2u)) + (level - 2u);

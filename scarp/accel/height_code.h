@@ -33,7 +33,7 @@ SampleRange code_range(const HeightField& field, const std::optional<SampleRange
 /// Returns whether the field's samples are still in range; always true for 16-bit samples, whose codes cover all
 /// values.
 bool is_in_range(const HeightField& field, const SampleRange& range);
-/// Returns the mapping for a range. For 16-bit samples codes equal the samples, whatever the range.
+/// Returns the mapping for a range. For 16-bit samples codes equal the samples, for any range.
 HeightCode height_code(SampleType type, const SampleRange& range);
 
 }  // namespace scarp

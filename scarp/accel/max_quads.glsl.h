@@ -23,7 +23,7 @@ const float kQuadRounding = 0.03125f;
 // Factor that covers the rounding of a difference of two floats.
 const float kReliefRounding = 1.0f + 2.384185791015625e-7f;  // 2^-22
 
-/// Least code not below a height, in floats. A code of 65535 stands for the highest sample, whatever rounding says.
+/// Least code not below a height, in floats. A code of 65535 stands for the highest sample, regardless of rounding.
 SCARP_FN uint scarp_code_above(float height, float code_base, float code_base_low, float code_per_step) {
   float code = ceil(((height - code_base) - code_base_low) * code_per_step + kQuadRounding);
   return uint(clamp(code, 0.0f, 65535.0f));

@@ -6,7 +6,7 @@
 //   along z   the minimum of that and 1 + the slab ahead: its row, the row ahead of that, and the next voxels along x
 //
 // This is exact: values of the slab ahead differ by at most 1 between adjacent voxels, so they need not spread along x
-// and y again. Octants that differ in z alone share all but the last step.
+// and y again. Octants that differ only in z share all but the last step.
 #pragma once
 
 #include "scarp/accel/voxel_bytes.h"

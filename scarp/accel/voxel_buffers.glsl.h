@@ -42,7 +42,7 @@ struct ScarpVoxelGrid {
   uint none;
 };
 
-/// A grid in its place; p_grid = grid_from_world * (p_world - origin).
+/// A placed grid; p_grid = grid_from_world * (p_world - origin).
 struct ScarpVoxelObject {
   dvec3 origin;
   uint grid;

@@ -7,7 +7,7 @@
 //
 // One axis after the other: along x in strides of 1, 2, 4, ...; then each row takes the values of its neighbour in y
 // and of that row's neighbours in x; then each slab likewise along z. This is exact: a shortest path goes along x
-// first, then along x and y, then along all three. O(n), whatever the grid contains. Source: A. Rosenfeld, J. Pfaltz,
+// first, then along x and y, then along all three. O(n) for any content of the grid. Source: A. Rosenfeld, J. Pfaltz,
 // "Distance functions on digital pictures", Pattern Recognition 1968 (the two passes of its chessboard distance).
 #pragma once
 

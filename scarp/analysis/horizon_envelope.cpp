@@ -204,7 +204,7 @@ void HorizonEnvelope::merge(const std::vector<HorizonSegment>& segments) {
     const HorizonSegment& segment = segments[n];
     if (!(segment.begin < segment.end)) continue;
     const std::size_t first = find(segment.begin, i);
-    // A piece that begins at the start of the segment is merged with it.
+    // A piece that starts at the start of the segment is merged with it.
     const std::size_t copied = pieces_[first].begin == segment.begin ? first - 1 : first;
     if (copied > i) {
       // Added by put() instead of copied: the previous piece may be the same edge, or have no width.

@@ -9,7 +9,7 @@
 //    o            o____o
 //                           u
 //
-// Pieces keep the line of their edge, however often others cut them: rounding does not accumulate. Heights are compared
+// Pieces keep the line of their edge even after many cuts by others: rounding does not accumulate. Heights are compared
 // in doubles with a bound of their rounding. Where that is not sure, the end of an edge and another edge are compared
 // exactly, from the samples. At an implicit vertex that is not possible: a piece that may be lower there than what it
 // replaced remembers by how much (`slack`), and targets that close to it are left to the caller.
@@ -25,7 +25,7 @@
 
 namespace scarp {
 
-/// A sample, named by its ring (the line of samples it was met in) and its place along that line.
+/// A sample, identified by its ring (the line of samples in which it occurs) and its index along that line.
 struct HorizonSample {
   int ring = 0;
   int side = 0;
@@ -62,7 +62,7 @@ class HorizonJudge {
   virtual ~HorizonJudge() = default;
   /// Returns the sign of the edge's height minus the sample's, at the sample's position within the edge.
   virtual int edge_above(const HorizonLine& edge, HorizonSample sample) const = 0;
-  /// Returns the same for the target that stands on a sample.
+  /// Returns the same for the target on a sample.
   virtual int edge_above_target(const HorizonLine& edge, HorizonSample target) const = 0;
   /// Returns the position u of a sample.
   virtual double position(HorizonSample sample) const = 0;
@@ -81,9 +81,9 @@ class HorizonEnvelope {
   /// `judge` must outlive the envelope.
   explicit HorizonEnvelope(const HorizonJudge& judge);
 
-  /// Pieces from u = -infinity on; each ends where the next begins. The last is a sentinel at +infinity.
+  /// Pieces from u = -infinity on; each ends where the next starts. The last is a sentinel at +infinity.
   const std::vector<Piece>& pieces() const { return pieces_; }
-  /// Returns the piece that contains u, the later one of two. `hint` is a piece that begins at or before u.
+  /// Returns the piece that contains u, the later one of two. `hint` is a piece that starts at or before u.
   std::size_t find(double u, std::size_t hint = 0) const;
 
   /// Merges segments that are sorted and do not overlap but in their ends.

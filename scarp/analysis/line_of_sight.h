@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Line of sight between two places of a field. sight.h defines what blocks it.
+// Line of sight between two points of a field. sight.h defines what blocks it.
 //
 //   const auto line = scarp::line_of_sight(field, {.col = 10, .row = 20, .height = 2}, {.col = 400, .row = 90});
 //   if (!line.visible) std::printf("blocked after %g m\n", line.obstruction->along * line.distance);
@@ -64,8 +64,8 @@ struct LineOfSight {
 
 class BlockMaxima;
 
-/// Answers one query. Throws as SightLine does. `maxima`, those of the same field, give the same answer sooner where a
-/// field has many lines; without them every crossing is visited.
+/// Answers one query. Throws as SightLine does. `maxima`, those of the same field, speed up many lines over one field,
+/// with the same answers; without them every crossing is visited.
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
                           const SightCurvature& curvature = {}, const BlockMaxima* maxima = nullptr);
 

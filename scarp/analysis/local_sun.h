@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shadows by the sun of every node: its position in the sky, north and the steps to the neighbours are those at the
-// node's own place on Earth, not those at the centre of the field. One ray per node. Requires a build
-// with ERFA (SCARP_ERFA).
+// node's own position on Earth, not those at the centre of the field. One ray per node. Requires a build with ERFA
+// (SCARP_ERFA).
 //
 // A ray keeps the direction that it has at its node; ground beside it is where the field's grid has it. The sun at or
 // below the horizon leaves a node self-shaded.
@@ -28,7 +28,7 @@ struct LocalSun {
 std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                 const Progress& progress = {});
 
-/// Returns the lit share of the sun's disc, as lit_share() does.
+/// Returns the lit fraction of the sun's disc, as lit_share() does.
 std::vector<float> local_lit_share(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                    const Progress& progress = {});
 

@@ -17,7 +17,7 @@ namespace {
 
 RowBand all_rows(const HeightField& field) { return {0, field.rows()}; }
 
-// The rows as a field of their own, over the same samples.
+// The rows as a separate field, over the same samples.
 HeightField rows_of(const HeightField& field, const RowBand& band) {
   if (band == all_rows(field)) return field;
   return field.visit([&](const auto& grid) {

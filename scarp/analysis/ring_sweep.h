@@ -232,7 +232,7 @@ class RingSweep {
   }
 
   // Compares samples with one piece of the horizon.
-  // `on_vertex`: the first is where the piece begins, and the piece before counts there as well.
+  // `on_vertex`: the first is where the piece starts, and the piece before counts there as well.
   void test_under(std::size_t i, int begin, int end, bool on_vertex) {
     const HorizonEnvelope::Piece& piece = horizon_.pieces()[i];
     const RingLine line = self().ring_line(piece.line, piece.error);

@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kStrips = 16;
 constexpr double kUnit = static_cast<double>(SunRay::kUnit);
 
-// Rings across the way of the sun; u in 1/kUnit sides.
+// Rings across the direction of the sun; u in 1/kUnit sides.
 template <class T>
 class ShadowStrip : public RingSweep<ShadowStrip<T>, T> {
   using Base = RingSweep<ShadowStrip<T>, T>;

@@ -8,7 +8,7 @@
 //     |    \  |   upper envelope of all of them is the horizon.
 //     ------o--
 //
-// Guarantee: exact, whatever the threads. Cost: one comparison for nodes in deep shadow, a few for lit ones.
+// Guarantee: exact, for any number of threads. Cost: one comparison for nodes in deep shadow, a few for lit ones.
 #pragma once
 
 #include "scarp/analysis/shadow.h"

@@ -24,8 +24,8 @@ std::span<const SunStrip> sun_strips();
 /// Value of holes in maps of lit shares.
 inline constexpr float kNoShare = -1;
 
-/// Returns the share of the disc that is lit, 0..1, for every node of the band; kNoShare for holes. Strips below the
-/// horizon are dark. Throws as SunGround::rows() does.
+/// Returns the lit fraction of the disc, 0..1, for every node of the band; kNoShare for holes. Strips below the horizon
+/// are dark. Throws as SunGround::rows() does.
 std::vector<float> lit_share(const SunGround& ground, const SunDirection& sun, const RowBand& band,
                              const Progress& progress = {});
 

@@ -19,7 +19,7 @@ struct UtcTime {
 /// fractions. Throws Error: another form, a date that does not exist, a year outside 1900..2100.
 UtcTime parse_time(const std::string& text);
 
-/// A place on Earth, WGS 84.
+/// A position on Earth, WGS 84.
 struct EarthPlace {
   double longitude = 0, latitude = 0;  ///< radians, east and north positive
   double height = 0;                   ///< metres

@@ -20,8 +20,8 @@ struct SectorPart {
 
 /// Maps that a sweep writes, and maxima that it reads. One of the maps is not null.
 struct SectorMaps {
-  Seen* codes = nullptr;    ///< nodes that are visible, if they are `hidden` before
-  double* least = nullptr;  ///< nodes that are not NaN before: their least visible height
+  Seen* codes = nullptr;    ///< `hidden` nodes that are visible are set to `visible`
+  double* least = nullptr;  ///< the least visible height is set at nodes that are not NaN
   /// Adds one for each visible node. Other sweeps may add to the same map at the same time.
   std::uint16_t* counts = nullptr;
   const BlockMaxima* maxima = nullptr;  ///< of the field, for `codes` and `counts`; null: no block is skipped

@@ -14,7 +14,7 @@
 // Blocks of samples that lie below the horizon are skipped: neither they nor their edges rise above it.
 //
 // Source: H. J. Haverkort and L. Toma, "A comparison of I/O-efficient algorithms for visibility computation on massive
-// grid terrains", arXiv 1810.01946, 2018. Guarantee: exact, whatever the threads.
+// grid terrains", arXiv 1810.01946, 2018. Guarantee: exact, for any number of threads.
 #pragma once
 
 #include <cstdint>

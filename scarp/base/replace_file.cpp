@@ -19,8 +19,8 @@ namespace scarp {
 
 namespace fs = std::filesystem;
 
-// An append-only list with reusable entries: a signal handler walks it without a lock and never meets freed memory. The
-// thread that takes a name out of its entry owns the name.
+// An append-only list with reusable entries: a signal handler walks it without a lock and never accesses freed memory.
+// The thread that takes a name out of its entry owns the name.
 struct ReplaceFile::Noted {
   std::atomic<char*> name;
   Noted* next;
@@ -86,7 +86,7 @@ ReplaceFile::~ReplaceFile() {
 
 void ReplaceFile::commit() {
   std::error_code error, none;
-  // A rewritten file keeps its permissions, whatever the writer gave to the temporary file.
+  // A rewritten file keeps its permissions, regardless of those of the temporary file.
   const fs::file_status before = fs::status(path_, none);
   const fs::perms wanted = before.permissions() & fs::perms::all;
   if (fs::exists(before) && (fs::status(temporary_, none).permissions() & fs::perms::all) != wanted) {

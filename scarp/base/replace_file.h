@@ -11,7 +11,7 @@ namespace scarp {
 /// deletes the temporary file.
 class ReplaceFile {
  public:
-  /// Throws Error if `path` is empty, is a directory, or lies in a folder that does not exist or is not writable.
+  /// Throws Error if `path` is empty, is a directory, or is in a folder that does not exist or is not writable.
   explicit ReplaceFile(std::string path);
   ~ReplaceFile();
   ReplaceFile(const ReplaceFile&) = delete;

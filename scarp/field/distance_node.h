@@ -6,8 +6,8 @@
 //       .from = make_shape(shape::Box{.half = {5, 5, 2}}),
 //       .what = make_shape(shape::Moved{ball, {0, 0, 2}}), .smooth = 0.5});
 //
-// Every solid stands upright at its own origin, z up; Moved, Turned and Scaled place it elsewhere. Trees may share
-// nodes. Lengths are metres, angles radians. make_shape() rejects settings out of range, so every Shape is valid.
+// Every solid is upright at its own origin, z up; Moved, Turned and Scaled place it elsewhere. Trees may share nodes.
+// Lengths are metres, angles radians. make_shape() rejects settings out of range, so every Shape is valid.
 // Formulas: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996.
 #pragma once
 

@@ -36,7 +36,7 @@ class SparseTable {
     if (flat()) return values_[index];
     std::uint32_t& chunk = chunks_[index >> kChunkBits];
     if (chunk == 0) {
-      // Kept until the table is destroyed: zeros that come back stay in a chunk of their own.
+      // Kept until the table is destroyed: zeros that come back keep their chunk.
       const std::size_t first = values_.size() - kReadBeyond;
       values_.resize(values_.size() + kChunk);
       chunk = static_cast<std::uint32_t>(first);

@@ -2,7 +2,7 @@
 // Converts rays over terrain functions and against distance fields to the form of the marches in single precision
 // (march/ray_states.glsl.h), and their results back.
 //
-//   Ray, double ──▶ clipped to where the field can be met, two floats per number ──▶ march in floats ──▶ Hit
+//   Ray, double ──▶ clipped to where the field can be hit, two floats per number ──▶ march in floats ──▶ Hit
 #pragma once
 
 #include "scarp/accel/function_words.h"

@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// Throws Error listing the names if the table has no such row.
+/// Throws Error listing the names if the table has no row of this name.
 template <class Entry>
 const Entry& find_entry(std::span<const Entry> table, std::string_view name) {
   std::string names;

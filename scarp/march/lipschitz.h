@@ -45,8 +45,8 @@ std::string lipschitz_caveat(const LipschitzSettings& settings, double slope);
 /// Throws Error when both are missing.
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr);
-/// The same over a terrain function, within settings.function.reach; rounding counts, and rays that start on the
-/// surface first step by 2^-10 of the exit distance.
+/// The same over a terrain function, within settings.function.reach, including rounding. Rays that start on the surface
+/// first step by 2^-10 of the exit distance.
 Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
 

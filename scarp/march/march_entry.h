@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The columns that the tables of marches share. Each kind of field has a table of its own:
+// The columns shared by the tables of marches. Each kind of field has its own table:
 //
 //   height/height_table.h   function/function_table.h   shape/shape_table.h   voxel/voxel_table.h
 //

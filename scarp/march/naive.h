@@ -9,7 +9,7 @@
 // it: its steps are no shorter than this height, and it hits only where it is deeper below ground.
 //
 // The hit is refined on request (Refinement): `secant`, of I. Quilez, "Rainforest", 2016, draws a straight line through
-// the last two clearances, and ends where it meets the tolerance, not the ground.
+// the last two clearances, and ends where it reaches the tolerance, not the ground.
 //
 // Guarantee: approximate. The vertical distance is an overestimate: rays step over steep ground (holes in the picture),
 // and rays that graze the ground stop before it. This is the baseline of the max-mip article, in which this march took
@@ -23,9 +23,9 @@
 
 namespace scarp {
 
-/// Returns the closest hit that this march finds. t lies in the ray's range and inside the field; `height` is the
-/// height of the ray's point there. A ray that starts below the ground hits at its start. A ray that starts on the
-/// surface takes its first step without a test. Uses settings.naive and settings.sampling; no pyramid.
+/// Returns the closest hit that this march finds. t is in the ray's range and inside the field; `height` is the height
+/// of the ray's point there. A ray that starts below the ground hits at its start. A ray that starts on the surface
+/// takes its first step without a test. Uses settings.naive and settings.sampling; no pyramid.
 Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                 MarchStats* stats = nullptr);
 /// The same over a terrain function, within settings.function.reach.

@@ -22,7 +22,7 @@ constexpr std::size_t kRayNumbers = 8;
 static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(double) &&
               offsetof(Ray, t_min) == 6 * sizeof(double) && offsetof(Ray, t_max) == 7 * sizeof(double));
 
-// The numbers of ray(0) to ray(count - 1), each into an array of its own. Vectors of four doubles are read for each ray
+// The numbers of ray(0) to ray(count - 1), each into a separate array. Vectors of four doubles are read for each ray
 // and turned.
 template <class RayAt>
 HWY_INLINE void load_ray_numbers(const RayAt& ray, std::size_t count, double* const (&to)[kRayNumbers]) {
@@ -44,7 +44,7 @@ HWY_INLINE void load_ray_numbers(const RayAt& ray, std::size_t count, double* co
       hn::StoreU(hn::ConcatUpperUpper(d4, cd13, ab13), d4, to[half + 3] + i);
     }
   }
-  if (count % 4 == 0) return;  // which compilers know if the count is a constant
+  if (count % 4 == 0) return;  // known to compilers if the count is a constant
 #endif
   for (; i < count; ++i) {
     for (std::size_t number = 0; number < kRayNumbers; ++number) to[number][i] = numbers_of(i)[number];

@@ -97,8 +97,8 @@ class RaySlices {
   }
 };
 
-/// Rays whose marches, if interrupted, are `under_way`: their state comes back with the answer and goes out again with
-/// the ray (`go_on`).
+/// Rays whose marches, if interrupted, are `under_way`: their state is returned with the answer and sent again with the
+/// ray (`go_on`).
 template <class Kind>
 class RayRuns : public RaySlices<Kind> {
  public:

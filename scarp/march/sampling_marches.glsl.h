@@ -68,7 +68,7 @@ SCARP_FN bool scarp_sampling_stops(ScarpWay way, ScarpSampling settings, float s
     stops = scarp_relaxed_stops(way, settings, s, clearance);
   return stops;
 }
-/// Where a straight line through the clearances at state.before and state.s meets the limit of the test.
+/// Where a straight line through the clearances at state.before and state.s reaches the limit of the test.
 SCARP_FN float scarp_sampling_secant(ScarpWay way, ScarpSampling settings, float clearance, ScarpMarchState state) {
   if (state.h_before == clearance) return state.s;
   float limit = 0.0f;

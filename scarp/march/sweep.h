@@ -26,8 +26,8 @@ struct Capsule {
 struct Contact {
   double t = 0;       ///< fraction of the motion, 0..1; 0: it touches or overlaps at the start
   dvec3 point{0.0};   ///< where it touches
-  dvec3 normal{0.0};  ///< unit, from the point towards the centre line; if that meets the surface, the surface's normal
-                      ///< towards the side that the motion comes from
+  dvec3 normal{0.0};  ///< unit, from the point towards the centre line; if that intersects the surface, the surface's
+                      ///< normal towards the side that the motion comes from
 };
 
 /// Throws Error unless a capsule and a motion are finite and the radius is not negative.

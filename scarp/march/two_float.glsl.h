@@ -78,7 +78,7 @@ SCARP_FN ScarpTwoFloat scarp_two_negate(ScarpTwoFloat a) {
   result.low = -a.low;
   return result;
 }
-/// a < b, of sums whose low part is within half a unit of the high one (as all functions here return them).
+/// a < b, for sums whose low part is within half a unit of the high one (as all functions here return them).
 SCARP_FN bool scarp_two_less(ScarpTwoFloat a, ScarpTwoFloat b) {
   return a.high < b.high || (a.high == b.high && a.low < b.low);
 }

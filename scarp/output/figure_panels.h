@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parts of a figure that stand in a rectangle of their own: they measure themselves, and a page places them.
+// The parts of a figure that have their own rectangle: they compute their size, and a page places them.
 #pragma once
 
 #include <functional>

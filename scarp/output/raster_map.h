@@ -42,8 +42,8 @@ struct RasterMap {
   std::vector<std::string> creation_options{};                  ///< NAME=VALUE; override the defaults
 };
 
-/// Throws Error without a file's name if GDAL has no such driver, it cannot write rasters, or it does not take one of
-/// the creation options NAME=VALUE. For programs that compute for long before they write.
+/// Throws Error without a file's name if GDAL lacks the driver, it cannot write rasters, or it does not take one of the
+/// creation options NAME=VALUE. For programs that compute for long before they write.
 void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options = {});
 
 /// Returns the driver for a file name: GTiff for .tif, else by extension. Throws Error naming the file if there is

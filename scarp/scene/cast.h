@@ -6,7 +6,7 @@
 //
 // These functions validate their rays. They throw Error if an origin or direction is not finite, a direction is zero, a
 // range is empty, a range is infinite over terrain that wraps, or a start cell does not exist. The corresponding
-// members of Scene return `miss` for such numbers, whatever they are, and do not check start cells.
+// members of Scene return `miss` for any of these numbers, and do not check start cells.
 #pragma once
 
 #include <cstdint>

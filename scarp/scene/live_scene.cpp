@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Edits change the objects of a scene and record which; update() then updates the scene's derived data, once per call
-// of edit(), however often an object was moved.
+// of edit(), regardless of the number of moves.
 #include "scarp/scene/live_scene.h"
 
 #include <fmt/format.h>

@@ -30,7 +30,7 @@ struct PlacedVoxels {
   VoxelRounding rounding{};
 };
 
-/// The box around a box of a grid in its place.
+/// The box around a placed box of a grid.
 WorldBox world_box(const VoxelPlace& place, const VoxelBox& box);
 /// The box around all solid voxels; empty if there are none.
 WorldBox world_box(const PlacedVoxels& voxels);

@@ -4,7 +4,7 @@
 // part of any march.
 //
 //        __/\_            A ray that comes from outside (or from over a hole) into a valid cell, below the edge of the
-//   ____/     \___        surface and above the base, meets a wall there. Cells are walked one after another; a field
+//   ____/     \___        surface and above the base, hits a wall there. Cells are walked one after another; a field
 //   |#############|       without holes has walls at its border alone, so its first cell decides.
 //   |#############|  base
 #pragma once

@@ -34,7 +34,7 @@ struct Scene::StartedRay {
   const Hit* from_on(std::uint32_t object) const { return from && from->object == object ? from : nullptr; }
 };
 
-/// Returns Ray::frame of rays in the space of a field that stands there.
+/// Returns Ray::frame of rays in the space of a field with this placement.
 inline std::uint8_t frame_of(const Placement& placement) {
   return static_cast<std::uint8_t>(VoxelTies(transpose(placement.turn)).bits);
 }

@@ -2,7 +2,7 @@
 // Batches of a scene whose rays a back end traces: many rays over one field at a time.
 //
 //   all rays ──▶ one ground beside the tree after the other, each ray no further than its nearest hit so far
-//   hierarchy ──▶ pairs of a ray and an object whose box it meets, sorted by field ──▶ one call per field
+//   hierarchy ──▶ pairs of a ray and an object whose box it hits, sorted by field ──▶ one call per field
 //
 // The hierarchy cannot shorten rays along the way, as it does for single rays: all boxes up to the ground are tested.
 // Rays of a scene of one field at the origin go to the back end as they are.

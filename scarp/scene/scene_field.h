@@ -130,7 +130,7 @@ class SceneField {
   virtual bool outdated() const { return false; }
   /// Returns the field rebuilt over its current samples or voxels. Null for fields that cannot be edited.
   virtual std::shared_ptr<const SceneField> rebuilt() const { return nullptr; }
-  /// Owner of caller-owned samples; null if the field has none or does not know it.
+  /// Owner of caller-owned samples; null if the field has none or it is unknown.
   virtual const std::weak_ptr<const void>* memory() const { return nullptr; }
 
   virtual SceneFieldParts parts() const { return {}; }
@@ -187,10 +187,10 @@ SceneFieldPtr scene_function(HeightFunction function,
 SceneFieldPtr scene_shape(DistanceField shape, const ShapeMarchEntry& march = find_shape_march("sphere-trace"),
                           const MarchSettings& settings = {});
 
-/// Models in their places as one field; each model has its march. With VoxelNormals::smooth, occluded() moves a ray
-/// that starts on a voxel along the smooth normal, by sqrt(3) voxels, so that the steps of a smooth-looking surface do
-/// not shadow it. Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a
-/// scale; or a model that is null, a rounding or shading out of its range.
+/// Placed models as one field; each model has its march. With VoxelNormals::smooth, occluded() moves a ray that starts
+/// on a voxel along the smooth normal, by sqrt(3) voxels, so that the steps of a smooth-looking surface do not shadow
+/// it. Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
+/// model that is null, a rounding or shading out of its range.
 SceneFieldPtr scene_voxels(PlacedVoxels voxels, const VoxelShading& shading = {});
 
 }  // namespace scarp

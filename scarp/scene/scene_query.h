@@ -31,8 +31,8 @@ struct ScenePoint : FieldPoint {
   std::uint32_t object = 0;
 };
 
-/// Returned by Scene::query(). Refers to the scene, which must outlive it; of a LiveScene, its Reading. Thread-safe if
-/// the filter is.
+/// Returned by Scene::query(). Refers to the scene, which must outlive it; for a LiveScene, to its Reading. Thread-safe
+/// if the filter is.
 class SceneQuery {
  public:
   /// Throws Error if the scene has objects and none matches the mask, or if it is on a device.
@@ -54,7 +54,7 @@ class SceneQuery {
   /// Throws Error for a capsule or a motion that validate() rejects, and if the mask selects a function, a shape, a
   /// mesh, a wrapped height field, or one not marched by max-mip.
   std::optional<SceneContact> sweep(const Capsule& capsule, const dvec3& motion) const;
-  /// Returns whether a box, closed, meets a height field's surface or a solid voxel. Errors as for sweep().
+  /// Returns whether a closed box overlaps a height field's surface or a solid voxel. Errors as for sweep().
   bool overlaps(const TurnedBox& box) const;
   /// Returns the point closest to p on any height field surface or solid voxel, within `max_distance` metres. Among
   /// objects at the same distance, the lowest index wins. Errors as for sweep().

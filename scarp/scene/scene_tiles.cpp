@@ -265,7 +265,7 @@ class Tiles final : public SceneField {
     return own;
   }
 
-  // Calls f(tile, col, row, first) for the tiles that the ray may meet before the hit `best`, nearest first within a
+  // Calls f(tile, col, row, first) for the tiles that the ray may hit before the hit `best`, nearest first within a
   // cell, until it returns true. `only_from_above`: not for those whose ground it stays above. `first`: whether the ray
   // is over this tile where it comes to the terrain.
   template <class F>

@@ -49,7 +49,7 @@ struct TileLayout {
 };
 
 /// The tiles at one epoch, as a scene of one field. Copies are cheap. Immutable and thread-safe; valid as long as it
-/// exists, whatever the terrain does. Queries use the march `max-mip`, which is exact.
+/// exists, regardless of later edits. Queries use the march `max-mip`, which is exact.
 class TerrainTiles {
  public:
   const Scene& scene() const { return *scene_; }

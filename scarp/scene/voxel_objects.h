@@ -4,7 +4,7 @@
 // Rays are traced in the space of each model that they may hit, and quantised there (voxel_ray.h). t is in units of the
 // direction's length throughout. Among hits at the same t, the lowest index counts.
 //
-// Batches traverse a hierarchy of their own as beams of 64 rays, and each model's grid in vectors (voxel_packet.h);
+// Batches traverse a separate hierarchy as beams of 64 rays, and each model's grid in vectors (voxel_packet.h);
 // diverging rays are traced one by one. This is why the models are not objects of the scene, whose hierarchy contains
 // only fields and queries them ray by ray.
 #pragma once

@@ -25,7 +25,7 @@ struct VoxelLattice {
 VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within = {},
                             int most = VoxelGrid::kMaxModelSide);
 
-/// The grid begins at lattice.box.low. `entry` returns the entry of a solid voxel, 24 bits, and is called on one thread
+/// The grid starts at lattice.box.low. `entry` returns the entry of a solid voxel, 24 bits, and is called on one thread
 /// with the result of Scene::within() at its centre. Throws Interrupted if `progress` returns false.
 VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
                     const std::function<std::uint32_t(const SceneSurface&)>& entry, const Progress& progress = {});

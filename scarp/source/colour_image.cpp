@@ -99,7 +99,7 @@ struct Area {
   double pixel_x, pixel_y;
 };
 
-// Whether the image lies in the raster's CRS, or one of the two does not state its own.
+// Whether the image is in the raster's CRS, or one of the two does not state its own.
 bool in_crs_of(const Georeference& georeference, GDALDataset& dataset) {
   const OGRSpatialReference* const own = dataset.GetSpatialRef();
   if (georeference.crs_wkt.empty() || own == nullptr) return true;

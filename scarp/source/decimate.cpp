@@ -72,7 +72,7 @@ Decimator<T>::Decimator(int cols, int rows, int out_cols, int out_rows, std::opt
   out_.resize(static_cast<std::size_t>(out_cols) * static_cast<std::size_t>(out_rows));
 }
 
-// The last block that begins at or before it.
+// The last block that starts at or before it.
 template <class T>
 int Decimator<T>::out_col_of(int col) const {
   return static_cast<int>(((std::int64_t{col} + 1) * out_cols_ - 1) / cols_);

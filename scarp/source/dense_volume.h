@@ -34,7 +34,7 @@ constexpr int kMaxVolumeSide = 2048;
 
 /// Parses the text above. Throws Error, in one line with the text and the expected form.
 VolumeFormat parse_volume_format(std::string_view text);
-/// Reads the header of a .npy file, see npy_header.h. Throws Error: no such header, not three dimensions, not numbers,
+/// Reads the header of a .npy file, see npy_header.h. Throws Error: no valid header, not three dimensions, not numbers,
 /// a side of 0 or beyond kMaxVolumeSide.
 VolumeFormat npy_volume_format(std::string_view bytes);
 

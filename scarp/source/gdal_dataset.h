@@ -15,7 +15,7 @@
 namespace scarp {
 
 /// Makes GDAL report truncated and damaged files as errors during its lifetime. Otherwise it reads zeros where
-/// uncompressed files with a header of their own end early.
+/// uncompressed files with their own header end early.
 struct StrictReading {
   GdalOption sizes{"RAW_CHECK_FILE_SIZE", "YES"};
   GdalOption jpeg{"GDAL_ERROR_ON_LIBJPEG_WARNING", "YES"};

@@ -29,7 +29,7 @@ struct GroundScale {
 };
 
 /// Returns the ground scale at (x, y), given in the CRS's units with x east (longitude) and y north (latitude),
-/// whatever axis order the CRS prescribes. `crs` is WKT or any text that PROJ accepts. Throws Error: a CRS that PROJ
+/// regardless of the axis order of the CRS. `crs` is WKT or any text that PROJ accepts. Throws Error: a CRS that PROJ
 /// cannot use, a point outside its domain, a pole of a geographic CRS.
 GroundScale ground_scale_at(const std::string& crs, double x, double y);
 

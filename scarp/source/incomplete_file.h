@@ -19,7 +19,7 @@ inline constexpr std::string_view kLfsPointer = "version https://git-lfs";
 /// Message for a Git LFS pointer.
 inline constexpr const char* kLfsAdvice = "Git LFS pointer instead of the file (fetch it with: git lfs pull)";
 
-/// Throws Error (without the file's name) if a file that begins with `start` is a Git LFS pointer.
+/// Throws Error (without the file's name) if a file that starts with `start` is a Git LFS pointer.
 inline void refuse_lfs_pointer(std::string_view start) {
   if (start.starts_with(kLfsPointer)) throw Error(kLfsAdvice);
 }

@@ -69,7 +69,7 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
   }
   header.skip_attributes();
 
-  // In double: no header, however wrong, overflows these.
+  // In double: no header, valid or not, overflows these.
   double least = 0, record_bytes = 0, last_record_end = 0;
   header.number(4);
   for (std::uint64_t n = header.count(); header.good && n > 0; --n) {
@@ -80,7 +80,7 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
     for (std::uint64_t d = 0; header.good && d < dimensions; ++d) {
       const std::uint64_t id = header.count();
       if (id >= extents.size()) return {};
-      // The record dimension has no extent of its own and comes first.
+      // The record dimension has no fixed extent and comes first.
       if (d == 0 && extents[id] == 0) {
         is_record = true;
       } else {

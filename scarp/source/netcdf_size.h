@@ -16,11 +16,11 @@ namespace scarp {
 /// Bytes from a file's start that contain the header of any realistic netCDF file.
 inline constexpr std::size_t kNetcdfHeaderBytes = 1 << 20;
 
-/// Returns the minimum length in bytes of the classic netCDF file that begins with `start`, or nullopt if it is not
+/// Returns the minimum length in bytes of the classic netCDF file that starts with `start`, or nullopt if it is not
 /// one, or its header exceeds `start` or is invalid.
 std::optional<double> netcdf_classic_bytes(std::string_view start);
 
-/// Returns the length in bytes of the HDF5 file that begins with `start`, or nullopt if it is not one, or an unknown
+/// Returns the length in bytes of the HDF5 file that starts with `start`, or nullopt if it is not one, or an unknown
 /// variant.
 std::optional<double> hdf5_bytes(std::string_view start);
 

@@ -3,7 +3,7 @@
 //
 // Gradient noise on an integer lattice, summed over octaves of halving wavelength (fbm), or folded and multiplied into
 // ridges (ridged). Each octave rotates the domain by the angle of the 3-4-5 triangle, so that lattice directions do not
-// add up. A height depends only on the settings and its (col, row): tiles match, whatever their size and order.
+// add up. A height depends only on the settings and its (col, row): tiles match for any size and order.
 //
 // Bit-identical on all machines: hashes are integers, heights use only + - * / and comparisons of doubles (no function
 // of libm, no fused multiply-add).

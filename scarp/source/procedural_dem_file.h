@@ -13,7 +13,7 @@ namespace scarp {
 /// Writes the terrain to `path`: float32 metres, tiles of 256 x 256, lossless compression (deflate), BigTIFF if needed.
 /// Computes strips of 256 rows on all threads and writes them in order, so memory holds only a few.
 ///
-/// The terrain lies around latitude 0, longitude 0 on a Transverse Mercator of scale 1 with its origin at the terrain's
+/// The terrain is around latitude 0, longitude 0 on a Transverse Mercator of scale 1 with its origin at the terrain's
 /// centre, so that map metres are ground metres there and north is up.
 ///
 /// Throws Error (settings, folder, disk full) or Interrupted; then no file remains.

@@ -34,7 +34,7 @@ struct HeightRange {
   double high = 1;  ///< > low
 };
 
-/// RasterOptions::crs for a raster without a CRS, whatever the file says: map units are metres.
+/// RasterOptions::crs for a raster without a CRS, regardless of the file: map units are metres.
 inline constexpr std::string_view kNoCrs = "none";
 
 /// Reads rasters of more than `above` samples with at most about `samples` samples, for pictures (source/decimate.h).
@@ -59,10 +59,10 @@ struct RasterOptions {
   std::string crs;
   std::optional<MapBounds> bounds;  ///< of the whole file, before `window`; default: the file's geotransform
   HeightEncoding encoding = HeightEncoding::none;  ///< of heights in the colours of 3 or 4 Byte bands
-  std::optional<RawFormat> raw;  ///< the file contains raw samples, whatever its name; default: by name and content
-  std::string channel;           ///< channel of an EXR; default: the only one, else Y, else R
-  std::string key;               ///< array in a .npz; default: the only one with heights
-  std::optional<Decimation> decimation;  ///< default: all samples, however many
+  std::optional<RawFormat> raw;          ///< headerless samples, regardless of the name; default: by name and content
+  std::string channel;                   ///< channel of an EXR; default: the only one, else Y, else R
+  std::string key;                       ///< array in a .npz; default: the only one with heights
+  std::optional<Decimation> decimation;  ///< default: all samples
 };
 
 }  // namespace scarp

@@ -6,7 +6,7 @@
 //   terrain-rgb   height = n / 10 - 10000 m      -10000 to 1667721.5 m in steps of 0.1 m
 //   terrarium     height = n / 256 - 32768 m     -32768 to 32768 m in steps of 1/256 m
 //
-// The colours themselves must never be interpolated: between red 1, green 0 and red 0, green 255 lies no height.
+// The colours themselves must never be interpolated: there is no height between red 1, green 0 and red 0, green 255.
 // Samples are decoded to integers here, which float32 represents exactly, and the field interpolates these.
 //
 // Source: Mapbox, "Mapbox Terrain-RGB v1"; Mapzen, "Terrain tiles", formats, terrarium.

@@ -28,7 +28,7 @@ std::vector<int> turns_side_by_side(const std::vector<TileSpan>& tiles, double c
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return in_circle(tiles[a].west) < in_circle(tiles[b].west); });
 
-  // The widest gap ends at a tile's west edge: that tile begins the mosaic. Tiles may reach across the end of the
+  // The widest gap ends at a tile's west edge: that tile starts the mosaic. Tiles may reach across the end of the
   // circle, so the gap before the first tile follows the easternmost of all.
   double reached = -circle;
   for (const TileSpan& tile : tiles)

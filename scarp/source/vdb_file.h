@@ -5,7 +5,7 @@
 //   bool or mask grid           solid where active
 //   Vec3 grid                   colours in linear light. Alone in a file, it is solid where active
 //
-// Reading is in a module of its own (vdb_module.h), which is opened for the first such file: OpenVDB takes as long to
+// Reading is in a separate module (vdb_module.h), which is opened for the first such file: OpenVDB takes as long to
 // start as the rest of the program.
 #pragma once
 

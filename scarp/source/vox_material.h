@@ -2,7 +2,7 @@
 // Light properties of materials in .vox files. Their attributes are texts, and MagicaVoxel documents no units.
 //
 //   _type    _diffuse, _metal, _glass, _emit, _blend (metal and glass), _media
-//   _metal   share of light that is mirrored, 0..1; _weight in files before version 0.99.5, as for all types
+//   _metal   fraction of light that is mirrored, 0..1; _weight in files before version 0.99.5, as for all types
 //   _rough   roughness, 0..1
 //   _emit    light emitted, 0..1; _flux: its power, 0..4
 #pragma once

@@ -92,7 +92,7 @@ Nodes by_id(const VoxFile& file) {
   return nodes;
 }
 
-// The editor's root is node 0. A scene without one begins with its first node.
+// The editor's root is node 0. A scene without one starts with its first node.
 int root_of(const Nodes& nodes, const VoxFile& file) { return nodes.contains(0) ? 0 : file.nodes.front().id; }
 
 std::vector<int> children_of(const VoxNode& node) {

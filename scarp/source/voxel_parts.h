@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What files of listed voxels contain, whatever their format: parts, each with its voxels and their colours.
+// Content of files of listed voxels, in any format: parts, each with its voxels and their colours.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct VoxelParts {
 };
 
 constexpr int kMaxPartSide = 2048;
-/// Voxels of a file; limits what runs of a few bytes may unpack to.
+/// Voxels of a file; limits the size of run-length encoded data of a few bytes.
 constexpr std::size_t kMostListedVoxels = std::size_t{1} << 26;
 
 /// Returns whether the ending of a file is one of these formats: .qb, .kv6, .vxl.

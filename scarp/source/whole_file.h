@@ -14,7 +14,7 @@ namespace scarp {
 /// propagate. Throws Error: missing, not a file, not readable to its end.
 std::string whole_file(const std::string& path,
                        const std::function<bool(std::string_view first, std::uint64_t size)>& believe);
-/// Returns the bytes of a file that begins with `magic`; as above for others.
+/// Returns the bytes of a file that starts with `magic`; as above for others.
 std::string whole_file(const std::string& path, std::string_view magic);
 
 /// Writes a file atomically. Throws Error naming the path.

@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// Returns whether the file begins like an archive.
+/// Returns whether the file starts like an archive.
 bool is_zip(const std::string& path);
 
 /// Returns whether the file has the end record, without which its members cannot be found.

@@ -25,7 +25,7 @@ struct FileHead {
 };
 constexpr std::array<char, 8> kMagic = {'s', 'c', 'a', 'r', 'p', 'p', 'c', '1'};
 
-// With which the driver's data begins (VkPipelineCacheHeaderVersionOne).
+// Start of the driver's data (VkPipelineCacheHeaderVersionOne).
 struct DataHead {
   std::uint32_t bytes, version, vendor, device;
   std::array<std::uint8_t, 16> uuid;

@@ -17,7 +17,7 @@ struct ShaderProgram {
   std::span<const std::uint32_t> spirv;    ///< entry point main, no bindings
   std::uint32_t push_bytes = 0;            ///< size of its push constants
   std::vector<std::uint32_t> constants{};  ///< specialisation constants 0, 1, 2, ...; floats by bit_cast
-  /// Empty for a compute shader. Otherwise this is a fragment shader, which writes words into so many colours, behind
+  /// Empty for a compute shader. Otherwise this is a fragment shader, which writes words into this many colours, behind
   /// this vertex shader.
   std::span<const std::uint32_t> vertex{};
   std::uint32_t colours = 0;

@@ -231,7 +231,7 @@ TEST(VoxelAccelerators, SaturateAtOneByte) {
   EXPECT_EQ(OctantCubes(grid).side({200, 1, 1}, 1), 255);
 }
 
-// Levels above sectors tell what the cells below contain, before and after edits.
+// Levels above sectors match the content of the cells below, before and after edits.
 TEST(VoxelAccelerators, HaveLevelsForLargeGrids) {
   Random random(16);
   for (const ivec3& size : {ivec3(520, 7, 30), ivec3(3, 1100, 18), ivec3(600, 70, 4200)}) {

@@ -61,7 +61,7 @@ TEST(ParallelFor, PropagatesExceptions) {
 }
 
 TEST(ParallelFor, ReportsProgressSeriallyUpToOne) {
-  std::vector<double> shares;  // no lock of its own: parallel_for promises one report at a time
+  std::vector<double> shares;  // without a lock: parallel_for guarantees one report at a time
   parallel_for(
       1000, 10, [](std::int64_t, std::int64_t) {},
       [&](double share) {

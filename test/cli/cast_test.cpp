@@ -259,7 +259,7 @@ class CastInputs : public Cast {
   }
   static std::string down(double x, double y) { return fmt::format("x,y,z,dx,dy,dz\n{},{},100,0,0,-2\n", x, y); }
 
-  // A ball of radius 3 on a plane, and the plane with a colour of its own.
+  // A ball of radius 3 on a plane, and the plane with its own colour.
   std::string scene() const {
     return write("scene.json", R"({
       "materials": {"grey": {"colour": "#808080"}, "red": {"colour": "#ff0000"}},

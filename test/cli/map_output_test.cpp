@@ -95,7 +95,7 @@ TEST_F(MapOutput, PixelsAreGeoreferenced) {
     const Rgba map = read_map(scratch_.path("map.tif"));
     ASSERT_EQ(map.width, 400);
     EXPECT_EQ(map.crs, "32616");
-    // The first sample stands in the middle of the raster's first pixel.
+    // The first sample is in the middle of the raster's first pixel.
     const std::array<double, 6> expected{600015, 3, 0, 3999985, 0, -3};
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(map.place[i], expected[i], 1e-4) << i;
     // Cells around nodata samples are holes: columns 29 to 34, rows 9 to 14.

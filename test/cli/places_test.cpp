@@ -171,7 +171,7 @@ TEST_F(Places, CountHeightsFromFunctionsAndScenes) {
                     ball = scratch_.write("ball.json", R"({"objects": [{"shape": {"sphere": {"radius": 5}}}]})");
   EXPECT_EQ(view({"--function", plane}, {"--eye", "100,20", "--eye-above", "3"}),
             view({"--function", plane}, {"--eye", "100,20,60"}));
-  // By a ray from above, which meets the sphere at z = 4.
+  // By a ray from above, which hits the sphere at z = 4.
   EXPECT_EQ(view({ball}, {"--eye", "0,3", "--eye-above", "6"}), view({ball}, {"--eye", "0,3,10"}));
 }
 

@@ -3,7 +3,7 @@
 //
 //   always    ends by itself, soon, within the memory that its file is worth
 //   refused   one line on stderr that names the file, says what is wrong and what to do; no file written
-//   shown     what was asked for; a picture with voxels on 0.5 % of its pixels, or a warning that says why not
+//   shown     the requested output; a picture with voxels on 0.5 % of its pixels, or a warning that says why not
 //   nothing   no voxel to see: `info` may describe the file, `render` and `voxelise` refuse it, others may do either
 #pragma once
 

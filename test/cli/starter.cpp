@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The other side of starts.h. Before it forks it only loads: the work of `scarp` and all its threads start in the
-// process of the call.
+// The other side of starts.h. Before a fork it only loads libraries: the work of `scarp` and all its threads start in
+// the process of the call.
 #include <sys/resource.h>
 #include <sys/wait.h>
 

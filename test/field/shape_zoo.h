@@ -20,7 +20,7 @@ std::vector<NamedShape> shape_zoo();
 
 /// Solids of one or two metres in size.
 Shape random_solid(FunctionRandom& random);
-/// Nested at most `depth` deep. Without `smooth` its solid is that of sets, and solid_holds() tells it.
+/// Nested at most `depth` deep. Without `smooth` its solid is that of sets, and solid_holds() decides it.
 Shape random_shape(FunctionRandom& random, int depth, bool smooth);
 
 /// Whether a position is in the solid: by the inequality of each solid, and by sets. No smooth operations.

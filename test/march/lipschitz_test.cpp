@@ -32,7 +32,7 @@ TEST(Lipschitz, ApproachesASlopeFromAbove) {
   const Ray ray{{5, 30, 60}, {1, 0, 0}};
   const Hit hit = march_lipschitz({&field, &pyramid, slope}, ray, {}, &stats);
   ASSERT_TRUE(hit);
-  // The plane is met at x = 30. Where the march stops, shrink * h <= tolerance * t, and h = 2 (30 - x).
+  // The plane is hit at x = 30. Where the march stops, shrink * h <= tolerance * t, and h = 2 (30 - x).
   EXPECT_LE(hit.t, 25);
   EXPECT_GE(hit.t, 25 - 0.0005 * 25 * std::sqrt(5.0) / 2);
   EXPECT_GT(stats.steps, 3u);

@@ -184,7 +184,7 @@ TEST(Figure, BesideLayoutKeepsThePicture) {
   EXPECT_LE(all[3], canvas.height - 3);
 }
 
-// A meridian at either border: half of its label stands beyond it.
+// A meridian at either border: half of its label is beyond it.
 TEST(Figure, BesideLayoutKeepsGraticuleLabelsWhole) {
   for (const double x : {1.0, 639.0}) {
     Canvas canvas;

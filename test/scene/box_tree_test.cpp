@@ -20,7 +20,7 @@ dvec3 point(Random& random, double size) {
   return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
-// Whether the ray meets the closed box, in long double.
+// Whether the ray hits the closed box, in long double.
 bool meets(const Ray& ray, const WorldBox& box) {
   long double t_in = ray.t_min, t_out = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {

@@ -64,7 +64,7 @@ TEST(RealFiles, ReadsAnSrtmTileOnTheEquator) {
   const Range range = range_of(raster);
   EXPECT_EQ(1, range.min);
   EXPECT_EQ(1005, range.max);
-  // The samples stand on whole degrees.
+  // The samples are at whole degrees.
   EXPECT_NEAR(10, raster.georeference.map_from_node[0], 1e-9);
   EXPECT_NEAR(1, raster.georeference.map_from_node[3], 1e-9);
   EXPECT_NEAR(92.763, raster.georeference.cell_x_m, 1e-3);

@@ -152,7 +152,7 @@ TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
   EXPECT_EQ(PictureWorker::refinement_of(counted).size(), 1u);
 }
 
-TEST_F(Worker, BothSidesAreCompleteAtTheEnd) {
+TEST_F(Worker, CompletesBothSides) {
   ViewRequest both = request(false, 4, 16);
   PictureSettings counted = both.sides.front().settings;
   counted.look = Look::steps;

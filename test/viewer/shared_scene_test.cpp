@@ -93,7 +93,7 @@ TEST(SharedScene, CanBeQueriedWhileRendering) {
   }
   EXPECT_GT(pictures, 0);
   EXPECT_GT(read, 0);
-  // The last picture is the one that is rendered alone.
+  // The last picture equals that of a separate rendering.
   const ViewRequest last = request_from(scene, 1, false);
   const std::uint64_t generation = worker.request(last);
   std::optional<WorkedPicture> worked;

@@ -8,7 +8,7 @@
 
 namespace scarp::test {
 
-/// Codes of operations and decorations that tests look for, as the specification of SPIR-V numbers them.
+/// Codes of operations and decorations that tests look for, numbered as in the SPIR-V specification.
 namespace spirv_op {
 constexpr std::uint32_t kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23, kTypeArray = 28, kTypeRuntimeArray = 29,
                         kTypeStruct = 30, kTypePointer = 32, kConstant = 43, kLoad = 61, kAccessChain = 65,

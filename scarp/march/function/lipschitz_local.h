@@ -11,9 +11,9 @@
 // The line makes this a Newton iteration that cannot overshoot: close to the ground the bounds are of second order. The
 // last interval, no longer than the tolerance, is refined to double precision.
 //
-// Guarantee: conservative, including rounding: it misses no crossing, whatever the function. A hit is a crossing (any
-// of several within the tolerance), or a touch: a point where bounds of a segment of 2^-40 of the ray do not separate
-// it from the ground. Exceeded step limits are exhausted, never a hit: a ray that nearly runs along a crease may exceed
+// Guarantee: conservative, including rounding: it misses no crossing of any function. A hit is a crossing (any of
+// several within the tolerance), or a touch: a point where bounds of a segment of 2^-40 of the ray do not separate it
+// from the ground. Exceeded step limits are exhausted, never a hit: a ray that nearly runs along a crease may exceed
 // them. A ray that starts below the ground, or enters below it from beyond kFunctionReach, is `below` and is not
 // followed. A ray that starts on the surface is above it by definition: it is followed as far as it provably gains
 // height, and hits at its start if it provably loses height there. Source: E. Galin, E. Guerin, A. Paris, A. Peytavie,

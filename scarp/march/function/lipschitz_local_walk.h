@@ -136,10 +136,10 @@ class LocalWalk {
  private:
   enum class State : std::uint8_t { rounding, leaving, beginning, walking, last, above_end, secants };
 
-  // Shortest segment, as a fraction of the ray's part over the ground, whatever the tolerance: a ray whose bounds do
-  // not separate it from the ground there touches it.
+  // Shortest segment, as a fraction of the ray's part over the ground, for any tolerance: a ray whose bounds do not
+  // separate it from the ground there touches it.
   static constexpr double kShortest = 0x1p-40;
-  // Lines are followed slightly less far than to where they meet the ray: more than their rounding.
+  // Lines are followed to slightly before they intersect the ray, by more than their rounding.
   static constexpr double kShort = 1 - 0x1p-20;
   // Length factor of the next segment after a free one, and after one that is not. Rising rays leave the ground: their
   // segments are at least this factor times the distance known to be free. Among the values tried (1.1 to 4, 0.15 to

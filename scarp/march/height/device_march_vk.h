@@ -47,7 +47,7 @@ struct DeviceRayQuery {
   /// batch_ground_kind() of the ground gives a smaller shader; kBatchAnyGround reads the kind from the ground. With
   /// kScarpStarts among its flags, rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;
-  glsl::ScarpSampling sampling{};  ///< of all marches but max-mip
+  glsl::ScarpSampling sampling{};  ///< of all marches except max-mip
   bool exact_only = false;         ///< without the first pass, see leaves_first_pass()
 };
 

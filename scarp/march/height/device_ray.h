@@ -36,7 +36,7 @@ struct DeviceRay {
 
 /// For max-mip, clipped to the highest sample, too. `ray` must be valid (validate() of march/height/queries.h).
 DeviceRay device_ray(const HeightField& field, const Ray& ray);
-/// For the marches that sample along the ray: it starts where they do, at the border or where its range begins.
+/// For the marches that sample along the ray: it starts where they do, at the border or where its range starts.
 /// `clip_at_top`: it ends where it rises above the highest sample, which changes no other point.
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top = false);
 

@@ -114,7 +114,7 @@ class Ground {
     p.a = -(h.h00 - h.h10 - h.h01 + h.h11) * dx_ * dy_;
     p.b = dz_ - gu * dx_ - gv * dy_;
     p.c = oz_ + dz_ * span.begin - bilinear(h, u, v);
-    // A vertical ray may be infinite: the sign of its movement then tells on which side it ends.
+    // A vertical ray may be infinite: the sign of its movement then determines the side on which it ends.
     p.last = std::isinf(span.end)
                  ? std::copysign(kInfinity, dz_)
                  : oz_ + dz_ * span.end -
@@ -352,8 +352,8 @@ std::optional<double> descent_after_rise(const Piece& p, std::optional<double> d
   return p.roots() ? p.roots()->end : p.length();
 }
 
-// Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started so, otherwise
-// miss.
+// Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started below the ground,
+// otherwise miss.
 template <class Found>
 HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchStats* stats,
                  const Found& found_in_range) {

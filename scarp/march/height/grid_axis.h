@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One axis of a ray over a grid: crossing times of grid lines, and the current cell.
 //
-// Every line k has ONE time, (k - origin) * (1 / direction), whatever cell or level uses it. Rounding keeps these times
-// in the order of k, so cells found through them follow one another without gap or overlap.
+// Every line k has ONE time, (k - origin) * (1 / direction), regardless of the cell or level that uses it. Rounding
+// keeps these times in the order of k, so cells found through them follow one another without gap or overlap.
 //
 // A wrapped grid has a line for every integer. Cells and lines are counted within one copy of the grid, from its first
 // line on, and the copy is part of the state. Values at a line are computed from its integer, so neighbours on both

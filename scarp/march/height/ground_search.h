@@ -35,7 +35,7 @@ struct GroundPart {
 template <class Query>
 class GroundSearch {
  public:
-  /// A part is flat if twice GroundPart::off is at most this share of the shorter side of a cell.
+  /// A part is flat if twice GroundPart::off is at most this fraction of the shorter side of a cell.
   static constexpr double kFlat = 0x1p-20;
 
   GroundSearch(const HeightTarget& target, Query& query)

@@ -25,7 +25,7 @@ SCARP_GLSL_BEGIN
 
 /// Longest stretch, as a time: at most twice as many cells.
 const float kScarpStretch = 512.0f;
-/// A stretch begins this long before its first point, because `relaxed` also steps back.
+/// A stretch starts this long before its first point, because `relaxed` also steps back.
 const float kScarpStretchRoom = 16.0f;
 /// Turns of a stretch, and stretches of a ray, before the rest is left to the second pass, which can be interrupted.
 /// Invocations of a vector start their stretches together, so its loops take at most the product.
@@ -40,7 +40,7 @@ const float kScarpFreeRounding = 24.0f * kScarpUnit;
 
 /// State of a ray between two stretches.
 struct ScarpStretch {
-  float s0;        ///< time at which the next stretch begins
+  float s0;        ///< time at which the next stretch starts
   float t;         ///< of the next point, from s0 on; `before`, too
   float before;    ///< of the previous point; this and h_before are defined if `known`
   float h_before;  ///< clearance there

@@ -33,7 +33,7 @@ using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, c
 struct HeightMarchEntry : MarchEntry {
   bool needs_pyramid = false;               ///< HeightTarget::pyramid must be given
   bool needs_slope = false;                 ///< HeightTarget::slope must be given
-  bool own_any_hit = false;                 ///< `occluded` is a query of its own, not based on `cpu`
+  bool own_any_hit = false;                 ///< `occluded` is a separate query, not based on `cpu`
   HeightFields fields = HeightFields::all;  ///< require_field() rejects others
   /// Whether a ray that starts or enters below the ground is followed to later hits; otherwise it is `below` at once.
   bool follows_below = true;

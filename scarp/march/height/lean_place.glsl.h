@@ -40,7 +40,7 @@ SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, f
   ScarpLeanAxis found;
   SCARP_PRECISE float rest = (way.high - whole) + (way.low + (place + (direction_low * s0 + place_low)));
   int from = cell + int(whole);
-  // A ray that begins on a line belongs to the cell that it is given in.
+  // A ray that starts on a line belongs to its given cell.
   int to = s0 == 0.0f ? from : from + int(floor(rest));
   // Times are rounded: a ray at the border could be beyond it.
   found.cell = wraps ? to : clamp(to, 0, cells - 1);

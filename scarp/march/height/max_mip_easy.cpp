@@ -15,7 +15,7 @@ struct Part {
   GridRay ray;
   double begin = 0, end = 0;  // times; the longest component of ray.direction is 1 to 2
   int exponent = 0;           // t = ldexp(time, -exponent)
-  bool from_border = false;   // begins at the border ...
+  bool from_border = false;   // starts at the border ...
   bool from_top = false;      // ... or where the ray descends to the highest sample
 };
 

@@ -20,7 +20,7 @@
 // The ground is a solid body: a ray that starts below it, or enters it through the border, hits there at once
 // (`below`). For a shadow ray, start at easy_above(hit): a hit itself may be below the ground by rounding.
 //
-// No hit is lost between cells. The ray is cut into pieces, one for each block or cell, without gaps: each piece begins
+// No hit is lost between cells. The ray is cut into pieces, one for each block or cell, without gaps: each piece starts
 // at the time at which the last one ended. A block is skipped only if the ray is above its maximum all along the piece,
 // and a cell only if the ray is above the surface at both ends of the piece and between them. Both tests are one-sided
 // and concern one piece alone: no sign is handed on that could differ between neighbours. If rounding places a piece in
@@ -141,7 +141,7 @@ EasyHit max_mip_easy(vec3 origin, vec3 direction, float t_max, bool any_hit) {
   float t = 0.0f;
   ivec2 cell = first;
   int level = top / 2;
-  // Each turn goes on by a column or a row, or down a level; and up at most as often as on.
+  // Each iteration advances by a column or a row, or goes down a level; it goes up at most as often as it advances.
   int turns = 2 * (cells.x + cells.y) + top;
   for (int turn = 0; turn < turns; ++turn) {
     // The piece from t to t_to is in the block of `cell` on this level. `line`: its far lines.

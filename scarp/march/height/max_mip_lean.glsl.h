@@ -9,9 +9,9 @@
 //                 else, more than a few cells from the frame's begin      a new frame that begins here
 //                 else                                                    the sign of the clearance decides
 //
-// A frame begins at a point that two floats give exactly, and in its first cells floats are exact to 2^-18 of a cell.
-// A hit is decided and located there, whatever the ray's length, and the margin only costs a new frame for rays that
-// graze the ground. A ray that starts below the surface, or enters it from a hole, is left to the exact text
+// A frame starts at a point that two floats represent exactly, and in its first cells floats are exact to 2^-18 of a
+// cell. A hit is decided and located there, for any length of the ray, and the margin only costs a new frame for rays
+// that graze the ground. A ray that starts below the surface, or enters it from a hole, is left to the exact text
 // (max_mip.glsl.h) in a second pass: the status is then kScarpDoubtful.
 //
 // Guarantee: decisions are those of a surface and a ray displaced by at most the bound that doc/dev/numerics.md
@@ -340,7 +340,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
     bool hole = false;
     if (tests) {
       SCARP_COUNT(cell);
-      // The first cell that it may meet: beyond a middle line if it leaves the cell after it. That line may be the
+      // The first cell that it may enter: beyond a middle line if it leaves the cell after it. That line may be the
       // field's border, which no ray passes.
       float leave = free0 ? (free1 ? t3 : t2) : t1;
       int cell_x = tx_middle < leave ? middle_x : x;

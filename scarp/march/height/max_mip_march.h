@@ -59,7 +59,7 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
     Wanted usual = wanted;
     usual.t_clear = kNotClear;
     if (wanted.accept) usual.accept = &accept;
-    // Any hit as the closest: it must have a height.
+    // Any hit is computed as the closest hit, because its height is needed below.
     constexpr Ask with_height = ask == Ask::any ? Ask::closest : ask;
     hit = march<with_height, upside_down>(target, scaled_down(ray, exponent), usual, stats);
     hit.t = std::ldexp(hit.t, -exponent);

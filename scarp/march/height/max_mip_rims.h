@@ -123,7 +123,7 @@ struct Rim {
     return seam_step + rounding_at_rim(field, ray, t, of_cell, seam);
   }
 
-  // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's place on a line,
+  // Calls f(col, row, place, clearance, relief) for the ground of the cells that meet at the ray's position on a line,
   // until f returns true, and then returns true. Rims are closed, so any of these cells is valid.
   template <class F>
   bool any_beside(double t, const F& f) const {
@@ -153,15 +153,15 @@ struct Rim {
     return answered;
   }
 
-  // How far along a line of an axis, in cells, a ray that crosses it may be from a node and be within the allowance of
-  // both lines when it crosses the other one.
+  // Maximum distance from a node, along a line of an axis in cells, of a ray that crosses the line and is within the
+  // allowance of both lines when it crosses the other one.
   double beside_node(int axis) const {
     const double slope = std::abs(ray.direction[1 - axis]) / std::abs(ray.direction[axis]);
     const double off = std::max(this->off(0), this->off(1));
     return off + off * (slope < kQuickRim ? slope : 0.0);
   }
-  // When a ray that crosses a line of an axis at t passes the nearest line of the other one; NaN: not between t and
-  // `last`.
+  // Time at which a ray that crosses a line of an axis at t passes the nearest line of the other axis; NaN: not between
+  // t and `last`.
   double node_time(double t, int axis, double last) const {
     const Axis& other = axis == 0 ? y : x;
     const double node = (std::round(other.at(t)) - other.origin) * other.per_direction;

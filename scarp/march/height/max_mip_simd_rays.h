@@ -149,7 +149,7 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   const V longest = hn::Max(x.direction, y.direction), per_longest = hn::Min(x.per, y.per);
   const V t_border = hn::Max(t_min, hn::Max(x.enter, y.enter));
   const V t_exit = hn::Min(t_max, hn::Min(x.exit, y.exit));
-  // A falling ray begins where it may come below the highest sample; a rising ray ends where it is above it.
+  // A falling ray starts where it may be below the highest sample; a rising ray ends where it is above it.
   const V highest = hn::Set(tag, f.highest);
   const auto height = [&](V t) HWY_ATTR { return hn::Add(oz, hn::Mul(dz, t)); };
   const auto falls = hn::Lt(dz, zero), from_above = hn::Gt(height(t_border), highest);

@@ -109,7 +109,7 @@ class Together {
   }
   HWY_INLINE void push(const Block& b) { stack_[depth_++] = b; }
 
-  // Lines at which a block begins, is divided and ends; never at the end of the field.
+  // Lines at which a block starts, is divided and ends; never at the end of the field.
   struct Lines {
     float x[3], y[3];
   };
@@ -249,7 +249,7 @@ class Together {
   Numbers numbers_[kMostVectors];
   std::uint64_t live_ = 0;  // vectors with rays that take part
   std::int32_t mirror_x_ = 0, mirror_y_ = 0, last_x_ = 0, last_y_ = 0;
-  std::int32_t first_x_ = 0, first_y_ = 0;  // nearest cell that a ray begins in
+  std::int32_t first_x_ = 0, first_y_ = 0;  // nearest cell in which a ray starts
   Block stack_[4 * 32];
   std::size_t depth_ = 0;
 };

@@ -319,7 +319,7 @@ class Walk {
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const std::uint16_t maximum = ground_.maximum(entry);
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maximum, t_lowest))) {
-          // The line that it came over may have ground behind it, with a node that the ray passes.
+          // There may be ground behind the line that it crossed, with a node that the ray passes.
           if (Holes && begun_ && side_ != Side::below && !below_rim_ &&
               passes_node(after_x_ ? y.at(t_in) : x.at(t_in), at_node[!after_x_]) &&
               touches(rim(grid_ray()).node_time(t_in, !after_x_, t_out)))
@@ -380,7 +380,7 @@ class Walk {
         begun_ = true;
       }
       if (!falling && lowest_code > highest_code) break;
-      // The range is closed: it may end where the ray comes out of a hole.
+      // The range is closed: it may end where the ray leaves a hole.
       const bool ends_on_line = Holes && t_line == ray_.t_max && t_line < t_exit;
       if (!(t_line < t_end) && !ends_on_line) {
         left = t_end < t_end_ || (Wraps && Holes && t_exit == t_end_);
@@ -528,7 +528,7 @@ class Walk {
   Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }
 
   // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
-  // crosses a rim within rounding of it touches it, whatever the sign: otherwise a ray through the corner of a hole,
+  // crosses a rim within rounding of it touches it, for either sign: otherwise a ray through the corner of a hole,
   // above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);

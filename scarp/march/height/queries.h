@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Batch queries over a height field, and validation of rays.
 //
-//   rays in   [ r0 r1 r2 r3 ... ]        hits[i] belongs to rays[i], in whatever order
+//   rays in   [ r0 r1 r2 r3 ... ]        hits[i] belongs to rays[i], in any order
 //   hits out  [ h0 h1 h2 h3 ... ]        the rays are traced
 //
 // One call traces all rays, on all threads. Large batches of unordered rays over large fields are traced in the order

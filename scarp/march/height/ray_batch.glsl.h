@@ -5,8 +5,8 @@
 //
 //   RayBatch ──rays──▶ RayBlock RayBlock ...     one invocation for each ray (ray_blocks.glsl.h)
 //       │  ├──hits───▶ HitBlock HitBlock ...     the answers, in the same order
-//       │  ├──states─▶ batch_states.glsl.h       where marches stand that are not done
-//       │  └──under_way─▶ a word                 1 if there are such; who begins a run clears it
+//       │  ├──states─▶ batch_states.glsl.h       positions of unfinished marches
+//       │  └──under_way─▶ a word                 1 if there are any; cleared before each run
 //       └────ground──▶ GroundBuffers
 //
 // A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and continues in the next run, which has

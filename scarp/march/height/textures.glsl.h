@@ -5,7 +5,7 @@
 //   scarp_heights   32-bit float, one channel: texel (col, row) is the sample there
 //   scarp_bounds    32-bit float, two channels, with mip levels: texel (col, row) of mip level l - 1 holds the maximum
 //                   and the minimum code of block (col, row) of level l, as accel/max_pyramid.h makes them. Its sides
-//                   are powers of two no less than those of level 1, so that every level has room; what lies beyond
+//                   are powers of two no less than those of level 1, so that every level has room; texels beyond
 //                   means nothing
 //
 // Both use NEAREST filters, except for the minification of scarp_bounds: NEAREST_MIPMAP_NEAREST, because without a

@@ -11,9 +11,9 @@
 namespace scarp {
 namespace {
 
-// Shortest segment, as a fraction of the ray's part in the field's box, whatever the tolerance.
+// Shortest segment, as a fraction of the ray's part in the field's box, for any tolerance.
 constexpr double kShortest = 0x1p-40;
-// Linear models are followed slightly less far than to where they meet the surface: more than their rounding.
+// Linear models are followed to slightly before they reach the surface, by more than their rounding.
 constexpr double kShort = 1 - 0x1p-20;
 // Slightly beyond where the ray is known to be inside.
 constexpr double kBeyond = 1 + 0x1p-10;

@@ -22,7 +22,7 @@ namespace scarp {
 /// Settings of rounded voxels.
 struct VoxelRounding {
   double radius = 0;  ///< of edges and corners, in voxel sides: 0 (cubes) to 0.5 (a single voxel is a ball)
-  bool each = false;  ///< rounds every voxel on its own
+  bool each = false;  ///< rounds every voxel separately
 
   explicit operator bool() const { return radius > 0; }
 };

@@ -64,7 +64,7 @@ bool enter_boxes(uint i, VoxelObjects scene, out float end) {
 // No child is as large.
 const uint kScarpNoChild = 0xffffffffu;
 
-// Returns the child of a node to visit next: the nearest of those in `rest` that the ray meets before `end`, or
+// Returns the child of a node to visit next: the nearest of those in `rest` that the ray hits before `end`, or
 // kScarpNoChild. Leaves the others in `rest`.
 uint nearest_child(VoxelNodes nodes, uint node, float end, inout uint rest) {
   vec3 origin = box_origin[gl_LocalInvocationIndex], inwards = box_inwards[gl_LocalInvocationIndex];

@@ -7,8 +7,8 @@
 // `margin` at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of that end:
 // clip coordinates have errors of a few units of 2^-24 of it.
 //
-// All corners of an object have one depth, which is in front of all hits in it: depths are thus correct however close
-// the eye is, and nothing near it is clipped.
+// All corners of an object have one depth, which is in front of all hits in it: depths are thus correct no matter how
+// close the eye is, and nothing near it is clipped.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The fragments of voxel_proxies.frag: the ray of a pixel through one object, as voxel_objects.glsl.h asks it. GLSL
-// with float64.
+// The fragments of voxel_proxies.frag: the ray of a pixel through one object, as in voxel_objects.glsl.h. GLSL with
+// float64.
 //
 // The ray is read by pixel, as compute does: nothing is interpolated, so it is bit-identical and finds the same voxel.
 #ifndef SCARP_MARCH_VOXEL_PROXIES_MARCH_GLSL_H

@@ -33,7 +33,7 @@ struct DeviceBoxes {
   static constexpr std::uint32_t kMaxLevels = 64;
 };
 
-/// Grids in their places on a device. The grids must live as long.
+/// Placed grids on a device. The grids must outlive them.
 class DeviceVoxelObjects {
  public:
   /// Throws Error naming the object if its numbers are beyond 2^-200 or 2^200, or if the device lacks memory or 64-bit
@@ -79,9 +79,9 @@ class DeviceVoxelQueries {
   DeviceVoxelQueries& operator=(DeviceVoxelQueries&&) noexcept;
   ~DeviceVoxelQueries();
 
-  /// Sets hits[i] to the closest hit of rays[i], which begins beside the voxel of from[i] unless that is null or `from`
-  /// is empty. Returns the indices of rays without an answer. Throws Error if spans differ in length or the device is
-  /// lost.
+  /// Sets hits[i] to the closest hit of rays[i], which starts next to the voxel of from[i] unless that is null or
+  /// `from` is empty. Returns the indices of rays without an answer. Throws Error if spans differ in length or the
+  /// device is lost.
   std::vector<std::size_t> closest_hits(const DeviceVoxelObjects& objects, std::span<const Ray> rays,
                                         std::span<const Hit* const> from, std::span<Hit> hits,
                                         const DeviceVoxelDetails& details = {});

@@ -13,7 +13,7 @@
 // The quantised ray stays within 2^-21 + 2^-29 * 16384 < 2^-14 voxel (2^-17 in boxes of 2,048) of the ray along every
 // axis; within 2^-20 + 2^-14 along an axis of which it crosses one plane at most.
 //
-// Ties are decided in the directions of the world, so that grids that touch agree however each is turned (VoxelTies):
+// Ties are decided in the directions of the world, so that touching grids agree in any orientation (VoxelTies):
 //
 //   planes crossed at the same s   in the order x, y, z. Steps go through faces, so a ray through an edge or a corner
 //                                  visits the voxels between, with zero length: solid voxels that touch at an edge let
@@ -71,7 +71,7 @@ struct VoxelHit {
 constexpr int kPlaceBits = 20, kDirectionBits = 28;
 constexpr std::int64_t kVoxelPlaces = std::int64_t{1} << kPlaceBits;
 
-/// How the axes of a grid stand in the world, as far as ties depend on it. The default is that of grids in their place.
+/// Orientation of a grid's axes in the world, as far as ties depend on it. The default is that of unrotated grids.
 struct VoxelTies {
   static constexpr std::uint32_t kBits = 6;
   /// Bits 0 to 2: axes whose upper side is the low one. Bits 3, 4, 5: y is crossed before x, z before x, z before y.
@@ -141,8 +141,8 @@ struct QuantisedRay {
   }
 };
 
-/// Returns false if the ray misses the box within its range; `quantised` then means nothing. The box's sides are at
-/// most 16,384.
+/// Returns false if the ray misses the box within its range; `quantised` is then undefined. The box's sides are at most
+/// 16,384.
 bool quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box, QuantisedRay& quantised);
 /// The same with nullopt for a miss, which takes longer: compilers clear an empty optional.
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box);

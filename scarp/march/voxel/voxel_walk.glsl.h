@@ -4,7 +4,7 @@
 //
 // Instead of comparing voxels with the box, it counts how many planes of each axis are left until the ray leaves it.
 //
-// Distances fit in 32 bits however far the ray goes: they begin again after every 256 voxels (scarp_voxel_rebase()).
+// Distances fit in 32 bits for rays of any length: they restart after every 256 voxels (scarp_voxel_rebase()).
 #ifndef SCARP_MARCH_VOXEL_WALK_GLSL_H
 #define SCARP_MARCH_VOXEL_WALK_GLSL_H
 

@@ -12,7 +12,7 @@
 //
 // The founding text on the semi-voxel caster uses r in this formula, "the distance along the ray -- the same as the
 // vertex - eye distance". That holds on the view axis only: in the corner of a 4:3 picture with a field of view of 60
-// degrees, r is 1.39 times z, and terrain written this way lies behind meshes that it should hide. With `reversed`, 1 -
+// degrees, r is 1.39 times z, and terrain written this way is behind meshes that it should hide. With `reversed`, 1 -
 // that: floats keep their precision at the far end then (n / z for an infinite far plane).
 #pragma once
 

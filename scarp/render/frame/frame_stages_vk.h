@@ -85,7 +85,7 @@ class FrameStages {
   // State of the current picture.
   const FrameWork* work_ = nullptr;
   const Progress* progress_ = nullptr;
-  double done_ = 0;  // share of the picture
+  double done_ = 0;  // fraction of the picture
   std::optional<double> device_s_;
   glsl::FramePush push_{};
   glsl::FrameCounters counts_{};  // as of the last submit()

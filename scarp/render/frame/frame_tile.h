@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Computes the colours of a tile's points, in rounds of rays:
 //
-//   camera rays ──▶ rays that water and metal send on ──▶ rays from all surfaces met to sun and sky, in as many rounds
+//   camera rays ──▶ rays that water and metal send on ──▶ rays from all hit surfaces to sun and sky, in as many rounds
 //   as these need
 #pragma once
 
@@ -86,7 +86,7 @@ class FrameTile {
   void light(const Open& open, const RayRound& round) const;
   vec3 water_colour(const WaterPoint& water) const;
   vec3 colour_of(const Seen& seen) const;
-  // Grey level of a point in a picture of iterations: 0 to 1, the share of `most` steps.
+  // Grey level of a point in a picture of iterations: 0 to 1, the fraction of `most` steps.
   float share_of_steps(std::size_t point, double most) const;
 
   const FrameView& view_;

@@ -68,8 +68,8 @@ struct PictureSettings {
   FogSettings fog{};                  ///< replaces haze unless its kind is `none`
   std::optional<WaterSettings> water{};
 
-  /// Whether Image::alpha is filled with the share of each pixel that shows ground, a model or water. Colours then are
-  /// means over that share alone, and black where it is 0.
+  /// Whether Image::alpha is filled with the fraction of each pixel that shows ground, a model or water. Colours then
+  /// are means over that share alone, and black where it is 0.
   bool alpha = false;
 
   bool tone_curve = true;  ///< whether `shaded` and `comanche` compress bright colours (toned()); layers never do
@@ -130,7 +130,7 @@ struct Picture {
 
 /// Renders a picture. `camera` must have been created with the width and height of the settings; if terrain wraps, it
 /// needs a finite reach. Throws Error if a setting is out of range, nothing in the scene is visible, the eye is not
-/// above the water, or the scene has no such level. Throws Interrupted if `progress` returns false.
+/// above the water, or the scene lacks the level. Throws Interrupted if `progress` returns false.
 Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                        const Progress& progress = {});
 

@@ -16,7 +16,8 @@ void take(std::optional<T>& asked, const std::optional<T>& own) {
   if (!asked) asked = own;
 }
 
-// Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps. The last one is the function's.
+// Meadows, dry grass and snow by height, rock on steep slopes; or one of the ramps. The last one is that of the
+// function.
 std::vector<Material> function_materials(const ReliefRange& range, const std::string& ramp) {
   if (!ramp.empty()) return {HeightRamp{ramp, range.low, range.high}};
   const auto at = [&](double share) { return range.low + share * (range.high - range.low); };

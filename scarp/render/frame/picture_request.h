@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A request for a picture. resolve() makes settings of the request, the facts of the input and the place of the camera;
-// nothing changes them afterwards. The command line, the window and scene files all fill in a PictureRequest.
+// A request for a picture. resolve() derives the settings from the request, the properties of the input and the
+// position of the camera; nothing changes them afterwards. The command line, the window and scene files all fill in a
+// PictureRequest.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +20,19 @@ struct ImageSize {
   int width = 0, height = 0;
 };
 
-/// Size of `comanche` in large pixels, unless it is asked for.
+/// Default size of `comanche` in large pixels.
 constexpr ImageSize kLowResolution{320, 240};
 
-/// A request for a picture, apart from its camera. Members without a value are not asked for. Units and ranges are
-/// those of the PictureSettings that they become.
+/// A request for a picture, apart from its camera. Members without a value are not requested. Units and ranges are
+/// those of PictureSettings.
 struct PictureRequest {
   Look look = Look::shaded;
   int level = 0;                            ///< `level`
   std::optional<int> width{}, height{};     ///< pixels; `comanche` has `low_resolution`
-  std::optional<ImageSize> low_resolution;  ///< large pixels; the look `height` then takes the rays of `comanche`
+  std::optional<ImageSize> low_resolution;  ///< large pixels; the look `height` then uses the rays of `comanche`
   std::optional<int> aa{};
   std::optional<StepScale> step_scale{};
-  std::optional<double> error_tolerance{};  ///< cells or voxels; of functions and shapes, percent of the distance
+  std::optional<double> error_tolerance{};  ///< cells or voxels; functions and shapes: percent of the distance
 
   // Light.
   std::optional<double> sun_azimuth_deg{}, sun_altitude_deg{}, sun_size_deg{};
@@ -41,7 +42,7 @@ struct PictureRequest {
   bool unlit = false;
   std::optional<bool> tone_curve{};
   std::optional<double> haze{};
-  std::optional<double> haze_distance{};  ///< replaces `haze`, unless that is asked for with higher priority
+  std::optional<double> haze_distance{};  ///< replaces `haze`, unless that is requested with higher priority
   std::optional<int> samples{};
   std::optional<double> ao_distance{};
   std::optional<std::uint32_t> seed{};
@@ -54,7 +55,7 @@ struct PictureRequest {
   std::optional<double> snow_line{};  ///< metres, not exaggerated
   double detail = 0, detail_size = 0, contours = 0;
 
-  // Water, which `water_level` brings.
+  // Water, enabled by `water_level`.
   std::optional<double> water_level{};
   std::optional<vec3> water_srgb{};
   std::optional<double> water_turbidity{}, waves{}, wavelength{};
@@ -79,37 +80,36 @@ struct PictureFiles {
   std::shared_ptr<const Drape> drape{};                   ///< null: none
 };
 
-/// The subject of a picture: all that is known of it besides the request.
+/// The subject of a picture: its properties apart from the request.
 struct PictureSubject {
   PictureRequest own{};           ///< the input's own request: the picture of a scene file, the sun of models
   PictureFiles files{};           //
   double grid_north_azimuth = 0;  ///< radians clockwise from true north
-  double across = 0;              ///< metres that a picture is about; 0: unknown
+  double across = 0;              ///< extent of the picture in metres; 0: unknown
   ReliefRange heights{};          ///< of the ground, exaggerated
   double exaggeration = 1;
-  std::optional<double> function_extent{};  ///< metres: the side of the part of a terrain function that is shown; haze
-                                            ///< is that over this distance
-  WorldBox box{};                           ///< from which cameras stand back; see resolve()
-  std::optional<WorldBox> map{};            ///< what a map shows; without a requested size the picture has its shape
-  ImageSize size{1280, 720};                ///< pixels, unless a size is asked for
+  std::optional<double> function_extent{};  ///< side of the shown ground in metres, and the distance of its haze
+  WorldBox box{};                           ///< from which cameras keep a distance; see resolve()
+  std::optional<WorldBox> map{};            ///< extent of a map; without a requested size the picture has its shape
+  ImageSize size{1280, 720};                ///< default size in pixels
   bool interpolate = true;                  ///< ComancheSettings::interpolate
   bool alpha = false;                       ///< PictureSettings::alpha
 };
 
-/// Returns the size of a map of a box: its longer side has as many pixels as asked for.
+/// Returns the size of a map of a box: its longer side has the requested number of pixels.
 ImageSize size_of_map(const WorldBox& box, int longer_side);
 
-/// Haze of terrain functions over PictureSubject::function_extent, unless it is asked for.
+/// Default haze of terrain functions over PictureSubject::function_extent.
 constexpr double kFunctionHaze = 0.2;
-/// Returns the distance in metres at which rays over a terrain function may end: haze hides all but 1/64 of what is
+/// Returns the distance in metres at which rays over a terrain function may end: haze hides all but 1/64 of everything
 /// behind.
 double function_reach(const PictureRequest& asked, double extent);
 
 /// Returns the look of the settings: `comanche` for the look `height` in large pixels.
 Look look_of(const PictureRequest& asked);
 
-/// Returns the settings of a picture. A camera that stands back from PictureSubject::box adds ten times its distance to
-/// the visibility, unless that is asked for: less than a third of a contrast is lost on the way. Throws Error naming
+/// Returns the settings of a picture. A camera at a distance from PictureSubject::box adds ten times that distance to
+/// the visibility, unless that is requested: less than a third of the contrast is lost in between. Throws Error naming
 /// the first setting that is out of range.
 PictureSettings resolve(const PictureRequest& asked, const PictureSubject& subject, const Camera* camera = nullptr);
 

@@ -10,7 +10,7 @@
 //       │  ├──ground────▶ GroundBuffers
 //       │  ├──seens─────▶ FrameSeen, the camera's of all pixels; then mirrored ones, then those to the water's bottom
 //       │  ├──waters────▶ FrameWater of each pixel, if there is water
-//       │  ├──rays──────▶ RayBlock for the march, ray after ray, whatever they are for;  ──hits──▶ its answers
+//       │  ├──rays──────▶ RayBlock for the march, ray after ray, for all purposes;  ──hits──▶ its answers
 //       │  ├──owners────▶ of each ray the index of its FrameSeen
 //       │  ├──grounds───▶ indices of those that see ground, which is to be lit and painted
 //       │  ├──counters──▶ FrameCounters: how many rays and grounds there are
@@ -233,7 +233,7 @@ struct FrameSeen {
   float metres;       ///< per time
   int asked;          ///< 0: no ray
   int kind;           ///< kFrameNothing, kFrameGround, kFrameWall
-  ScarpTwoFloat t;    ///< time; of a ray that marches when it begins
+  ScarpTwoFloat t;    ///< time; for a ray that marches, its start
   float per_time;     ///< of ScarpSent
   ScarpTwoFloat end;  ///< time; kept of rays from the water
   ivec2 cell;         ///< of ground and walls

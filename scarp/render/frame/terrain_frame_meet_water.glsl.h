@@ -72,7 +72,7 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
     found.sea = is_sea(field, cell) ? 1 : 0;
     return found;
   }
-  // A side: only over the ground that stands there.
+  // A side: only above the ground at that position.
   if (z.low <= surface) return found;
   bool through_x = same_time(t, x.begin);
   found.kind = through_x ? 2 : 3;

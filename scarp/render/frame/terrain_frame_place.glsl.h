@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Places on ground and water, for the stages that paint these and include this. GLSL.
+// Points on ground and water, for the stages that paint them. GLSL.
 #ifndef SCARP_RENDER_TERRAIN_FRAME_PLACE_GLSL_H
 #define SCARP_RENDER_TERRAIN_FRAME_PLACE_GLSL_H
 

@@ -2,7 +2,7 @@
 // Renders pictures in rounds: the work on a tile submits rays, receives all results at once, and submits again until
 // its pixels are done.
 //
-//   on the CPU      every thread works on a tile of its own; its rays are a batch of hundreds
+//   on the CPU      every thread works on its own tile; its rays are a batch of hundreds
 //   on a device     many tiles are worked on together, and their rays of a round are one batch of at most 2^18
 #pragma once
 

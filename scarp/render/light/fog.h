@@ -33,7 +33,7 @@ struct FogSettings {
   double visibility = 20000;  ///< metres, at the height `base`; > 0
   double base = 0;            ///< metres of world z where `visibility` holds; `height` alone
   double falloff = 300;       ///< metres in which the fog thins out by the factor e; > 0; `height` alone
-  double sun_tint = 0.6;      ///< share of the colour of sunlight, looking into the sun; 0..1; plain sky only
+  double sun_tint = 0.6;      ///< fraction of the colour of sunlight, looking into the sun; 0..1; plain sky only
 };
 
 /// Throws Error naming the first setting out of range.

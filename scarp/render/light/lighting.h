@@ -29,7 +29,7 @@ class Lighting {
   /// to the sun end there.
   Lighting(const LightSettings& settings, double ao_distance, std::optional<double> highest = {});
 
-  /// Maximum number of rays that ask() appends.
+  /// Maximum number of rays appended by ask().
   std::size_t most_rays() const;
   /// Appends the rays for the light on a point.
   LightRays ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const;

@@ -6,7 +6,7 @@
 //
 // Two normals are involved. Visibility depends on the surface alone: the sky is above its tangent plane, and rays below
 // it are blocked. Brightness depends on the shading normal, which is continuous from cell to cell. Occlusion round the
-// surface's normal steps little from cell to cell: both sides of a hollow crease hide the same share of each other's
+// surface's normal steps little from cell to cell: both sides of a hollow crease hide the same fraction of each other's
 // sky, and those of a ridge hide nothing. Round the shading normal a ridge would be dark.
 #pragma once
 

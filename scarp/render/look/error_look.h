@@ -13,7 +13,7 @@
 //   blue       early: the march stopped before the ground, or at something nearer
 //   orange     late: the march hit behind the first ground
 //   yellow     gave up: the march came to its step limit
-//   brown      not judged: the ray starts or enters below the surface and never meets it from above
+//   brown      not judged: the ray starts or enters below the surface and never hits it from above
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ Verdict judge(const Hit& answer, const Hit& truth, double tolerance);
 
 struct ErrorSettings {
   double tolerance = 0.1;  ///< hits agree within this many sides of a cell or voxel along the ray; >= 0
-  double share = 0.01;     ///< of functions and shapes: within this share of the distance; >= 0
+  double share = 0.01;     ///< functions and shapes: within this fraction of the distance; >= 0
 };
 
 /// Throws Error naming the first setting out of range.

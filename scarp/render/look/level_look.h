@@ -12,7 +12,7 @@ namespace scarp {
 
 class LevelMaxima {
  public:
-  /// Refers to the scene. Throws Error if the scene is not a single height field, or its pyramid has no such level.
+  /// Refers to the scene. Throws Error if the scene is not a single height field, or its pyramid lacks the level.
   LevelMaxima(const Scene& scene, int level);
 
   /// Returns the maximum of the node that contains a cell, in metres; from level 1 on rounded up to a code of the

@@ -26,8 +26,8 @@ SCARP_FN float scarp_srgb_byte(float linear) {
   return floor(255.0f * s + 0.5f);
 }
 
-// The tone curve begins at the first value, which leaves white level ground of a reflectance of 70 % alone. The second
-// one maps to 1: the light on a white slope that faces a sun at 30 degrees is 1.71.
+// The tone curve starts at the first value, which does not change white level ground of a reflectance of 70 %. The
+// second one maps to 1: the light on a white slope that faces a sun at 30 degrees is 1.71.
 const float kScarpToneBegin = 0.7f;
 const float kScarpToneFull = 1.75f;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Colours of ground: the formulas of ground_paint.h. Compiles as C++ and GLSL. The including file must define before:
-//   struct ScarpPaintPlace, a place on the ground, and
+//   struct ScarpPaintPlace, a point on the ground, and
 //   real scarp_paint_noise(ScarpPaintPlace place, int set, int octave, real size)
 //                                              Perlin noise, seed octave + 1, of patches of so many metres; `set` and
 //                                              `octave` name them: see scarp_patches()
@@ -64,7 +64,8 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   // Sines of slopes between which grass gives way to rock.
   colour = scarp_between(
       colour, rock, scarp_smooth(real(0.45), real(0.68), steep + real(0.10) * blur + real(0.35) * (share - real(0.5))));
-  // How much lower snow lies on the shadowed side, the width of its border, and cosines below which it slides off.
+  // How much lower the snow line is on the shadowed side, the width of its border, and cosines below which it slides
+  // off.
   real line = snow_share - real(0.10) * (normal.x * from_sun.x + normal.y * from_sun.y);
   real snow = scarp_smooth(line - real(0.05), line + real(0.05), share + real(0.07) * blur) *
               scarp_smooth(real(0.55), real(0.72), normal.z + real(0.06) * rough);

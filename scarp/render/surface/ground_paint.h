@@ -33,7 +33,7 @@ struct Drape {
 
 struct GroundPaintSettings {
   bool natural = false;     ///< rock, grass and snow instead of the ramp
-  double snow_share = 0.7;  ///< fraction of the relief at which snow begins, for `natural`; finite
+  double snow_share = 0.7;  ///< fraction of the relief at which snow starts, for `natural`; finite
   double detail = 0;        ///< strength of the patches, 0..1
   double detail_size = 0;   ///< metres of the largest patches, or the width of the texture, >= 0;
                             ///< 0: sixteen cells

@@ -4,7 +4,7 @@
 //    eye \      / reflected        the level is a plane, met in closed form: a coast is where the ground goes through
 //   ______\____/_______            it, to the last bit, and no step of any march can fray it
 //          \  .'  .               R  = R0 + (1 - R0) (1 - cos)^5, R0 = ((n - 1) / (n + 1))^2     (Schlick 1994)
-//           \    .                 the rest goes on, refracted by Snell's law, to the bottom that the ray meets
+//           \    .                 the rest continues, refracted by Snell's law, to the bottom
 //      ______\_.'__                 and comes back as bottom * exp(-c d) + the water's own colour * (1 - exp(-c d))
 //                                                                                          (Beer; d as traced)
 // Absorption is that of pure water at 650, 550 and 450 nm (Pope and Fry 1997), plus `turbidity` for suspended matter.

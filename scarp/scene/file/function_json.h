@@ -15,7 +15,7 @@
 //   {"type": "product" | "minimum" | "maximum", "of": [F, F, ...]}
 //   {"type": "smooth-minimum", "of": [F, F], "radius": 10}
 //
-// All keys but type and operands have the defaults of function_node.h. Angles are in degrees; `towards` counts from
+// All keys except type and operands have the defaults of function_node.h. Angles are in degrees; `towards` counts from
 // east, counter-clockwise.
 #pragma once
 

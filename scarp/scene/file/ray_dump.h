@@ -3,12 +3,12 @@
 //
 //   scarp-rays 1                          first line: what this is, and its version
 //   # anything                            lines like this and empty ones are skipped
-//   field float32 3 2                     begins a field: type of the samples, columns, rows
+//   field float32 3 2                     starts a field: type of the samples, columns, rows
 //   cell_x 0x1p+0                         the settings, in any order; what is left out has its default:
 //   ...                                   cell_y scale offset exaggeration nodata surface wrap solid
 //   row 0x1p+0 nan 0x1.8p+1               the samples, from north to south, one line for each row; or
 //   generate ridged 1 0x1p+0 0x0p+0       instead of rows, a procedural DEM: kind, seed, cell in metres, wavelength
-//   ray                                   begins a ray over the field above; several may follow one another
+//   ray                                   starts a ray over the field above; several may follow
 //   origin 0x1p+0 0x1p-1 0x1p+3
 //   direction 0x0p+0 0x0p+0 -0x1p+0
 //   range 0x0p+0 inf                      t_min and t_max

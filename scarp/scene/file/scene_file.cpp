@@ -178,7 +178,7 @@ class SceneReader {
     return found->second;
   }
 
-  // An object whose surface others stand on.
+  // An object on whose surface others are placed.
   SceneGround ground_of(const std::string& name, const std::string& at) const {
     for (const SceneObjectName& known : names_) {
       if (known.name != name) continue;

@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// An object on whose surface others stand. It must not be tilted.
+/// An object on whose surface others are placed. It must not be tilted.
 struct SceneGround {
   const SceneField* field;
   Placement placement;

@@ -177,7 +177,7 @@ TEST(FunctionMarches, RespectTheRayRange) {
 }
 
 TEST(FunctionMarches, StopAtTheirReach) {
-  const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // meets the ground after 33.3 m
+  const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // hits the ground after 33.3 m
   for (const FunctionMarchEntry& march : function_marches()) {
     MarchSettings settings;
     settings.function.reach = 30;
@@ -299,7 +299,7 @@ TEST(FunctionMarches, FixedStepCountsItsSamples) {
   EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 52);
   settings.sampling.refinement = Refinement::bisect;
   settings.sampling.halvings = 10;
-  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic share of the step
+  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic fraction of the step
   settings.sampling.refinement = Refinement::none;
   settings.function.step_share = 0.5;  // 0, 2, 4, 6, 9, 13.5, 20.25, 30.375, 45.5625, 60 (68.3, the end)
   hit = march_fixed_step(ramp, ray, settings, &stats);
@@ -325,7 +325,7 @@ TEST(FunctionMarches, RefineTheLastInterval) {
     settings.sampling.refinement = Refinement::secant;
     const Hit secant = march(ramp, ray, settings, nullptr, FunctionUse::march);
     EXPECT_GT(plain.t - halved.t, 0.01);
-    // 24 halvings of an interval shorter than 2; the secant meets the limit of the last sample, 0.01 of its t.
+    // 24 halvings of an interval shorter than 2; the secant reaches the limit of the last sample, 0.01 of its t.
     EXPECT_NEAR(halved.t, 102 / 1.01, 2 * 0x1p-24);
     EXPECT_NEAR(secant.t, 102 - 0.01 * plain.t, 1e-12);
   }

@@ -215,7 +215,7 @@ TEST(FunctionsInShaders, MarchesMatchWithinSinglePrecision) {
   }
 }
 
-// As PassCloseToCreases of function_marches_test, as far as floats tell times: 1000 / 2^22.
+// As PassCloseToCreases of function_marches_test, within float precision of times: 1000 / 2^22.
 TEST(FunctionsInShaders, PassCloseToCreases) {
   const HeightFunction ridge(make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})}));
   const Program program(ridge.program(FunctionUse::march));

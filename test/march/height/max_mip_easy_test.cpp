@@ -159,7 +159,7 @@ TEST(MaxMipEasy, NoRayIsLostBetweenCells) {
     const MaxPyramid pyramid(field);
     Ground ground(field, pyramid);
     for (int j = 0; j < kAimedRays / kFields; ++j) {
-      // Whole numbers: half of the rays meet nodes exactly.
+      // Integers: half of the rays hit nodes exactly.
       dvec2 through(whole(random, 1, cols - 2), whole(random, 1, rows - 2));
       if (j % 4 == 1) through.x += uniform(random, -1, 1);
       if (j % 4 == 2) through.y += uniform(random, -1, 1);

@@ -260,7 +260,7 @@ TEST(MaxMipSimd, TouchesTheHighestSample) {
   }
 }
 
-// A shadow map's rays: from nodes, points of edges and others, by little above the ground or in it, along diagonals,
+// A shadow map's rays: from nodes, points of edges and others, slightly above the ground or in it, along diagonals,
 // axes and other ways, over ground that is rough from sample to sample: parabolas that dip between the ends of a cell.
 TEST(MaxMipSimd, StartsJustAboveRoughGround) {
   Random random(79);

@@ -37,7 +37,7 @@ const std::vector<FieldKind>& spiteful_fields();
 /// Fields of more than one tile of 1,024 cells, on which marches in single precision start a new frame.
 const std::vector<FieldKind>& wide_fields();
 const std::vector<RayKind>& spiteful_rays();
-/// Rays over wide fields: long ways, through nodes and along lines where tiles meet.
+/// Rays over wide fields: over long distances, through nodes and along lines where tiles meet.
 const std::vector<RayKind>& rays_across_tiles();
 
 /// Heights at random up to `most` above or below 0, in 2 to most_side samples per side and cells of 0.3 to 2 m; some of
@@ -46,10 +46,10 @@ HeightField rugged(Random& random, int most_side, double most, double hole_share
 
 /// Hills of several widths: rays along the ground go far before they hit, and any-hit looks ahead.
 HeightField hills(int cols, int rows, Surface surface);
-/// A ray along them, from their surface or from some metres about it.
+/// A ray along them, from their surface or within some metres of it.
 Ray along_hills(const HeightField& field, Random& random, bool from_surface);
 
-/// Rays with NaN, infinite, tiny and huge numbers, which queries need not accept, in every place of a ray.
+/// Rays with NaN, infinite, tiny and huge numbers, which queries need not accept, in every member of a ray.
 std::vector<Ray> rays_of_unusual_numbers(const HeightField& field);
 
 }  // namespace scarp::test

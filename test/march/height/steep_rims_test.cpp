@@ -131,7 +131,7 @@ TEST(SteepRims, IgnoreNegligibleLeans) {
   rays.check();
 }
 
-// The height of an edge: samples of both ends at a share of its length.
+// The height of an edge: samples of both ends at a fraction of its length.
 double on_edge(float a, float b, double share) { return a + share * (static_cast<double>(b) - a); }
 
 TEST(SteepRims, HitAllBordersAtTheirEdgeHeight) {
@@ -327,9 +327,9 @@ TEST(SteepRims, HaveHeightsAtTheirNodes) {
   }
 }
 
-// A ray passes the corner of the ground so: over its column's line into a block without ground, just before the row's
-// line. The block is left out of the walk where the ray ends above all that it knows, but the corner is beside it.
-TEST(SteepRims, CornerBesideABlockWithoutGroundIsHitWhereverTheRangeEnds) {
+// A ray passes a corner of the ground over its column's line into a block without ground, just before the row's line.
+// The walk skips the block if the ray ends above all its heights, but the corner is next to it.
+TEST(SteepRims, HitsCornersNextToEmptyBlocksForAnyRangeEnd) {
   constexpr int kSide = 9, kCol = 4, kRow = 3;
   constexpr double kCorner = 0.125, kDrop = 16, kAcross = 0x1p-6, kAlong = 5.5;
   for (int turn = 0; turn < 8; ++turn) {

@@ -33,7 +33,7 @@ Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
     using namespace spirv_op;
     add_offset(code, words, offsets);
     if (code == kTypeStruct) {
-      // GroundBuffers is known by its last member, the block Ground by having no other member.
+      // GroundBuffers is recognised by its last member, the block Ground by having no other member.
       const bool is_block = words.size() == 3 && blocks.contains(words[2]);
       const auto found = offsets.find(words[1]);
       const bool is_ground = found != offsets.end() && found->second.size() > 20 &&

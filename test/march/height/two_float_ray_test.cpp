@@ -56,7 +56,7 @@ Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, i
   prepared.marches = sent.marches != 0;
   glsl::ScarpHit answer = glsl::scarp_no_hit();
   if (prepared.marches) {
-    // In pieces, as drivers may want it.
+    // In pieces, for drivers with limits.
     glsl::ScarpWalk walk;
     if (glsl::scarp_begin_walk(ground, sent.ray, walk, answer)) {
       while (!glsl::scarp_go_on(ground, sent.ray, false, turns, walk, answer)) {
@@ -91,7 +91,7 @@ TEST_P(TwoFloatRays, MatchTheSurface) {
       ray.origin = ray.at(ray.t_min - skipped);
       ray.t_max -= ray.t_min - skipped;
       ray.t_min = skipped;
-      // Floats count cells up to 2^31, and lengths of directions that cameras have.
+      // Floats count cells up to 2^31. Directions have the lengths of camera rays.
       const dvec3 origin = field.grid_from_world(ray).origin;
       const double farthest = std::max(std::abs(origin.x), std::abs(origin.y));
       if (!(farthest < 0x1p30) || !(length(local.direction) > 0x1p-100 && length(local.direction) < 0x1p100)) continue;

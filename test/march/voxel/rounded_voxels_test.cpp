@@ -56,7 +56,7 @@ TEST(RoundedVoxels, SingleVoxelIsABall) {
   EXPECT_GT(hits, 1000);
 }
 
-// The judge: every solid voxel on its own, its cube cut out of the ray, and the first point of that part that is close
+// The judge: every solid voxel separately, its cube cut out of the ray, and the first point of that part that is close
 // enough to the inner box, by bisection; the distance to a box is convex along a line.
 struct Judged {
   double t = std::numeric_limits<double>::infinity();

@@ -26,10 +26,10 @@ struct VoxelRayKind {
 const std::vector<VoxelGridKind>& spiteful_voxel_grids();
 const std::vector<VoxelRayKind>& spiteful_voxel_rays();
 
-/// VoxelRay::room of a scene whose farthest coordinate is 2^18 voxels: 2^-48 of that, as VoxelObjects has it.
+/// VoxelRay::room of a scene whose farthest coordinate is 2^18 voxels: 2^-48 of that, as in VoxelObjects.
 constexpr double kSceneRoom = 0x1p18 * 0x1p-48;
 
-/// A grid's orientation: a signed permutation, the identity as often as not.
+/// A grid's orientation: a signed permutation, the identity in half of the cases.
 glm::dmat3 random_orientation(Random& random);
 
 /// Fills, clears or paints a random box, ball or voxel; returns the dirty box.

@@ -55,7 +55,7 @@ TEST_P(VoxelPacketOf, MatchesSingleRays) {
         }
         stand.ties = VoxelTies(stand.grid_from_world);
         stand.room = round % 2 ? 0 : kSceneRoom;
-        // As the scene asks them: some rays are left out.
+        // As in calls by a scene: some rays are masked out.
         VoxelPacket packet;
         std::vector<VoxelRay> rays(round % 4 == 0 ? 1 + random() % VoxelPacket::kRays : VoxelPacket::kRays);
         std::vector<Ray> in_world;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kSide = VoxelGrid::kMaxSide;
 
-// Nearly empty, but for the last layers along the long axis, so that rays are long and hit something.
+// Nearly empty except for the last layers along the long axis, so that rays are long and hit something.
 VoxelGrid needle(int axis, Random& random) {
   ivec3 size(9 + whole(random, 0, 8), 6 + whole(random, 0, 9), 7 + whole(random, 0, 7));
   size[axis] = kSide;

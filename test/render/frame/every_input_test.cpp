@@ -47,7 +47,7 @@ Scene function() {
       scene_function(HeightFunction(make_function(Fractal{.wavelength = 24, .height = 12, .octaves = {3, 3, 4}}))));
 }
 
-// A ball that stands half in the ground.
+// A ball that is half in the ground.
 Scene shape() {
   return Scene({scene_shape(DistanceField(make_shape(shape::Sphere{.radius = 9})))},
                {{.placement = {.origin = {16, 16, 2}}}});

@@ -21,7 +21,7 @@ TEST(PictureRequest, EmptyRequestGivesTheDefaultSettings) {
   EXPECT_FALSE(picture.water);
 }
 
-TEST(PictureRequest, ComesBeforeTheRequestOfTheInput) {
+TEST(PictureRequest, OverridesTheRequestOfTheInput) {
   PictureSubject subject;
   subject.own.samples = 4, subject.own.sun_azimuth_deg = 235, subject.own.shadows = false, subject.own.width = 400;
   PictureRequest asked;
@@ -33,7 +33,7 @@ TEST(PictureRequest, ComesBeforeTheRequestOfTheInput) {
   EXPECT_FALSE(picture.shadows);
 }
 
-TEST(PictureRequest, KindOfFogReplacesTheWholeFogOfTheInput) {
+TEST(PictureRequest, FogKindReplacesAllFogOfTheInput) {
   PictureSubject subject;
   subject.own.fog = FogKind::height, subject.own.visibility = 900, subject.own.fog_falloff = 14;
   EXPECT_EQ(resolve({}, subject).fog.visibility, 900);
@@ -54,7 +54,7 @@ TEST(PictureRequest, HazeReplacesTheHazeDistanceOfTheInput) {
   EXPECT_TRUE(std::isinf(resolve(asked, subject).haze_distance));
 }
 
-TEST(PictureRequest, HeightsAreExaggeratedAsTheGround) {
+TEST(PictureRequest, ExaggeratesHeightsLikeTheGround) {
   PictureSubject subject;
   subject.heights = {200, 600}, subject.exaggeration = 2;
   PictureRequest asked;
@@ -66,7 +66,7 @@ TEST(PictureRequest, HeightsAreExaggeratedAsTheGround) {
   EXPECT_DOUBLE_EQ(picture.fog.falloff, 100);
 }
 
-TEST(PictureRequest, CameraFarFromTheSceneSeesFartherThroughFog) {
+TEST(PictureRequest, DistantCamerasSeeFartherThroughFog) {
   PictureSubject subject;
   subject.across = 1000;
   subject.box = {{0, 0, 0}, {100, 100, 10}};
@@ -78,7 +78,7 @@ TEST(PictureRequest, CameraFarFromTheSceneSeesFartherThroughFog) {
   EXPECT_DOUBLE_EQ(resolve(asked, subject, &camera).fog.visibility, 700);
 }
 
-TEST(PictureRequest, MapHasTheShapeOfTheGroundUnlessASizeIsAskedFor) {
+TEST(PictureRequest, MapHasTheShapeOfTheGroundByDefault) {
   PictureSubject subject;
   subject.map = WorldBox{{0, 0, 0}, {2000, 500, 10}};
   const PictureSettings picture = resolve({}, subject);
@@ -89,7 +89,7 @@ TEST(PictureRequest, MapHasTheShapeOfTheGroundUnlessASizeIsAskedFor) {
   EXPECT_EQ(resolve(asked, subject).height, 100);
 }
 
-TEST(PictureRequest, HeightsInLargePixelsTakeTheRaysOfComanche) {
+TEST(PictureRequest, HeightsInLargePixelsUseTheRaysOfComanche) {
   PictureRequest asked;
   asked.look = Look::height, asked.low_resolution = ImageSize{80, 60}, asked.aa = 4;
   const PictureSettings picture = resolve(asked, {});
@@ -100,7 +100,7 @@ TEST(PictureRequest, HeightsInLargePixelsTakeTheRaysOfComanche) {
   EXPECT_FALSE(picture.shadows);
 }
 
-TEST(PictureRequest, OutOfRangeSettingIsNamed) {
+TEST(PictureRequest, ErrorNamesTheSettingOutOfRange) {
   PictureRequest asked;
   asked.sun_azimuth_deg = 0, asked.sun_altitude_deg = -5;
   try {

@@ -138,8 +138,8 @@ class Cliff : public testing::Test {
 
 TEST_F(Cliff, PenumbraMatchesTheSunDisc) {
   const double radius = glm::radians(0.533 / 2);
-  // The edge stands at the angle atan(height / distance). A disc that it covers up to the fraction s of its radius from
-  // the middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: flat, which is off by radius^2 for a cap.
+  // The edge is at the angle atan(height / distance). A disc that it covers up to the fraction s of its radius from the
+  // middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: flat, which is off by radius^2 for a cap.
   for (const double s : {-0.95, -0.6, -0.3, 0.0, 0.4, 0.7, 0.95}) {
     const double shown = 0.5 + (std::asin(s) + s * std::sqrt(1 - s * s)) / std::numbers::pi;
     const double distance = height_ / std::tan(altitude_ - s * radius);
