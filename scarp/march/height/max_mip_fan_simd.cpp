@@ -478,8 +478,10 @@ class FanWalk {
     sure = hn::AndNot(refused, hn::And(sure, hn::Or(hn::And(first, e.crosses), ends_within)));
     if (at.length < 0x1p-12f || (triangles && at.length < 1)) sure = hn::AndNot(sure, sure);
     const VF T = hn::MulAdd(f.share, hn::Set(df, at.length), hn::Set(df, at.T0));
-    // As doubtful ones: -1 - T up to which they are clear.
-    const VF doubtful = hn::IfThenElse(refused, hn::Set(df, -kMiss_), hn::Set(df, -1 - at.T0));
+    // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must see all of a ray, which may
+    // cross it slowly.
+    const MF beside = hn::Or(hn::Lt(p.y, low_side), hn::Gt(p.y, high_side));
+    const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kMiss_), hn::Set(df, -1 - at.T0));
     const VI cell =
         hn::Add(hn::ConvertTo(di, p.node), hn::IfThenElseZero(hn::RebindMask(di, hn::Not(first)), hn::Set(di, 1)));
     const VI mirrored = hn::Add(cell, hn::Set(di, o.node0 + b));
@@ -644,6 +646,8 @@ HWY_EXPORT(walk);
 // Sides that a cell's 16-bit numbers reach, and from how far away a walk over the field makes sense.
 constexpr int kMostCells = 1 << 16;
 constexpr double kFarthest = 0x1p16;
+// In cells; in heights of the field.
+constexpr double kOnBorder = 0x1p-20, kAboveBorder = 0x1p-12;
 
 }  // namespace
 
@@ -661,7 +665,14 @@ bool max_mip::walks_fan(const HeightTarget& target, const Fan& fan) {
   const double tallest = std::max({std::abs(at.z), std::abs(field.min_sample()), std::abs(field.max_sample())});
   if (!(tallest < 0x1p60) || !(relief < 0x1p60)) return false;
   const auto ground = field.height(fan.origin.x, fan.origin.y);
-  return !ground || fan.origin.z > *ground;
+  if (ground && !(fan.origin.z > *ground)) return false;
+  // On the border rays may touch a rim before or behind the field, unless they are well above it.
+  const auto on_border = [](double place, int cells) {
+    return std::min(std::abs(place), std::abs(place - cells)) < kOnBorder;
+  };
+  const bool beside = on_border(at.x, field.cell_cols()) || on_border(at.y, field.cell_rows());
+  const double rim = ground.value_or(field.max_height()), tall = field.max_height() - field.min_height();
+  return !beside || fan.origin.z - rim > kAboveBorder * tall;
 }
 
 void max_mip::walk_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
