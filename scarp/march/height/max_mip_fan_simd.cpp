@@ -313,6 +313,7 @@ class FanWalk {
     const auto set_line = [&] {
       at.T0 = o.T_at(k), at.T1 = o.T_at(k + 1);
       at.length = k == 0 ? at.T1 : 1, at.per_length = k == 0 ? 1 / at.T1 : 1;
+      at.aside = 0x1p-10f + 0x1p-19f * (lanes.strip_most_m * at.T1);
     };
     // The line through the origin: the ground that is cut off there is bilinear again.
     const auto cut = [&](float* window, const float* next) HWY_ATTR {
@@ -410,7 +411,7 @@ class FanWalk {
         // The cell of the origin has been cut as if it were bilinear: a quarter of its twist higher than triangles.
         if (triangles && k == 0) low = hn::Sub(low, hn::Set(df, 0.5f * relief.up_to(1)));
         const MF clear = hn::Gt(low, e.margin);
-        const VF beyond = hn::Set(df, high_y + 0x1p-6f);
+        const VF beyond = hn::Set(df, high_y + at.aside);
         const MF out = hn::AndNot(refused, hn::Gt(p.y, beyond));
         const MF above = hn::AndNot(refused, hn::And(hn::Ge(r.s, hn::Zero(df)), hn::Gt(e.h0, hn::Set(df, highest_))));
         const MF go = hn::And(active, hn::Or(hn::Or(hn::Not(clear), out), hn::Or(above, refused)));
@@ -467,15 +468,13 @@ class FanWalk {
   template <bool triangles>
   HWY_NOINLINE void put_hits(const Octant<Sample>& o, std::int32_t k, std::int32_t b, const FanLine& at, float low_y,
                              float high_y, const FanPlaces& p, const FanStep& e, MF candidates, MF refused, VI j) {
-    // Away from the sides, which rounding may place elsewhere.
-    const VF inner = hn::Set(df, 0x1p-10f), low_side = hn::Add(hn::Set(df, low_y), inner);
-    const VF high_side = hn::Sub(hn::Set(df, high_y), inner);
-    const MF within = hn::And(hn::Ge(p.y, low_side), hn::Lt(hn::Add(p.node, hn::Set(df, 0.5f)), hn::Set(df, high_y)));
-    const MF ends_within = hn::Le(hn::Add(p.node, p.q), high_side);
+    // Away from the sides, which rounding may place elsewhere: a ray along one may cross it much earlier or later.
+    const VF low_side = hn::Set(df, low_y + at.aside), high_side = hn::Set(df, high_y - at.aside);
     const FanCrossing f = triangles ? triangle_crossing(e) : bilinear_crossing(e);
     const MF first = f.first;
-    MF sure = hn::And(hn::And(candidates, within), hn::And(hn::Gt(e.c0, e.margin), f.sure));
-    sure = hn::AndNot(refused, hn::And(sure, hn::Or(hn::And(first, e.crosses), ends_within)));
+    const VF ends = hn::Add(p.node, hn::IfThenElse(first, hn::Min(p.q, hn::Set(df, 1)), p.q));
+    const MF within = hn::And(hn::Ge(p.y, low_side), hn::Le(ends, high_side));
+    MF sure = hn::And(hn::AndNot(refused, candidates), hn::And(within, hn::And(hn::Gt(e.c0, e.margin), f.sure)));
     if (at.length < 0x1p-12f || (triangles && at.length < 1)) sure = hn::AndNot(sure, sure);
     const VF T = hn::MulAdd(f.share, hn::Set(df, at.length), hn::Set(df, at.T0));
     // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must see all of a ray, which may

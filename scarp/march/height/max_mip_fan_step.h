@@ -28,7 +28,8 @@ HWY_INLINE VF per(VF m) { return hn::Div(hn::Set(df, 1), hn::Max(m, hn::Set(df, 
 // Where a step takes place: from line k at T0 to the next at T1.
 struct FanLine {
   float T0, T1, length, per_length;
-  float y;  // the origin's place along minor, from the first node of the windows
+  float y;      // the origin's place along minor, from the first node of the windows
+  float aside;  // what rounding may move any ray to the side, and a little more
 };
 
 // The nodes around the way of each lane: at the line, and at the next one.

@@ -25,7 +25,7 @@ namespace scarp::test {
 namespace {
 
 const int kFansPerField = cases(400, 40, 2);
-const int kRounds = cases(40, 4, 1);
+const int kRounds = cases(40, 2, 1);
 constexpr double kPi = std::numbers::pi;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
