@@ -3,6 +3,7 @@
 
 #include "bench/protocol.h"
 #include "scarp/accel/slope_bound.h"
+#include "scarp/march/height/max_mip_fan.h"
 
 namespace scarp::bench {
 namespace {
@@ -88,12 +89,35 @@ Engine ScarpGround::vectors(const std::string& mode, const VectorOptions& option
   return engine;
 }
 
+Engine ScarpGround::fans() const {
+  Engine engine = this->engine(find_height_march("max-mip"));
+  engine.mode = "fan";
+  engine.in_fans = true;
+  engine.closest = nullptr, engine.blocked = nullptr;
+  const HeightTarget to = target();
+  engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+    const std::int64_t rows = set.fan.rows;
+    Fan fan;
+    fan.origin = set.fan.origin;
+    fan.dx = set.fan.dx.data() + begin, fan.dy = set.fan.dy.data() + begin, fan.dz = set.fan.dz.data() + begin;
+    fan.columns = static_cast<int>((end - begin) / rows), fan.rows = set.fan.rows;
+    fan.row_stride = 16, fan.strip_stride = 16 * rows;
+    thread_local std::vector<float> u, v;
+    thread_local std::vector<std::int32_t> col, row;
+    const auto count = static_cast<std::size_t>(end - begin);
+    u.resize(count), v.resize(count), col.resize(count), row.resize(count);
+    closest_hits_max_mip_fan(to, fan, {answers, col.data(), row.data(), u.data(), v.data()});
+  };
+  return engine;
+}
+
 std::vector<Engine> ScarpGround::engines() const {
   std::vector<Engine> engines;
   for (const HeightMarchEntry& march : height_marches()) {
     if (march.name == "exhaustive" || !takes(march.fields, field_)) continue;
     engines.push_back(engine(march));
     if (march.simd) engines.push_back(vectors(std::string(march.name) + "-simd"));
+    if (march.simd) engines.push_back(fans());
     // What an any-hit query of its own gains.
     if (march.own_any_hit) engines.push_back(closest_only(march));
   }

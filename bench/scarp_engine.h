@@ -29,6 +29,9 @@ class ScarpGround {
   /// `max-mip` in vectors, with all optimisations or some.
   Engine vectors(const std::string& mode, const VectorOptions& options = {}) const;
 
+  /// `max-mip` in fans: for sets that are such.
+  Engine fans() const;
+
   /// Every march of the table but the judge.
   std::vector<Engine> engines() const;
 
