@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "hwy/cache_control.h"
 #include "scarp/accel/relief_map.h"
 #include "scarp/field/height_field.h"
 #include "scarp/march/height/max_mip_simd_lanes.h"
@@ -156,6 +157,24 @@ HWY_INLINE VF look_far(const Octant<Sample>& o, const Sample* line, VI node) {
   hn::Store(at, di, nodes);
   for (std::size_t i = 0; i < N; ++i) samples[i] = static_cast<float>(line[nodes[i] * o.step_minor]);
   return relative(o, hn::Load(df, samples));
+}
+
+// Asks for the samples that a strip will need some lines on. Along memory a line is a few cache lines; across it each
+// node is in one of its own, which the next lines share: each line asks for every 16th node, farther ahead.
+template <class Sample>
+HWY_INLINE void prefetch_line(const Octant<Sample>& o, std::int32_t k, float least_m, float most_m) {
+  constexpr std::int32_t kAlong = 6, kAcross = 16, kShared = 16;
+  const bool along = std::abs(o.step_minor) == 1;
+  const std::int32_t line = k + (along ? kAlong : kAcross);
+  const auto T = static_cast<float>(line), y = static_cast<float>(o.fy);
+  const auto node = [&](float m, float beside) {
+    return std::clamp(o.node0 + static_cast<std::int32_t>(m * T + y + beside), 0, o.minor_cells);
+  };
+  const std::int32_t first = node(least_m, -1), last = node(most_m, 2);
+  const Sample* from = o.line(line);
+  for (std::int32_t i = along ? first : first + ((line - first) & (kShared - 1)); i < last; i += kShared)
+    hwy::Prefetch(from + i * o.step_minor);
+  if (along) hwy::Prefetch(from + last * o.step_minor);
 }
 
 // The steepest edge in the wedge of a strip's rays, up to the last line asked for.

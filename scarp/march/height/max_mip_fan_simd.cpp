@@ -299,6 +299,7 @@ class FanWalk {
     bool wide = false;
     FanLine at;
     float low_y = 0, high_y = 0;  // the field's sides, from the first node of the windows
+    float doubt = 0;
     const Sample *line0 = nullptr, *line1 = nullptr;
     // Wide: the nodes of each lane from far_node on, one more at the next line.
     const VF zero = hn::Zero(df);
@@ -314,6 +315,8 @@ class FanWalk {
       at.T0 = o.T_at(k), at.T1 = o.T_at(k + 1);
       at.length = k == 0 ? at.T1 : 1, at.per_length = k == 0 ? 1 / at.T1 : 1;
       at.aside = 0x1p-10f + 0x1p-19f * (lanes.strip_most_m * at.T1);
+      // The cut through the origin's cell is rounded as its whole sides are.
+      doubt = k == 0 ? doubt_ + 4 * rounding_ * relief.up_to(1) : doubt_;
     };
     // The line through the origin: the ground that is cut off there is bilinear again.
     const auto cut = [&](float* window, const float* next) HWY_ATTR {
@@ -406,7 +409,7 @@ class FanWalk {
                    look_far(o, line1, i0), look_far(o, line1, i1), look_far(o, line1, i2)};
           b3 = look_far(o, line1, hn::Add(i2, one));
         }
-        const FanStep e = step_over<triangles>(at, r, p, nodes, rises, doubt_, rounding_);
+        const FanStep e = step_over<triangles>(at, r, p, nodes, rises, doubt, rounding_);
         VF low = hn::Min(e.low1, e.low2);
         // The cell of the origin has been cut as if it were bilinear: a quarter of its twist higher than triangles.
         if (triangles && k == 0) low = hn::Sub(low, hn::Set(df, 0.5f * relief.up_to(1)));
@@ -442,6 +445,7 @@ class FanWalk {
       }
       ++k;
       set_line();
+      prefetch_line(o, k, lanes.strip_least_m, lanes.strip_most_m);
       if (wide) {
         // The nodes at the next line are known already, but for a lane's move to the side.
         const MF moves = hn::Ge(p.q, hn::Set(df, 1));
