@@ -348,7 +348,7 @@ class FanWalk {
     set_window(0);
     set_line();
     load_lines();
-    int level = ReliefMap::kLevel;
+    int level = kLeastLevel;
     const int top = pyramid_.top_level();
     const auto& levels = pyramid_.levels();
     std::int32_t no_jump = options_.jumps && pyramid_.planes().exist() ? 1 : std::numeric_limits<std::int32_t>::max();
@@ -359,11 +359,10 @@ class FanWalk {
       }
       // Over blocks.
       const std::int32_t real = o.back_major ? o.major_cells - (o.line0 + k) : o.line0 + k;
-      const int least_level = wide ? 2 : 3;
-      if (k >= no_jump && (real & ((1 << least_level) - 1)) == 0) {
+      if (k >= no_jump && (real & ((1 << kLeastLevel) - 1)) == 0) {
         const int fits = real == 0 ? top : std::min(top, std::countr_zero(static_cast<unsigned>(real)));
         bool jumped = false;
-        for (int l = std::min(std::max(level, least_level), fits); l >= least_level && !jumped; --l) {
+        for (int l = std::min(level, fits); l >= kLeastLevel && !jumped; --l) {
           ++stats_.jump_tries;
           const MF clear =
               clears_blocks(o, planes_, levels[static_cast<std::size_t>(l - 1)], l, k, at, b, r, doubt_, rounding_);
@@ -373,7 +372,7 @@ class FanWalk {
             level = l + 1;
             jumped = true;
           } else {
-            level = least_level;
+            level = kLeastLevel;
           }
         }
         if (jumped) {
@@ -467,6 +466,8 @@ class FanWalk {
     }
   }
   static constexpr int kLaneBits = std::countr_zero(N);
+  // Of the blocks that are skipped: over smaller ones a step per line is as fast.
+  static constexpr int kLeastLevel = 3;
 
   // Rays that hit for certain, and those that floats do not decide.
   template <bool triangles>
