@@ -143,7 +143,8 @@ double tolerance(const LeakField& ground, const GridRay& g, double t) {
   const double relief = std::min(ground.field.max_sample() - ground.field.min_sample(),
                                  ground.pyramid.cell_relief() * ground.pyramid.code().step);
   const double cells = std::max(std::abs(g.direction.x), std::abs(g.direction.y)) * t;
-  return 0x1p-18 * (std::abs(g.direction.z) * t + (cells + 12) * relief) + 8 * rounding_of_clearance(ground.field, g, t);
+  return 0x1p-18 * (std::abs(g.direction.z) * t + (cells + 12) * relief) +
+         8 * rounding_of_clearance(ground.field, g, t);
 }
 
 // Whether two times are those of one hit: from one to the other the ray is along the surface.
@@ -199,8 +200,8 @@ class FanLeaks {
     FanOptions walk;
     walk.always = true, walk.margin = static_cast<float>(options_.fan_margin);
     take_fan_stats();
-    closest_hits_max_mip_fan(ground.target(), fan, {t.data(), col.data(), row.data(), u.data(), v.data(), status.data()},
-                             0, kColumns, walk);
+    closest_hits_max_mip_fan(ground.target(), fan,
+                             {t.data(), col.data(), row.data(), u.data(), v.data(), status.data()}, 0, kColumns, walk);
     Count sum;
     sum.stats = take_fan_stats();
     for (std::size_t i = 0; i < static_cast<std::size_t>(kPiece); ++i) {
@@ -232,8 +233,8 @@ class FanLeaks {
   void keep(std::int64_t index, const LeakField& ground, const Ray& ray, const std::string& why, const Hit& truth,
             double t) {
     const std::scoped_lock lock(mutex_);
-    failures_.try_emplace(index, RayDump{ground.field, ground.generator, ray, why,
-                                         fmt::format("t {:a}, march t {:a}", t, truth.t)});
+    failures_.try_emplace(
+        index, RayDump{ground.field, ground.generator, ray, why, fmt::format("t {:a}, march t {:a}", t, truth.t)});
     if (failures_.size() > kDumped) failures_.erase(std::prev(failures_.end()));
   }
 
