@@ -32,7 +32,8 @@ struct TraceOptions {
 struct HeightsOptions {
   TraceOptions trace;
   std::vector<int> sizes{2049};
-  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes", "lidar", "lidar-ground", "near"};
+  std::vector<std::string> classes{"primary", "shadow",       "grazing", "ao",     "nodes",
+                                   "lidar",   "lidar-ground", "near",    "lidar64"};
   std::vector<std::string> marches;  ///< modes of scarp, as rows name them; empty: all
   std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid"};  ///< and "bullet", which is slow
   std::string embree_quality = "high";
@@ -168,9 +169,12 @@ struct LeaksOptions {
   std::int64_t judge_every = 4096;        ///< one in this many rays over a small field is also traced by exhaustive
   std::int64_t embree_rays = 10'000'000;  ///< at most about this many are also traced by Embree; 0: none
   std::string dump;                       ///< file for the first failing rays; empty: leaks-SEED.txt
+  bool fans = false;                      ///< instead: fans beside the scalar march
+  double fan_margin = 1;                  ///< factor of their margin; below 1, hits may be lost
 };
 /// Throws Error, after the report, when a ray was lost, false or contradictory.
 void run_leaks(const LeaksOptions& options, const ReportOptions& report);
+void run_fan_leaks(const LeaksOptions& options, const ReportOptions& report);
 
 /// `edits`: time until an edit of a rectangle is visible to queries.
 struct EditsOptions {

@@ -25,6 +25,8 @@ struct Engine {
   double build_s = 0;     ///< from samples to ready for tracing
   /// One of many variants: timed in full only if it is among the fastest in a short trial.
   bool on_trial = false;
+  /// Takes RaySet::fan: rays are numbered as there, and begin and end are those of strips of 16 columns.
+  bool in_fans = false;
   /// Answers rays [begin, end) of a set, begin a multiple of 16, into answers[0 ...]. Called from several threads.
   std::function<void(const RaySet& set, std::int64_t begin, std::int64_t end, float* answers)> trace;
 

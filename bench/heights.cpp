@@ -191,18 +191,24 @@ void contest(const BenchField& ground, double exaggeration, const HeightsOptions
   print_memory(engines->engines(), ground.field);
   for (const RaySet& set : sets) {
     const Judge judge(engines->target(), set, trace.judged, trace.ray_seed);
-    std::vector<std::optional<Judgement>> judged;
+    std::vector<Engine> suited;
     for (const Engine& engine : engines->engines()) {
-      judged.push_back(engine.closest ? std::optional(judge.judge(engine)) : std::nullopt);
+      if (!engine.in_fans || !set.fan.empty()) suited.push_back(engine);
+    }
+    std::vector<std::optional<Judgement>> judged;
+    for (const Engine& engine : suited) {
+      judged.push_back(engine.in_fans   ? std::optional(judge.judge_fan(engine))
+                       : engine.closest ? std::optional(judge.judge(engine))
+                                        : std::nullopt);
     }
     for (const int threads : trace.threads) {
-      const auto timings = measure_fastest(engines->engines(), set, {threads, trace.repeats, trace.pass_limit_s});
+      const auto timings = measure_fastest(suited, set, {threads, trace.repeats, trace.pass_limit_s});
       std::vector<Json> rows;
       for (std::size_t e = 0; e < timings.size(); ++e) {
         Json row;
         row["size"] = ground.field.cols();
         row["threads"] = threads;
-        row.update(row_of(engines->engines()[e], set, timings[e], judged[e], ground.field));
+        row.update(row_of(suited[e], set, timings[e], judged[e], ground.field));
         row["build_threads"] = build_threads;
         row["field"] = ground.name;
         row["exaggeration"] = exaggeration;

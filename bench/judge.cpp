@@ -52,6 +52,17 @@ Judgement Judge::judge(const Engine& engine) const {
   return score(answers);
 }
 
+Judgement Judge::judge_fan(const Engine& engine) const {
+  std::vector<float> times(set_.rays.size());
+  engine.trace(set_, 0, set_.size(), times.data());
+  std::vector<Answer> answers(sample_.size());
+  for (std::size_t k = 0; k < sample_.size(); ++k) {
+    const float t = times[set_.fan.place[sample_[k]]];
+    answers[k] = {t != kMiss, false, static_cast<double>(t), {}};
+  }
+  return score(answers);
+}
+
 Judgement Judge::score(const std::vector<Answer>& answers) const {
   Judgement result;
   result.judged = static_cast<std::int64_t>(sample_.size());

@@ -38,6 +38,8 @@ class Judge {
   /// For engines that have `closest` and `blocked`. For any-hit sets, the answer comes from `blocked`, t and the cost
   /// from `closest`.
   Judgement judge(const Engine& engine) const;
+  /// For engines that take fans, over a set that is one.
+  Judgement judge_fan(const Engine& engine) const;
 
   /// Indices of the sample's rays in the set, ascending.
   const std::vector<std::size_t>& sample() const { return sample_; }

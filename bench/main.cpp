@@ -338,6 +338,11 @@ int run(int argc, char** argv) {
       ->check(number_in({0, 1e15}))
       ->capture_default_str();
   leaks_command->add_option("--dump", leaks.dump, "file for the first failing rays (leaks-SEED.txt)");
+  leaks_command->add_flag("--fans", leaks.fans, "instead: fans beside the scalar march");
+  leaks_command->add_option("--fan-margin", leaks.fan_margin, "factor of the fans' margin; below 1, hits may be lost")
+      ->check(number_in({0, 1e6}))
+      ->capture_default_str()
+      ->needs("--fans");
   add_json_option(*leaks_command, report);
 
   EditsOptions edits;
@@ -631,7 +636,7 @@ int run(int argc, char** argv) {
 #endif
   if (*voxels_command && voxels.device.empty()) run_voxels(voxels, report);
   if (*simt_command) run_simt(simt, report);
-  if (*leaks_command) run_leaks(leaks, report);
+  if (*leaks_command) leaks.fans ? run_fan_leaks(leaks, report) : run_leaks(leaks, report);
   if (*voxel_edits_command) run_voxel_edits(voxel_edits, report);
   if (*voxel_worlds_command) run_voxel_worlds(voxel_worlds, report);
   if (*voxel_models_command) run_voxel_models(voxel_models, report);

@@ -12,6 +12,12 @@ namespace scarp::bench {
 namespace {
 
 constexpr std::int64_t kBlock = 4096;  // rays per task
+// The same for fans, which are cut into strips of 16 columns only.
+std::int64_t rays_per_block(const Engine& engine, const RaySet& set) {
+  if (!engine.in_fans) return kBlock;
+  const std::int64_t strip = 16 * std::int64_t{set.fan.rows};
+  return std::max<std::int64_t>(1, kBlock / strip) * strip;
+}
 constexpr std::int64_t kProbedBlocks = 16;
 
 std::int64_t nanoseconds(clockid_t clock) {
@@ -22,13 +28,16 @@ std::int64_t nanoseconds(clockid_t clock) {
 
 // Rays in blocks, all of them or some spread evenly.
 struct Selection {
-  std::int64_t ray_count, blocks, all_blocks;
+  std::int64_t ray_count, size, blocks, all_blocks;  // size: rays per block
 
-  explicit Selection(const RaySet& set)
-      : ray_count(set.size()), blocks((ray_count + kBlock - 1) / kBlock), all_blocks(blocks) {}
+  Selection(const Engine& engine, const RaySet& set)
+      : ray_count(set.size()),
+        size(rays_per_block(engine, set)),
+        blocks((ray_count + size - 1) / size),
+        all_blocks(blocks) {}
 
-  std::int64_t begin(std::int64_t block) const { return block * all_blocks / blocks * kBlock; }
-  std::int64_t end(std::int64_t block) const { return std::min(begin(block) + kBlock, ray_count); }
+  std::int64_t begin(std::int64_t block) const { return block * all_blocks / blocks * size; }
+  std::int64_t end(std::int64_t block) const { return std::min(begin(block) + size, ray_count); }
   std::int64_t rays() const {
     std::int64_t sum = 0;
     for (std::int64_t block = 0; block < blocks; ++block) sum += end(block) - begin(block);
@@ -39,7 +48,7 @@ struct Selection {
 void trace(const Engine& engine, const RaySet& set, const Selection& selection, float* answers) {
   parallel_for(selection.blocks, 1, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t block = first; block < last; ++block) {
-      engine.trace(set, selection.begin(block), selection.end(block), answers + block * kBlock);
+      engine.trace(set, selection.begin(block), selection.end(block), answers + block * selection.size);
     }
   });
 }
@@ -47,7 +56,7 @@ void trace(const Engine& engine, const RaySet& set, const Selection& selection, 
 std::int64_t count_hits(const Selection& selection, const std::vector<float>& answers) {
   std::int64_t hits = 0;
   for (std::int64_t block = 0; block < selection.blocks; ++block) {
-    const float* from = answers.data() + block * kBlock;
+    const float* from = answers.data() + block * selection.size;
     hits +=
         std::count_if(from, from + (selection.end(block) - selection.begin(block)), [](float t) { return t != kMiss; });
   }
@@ -68,13 +77,17 @@ double median(std::vector<double> values) {
 
 std::vector<Timing> measure(const std::vector<Engine>& engines, const RaySet& set, const ProtocolOptions& options) {
   const ThreadLimit limit(options.threads);
-  const Selection whole(set);
-  std::vector<float> answers(static_cast<std::size_t>(whole.blocks * kBlock));
+  std::vector<float> answers;
   std::vector<Timing> timings(engines.size());
-  std::vector<Selection> selections(engines.size(), whole);
+  std::vector<Selection> selections;
+  for (const Engine& engine : engines) {
+    const Selection& whole = selections.emplace_back(engine, set);
+    answers.resize(std::max(answers.size(), static_cast<std::size_t>(whole.blocks * whole.size)));
+  }
 
   // A few blocks show how long a pass would take; then the warm-up, whose answers are counted.
   for (std::size_t e = 0; e < engines.size(); ++e) {
+    const Selection whole = selections[e];
     Selection probe = whole;
     probe.blocks = std::min(whole.blocks, kProbedBlocks);
     const Stopwatch watch;

@@ -183,14 +183,13 @@ dvec3 stand(const HeightField& field, const RayView& view, double height) {
   return at;
 }
 
-std::vector<BenchRay> lidar_rays(dvec3 scanner, const RayCounts& counts) {
+std::vector<BenchRay> lidar_rays(dvec3 scanner, int rows, int columns) {
   std::vector<BenchRay> rays;
-  rays.reserve(static_cast<std::size_t>(counts.lidar_rows) * static_cast<std::size_t>(counts.lidar_columns));
-  for (int row = 0; row < counts.lidar_rows; ++row) {
-    const double elevation =
-        kHighestElevation + (row + 0.5) / counts.lidar_rows * (kLowestElevation - kHighestElevation);
-    for (int column = 0; column < counts.lidar_columns; ++column) {
-      const double azimuth = (column + 0.5) / counts.lidar_columns * 2 * kPi;
+  rays.reserve(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns));
+  for (int row = 0; row < rows; ++row) {
+    const double elevation = kHighestElevation + (row + 0.5) / rows * (kLowestElevation - kHighestElevation);
+    for (int column = 0; column < columns; ++column) {
+      const double azimuth = (column + 0.5) / columns * 2 * kPi;
       rays.push_back(make_ray(scanner, direction_to(azimuth, elevation)));
     }
   }
@@ -205,6 +204,35 @@ PinholeCamera near_camera(const HeightField& field, const RayCounts& counts, con
   camera.right = normalize(cross(camera.forward, dvec3(0, 0, 1)));
   camera.up = cross(camera.right, camera.forward);
   return camera;
+}
+
+// cell(i): column and row of ray i.
+template <class CellOf>
+RayFan fan_of(const std::vector<BenchRay>& rays, int columns, int rows, const CellOf& cell) {
+  RayFan fan;
+  if (columns % 16 != 0) return fan;
+  fan.origin = {rays[0].ox, rays[0].oy, rays[0].oz};
+  fan.columns = columns, fan.rows = rows;
+  fan.place.resize(rays.size());
+  for (std::vector<float>* numbers : {&fan.dx, &fan.dy, &fan.dz}) numbers->resize(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto [column, row] = cell(i);
+    const std::size_t at =
+        (static_cast<std::size_t>(column) / 16 * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row)) * 16 +
+        static_cast<std::size_t>(column) % 16;
+    fan.place[i] = static_cast<std::uint32_t>(at);
+    fan.dx[at] = rays[i].dx, fan.dy[at] = rays[i].dy, fan.dz[at] = rays[i].dz;
+  }
+  return fan;
+}
+RayFan camera_fan(const std::vector<BenchRay>& rays, const RayCounts& counts) {
+  return fan_of(rays, counts.width, counts.height, [&](std::size_t i) { return primary_pixel(i, counts.width); });
+}
+RayFan scanner_fan(const std::vector<BenchRay>& rays, int rows, int columns) {
+  return fan_of(rays, columns, rows, [&](std::size_t i) {
+    const auto at = static_cast<int>(i);
+    return PrimaryPixel{at % columns, at / columns};
+  });
 }
 
 std::vector<Ray> library_rays_of(const std::vector<BenchRay>& rays) {
@@ -262,9 +290,11 @@ std::string_view name_of(RayClass ray_class) {
     case RayClass::lidar_ground:
       return "lidar-ground";
     case RayClass::near:
+      return "near";
+    case RayClass::lidar64:
       break;
   }
-  return "near";
+  return "lidar64";
 }
 
 RayClass find_ray_class(std::string_view name) {
@@ -273,7 +303,7 @@ RayClass find_ray_class(std::string_view name) {
   }
   throw Error(
       fmt::format("ray class '{}': unknown (available: primary, shadow, grazing, ao, nodes, chunk, lidar, "
-                  "lidar-ground, near)",
+                  "lidar-ground, near, lidar64)",
                   name));
 }
 
@@ -314,6 +344,7 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
     switch (ray_class) {
       case RayClass::primary:
         set.rays = primary;
+        set.fan = camera_fan(set.rays, counts);
         break;
       case RayClass::shadow:
         set.any_hit = true;
@@ -340,13 +371,18 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
         set.rays = chunk_rays(field, counts.chunk, sun);
         break;
       case RayClass::lidar:
-        set.rays = lidar_rays(stand(field, view, kScannerHeight), counts);
-        break;
       case RayClass::lidar_ground:
-        set.rays = lidar_rays(stand(field, view, 0), counts);
+        set.rays = lidar_rays(stand(field, view, ray_class == RayClass::lidar ? kScannerHeight : 0), counts.lidar_rows,
+                              counts.lidar_columns);
+        set.fan = scanner_fan(set.rays, counts.lidar_rows, counts.lidar_columns);
         break;
       case RayClass::near:
         set.rays = primary_rays(near_camera(field, counts, view));
+        set.fan = camera_fan(set.rays, counts);
+        break;
+      case RayClass::lidar64:
+        set.rays = lidar_rays(stand(field, view, kScannerHeight), counts.lidar64_rows, counts.lidar_columns);
+        set.fan = scanner_fan(set.rays, counts.lidar64_rows, counts.lidar_columns);
         break;
     }
     if (set.rays.empty()) {

@@ -10,6 +10,7 @@
 //   lidar     a scanner 2 cells above the ground: rows of elevation, each all around
 //   lidar-ground  the same scanner on the ground
 //   near      the pixels of primary by a camera 3 cells above the ground that looks along it
+//   lidar64   the scanner of lidar with 64 rows, as on cars
 //   chunk     from points spread evenly over the field to the same sun, as for a shadow map of it; in tiles of 8 x 8
 //
 // Rays from the surface start slightly above both surfaces, the bilinear one and the two triangles (kLift), so that no
@@ -28,10 +29,10 @@ namespace scarp::bench {
 /// Height above the higher of the two surfaces at which rays from the surface start, in cells.
 constexpr double kLift = 0.01;
 
-enum class RayClass { primary, shadow, grazing, ao, nodes, chunk, lidar, lidar_ground, near };
-constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow,       RayClass::grazing,
-                                    RayClass::ao,      RayClass::nodes,        RayClass::chunk,
-                                    RayClass::lidar,   RayClass::lidar_ground, RayClass::near};
+enum class RayClass { primary, shadow, grazing, ao, nodes, chunk, lidar, lidar_ground, near, lidar64 };
+constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao,
+                                    RayClass::nodes,   RayClass::chunk,  RayClass::lidar,   RayClass::lidar_ground,
+                                    RayClass::near,    RayClass::lidar64};
 std::string_view name_of(RayClass ray_class);
 /// Throws Error listing the classes if the name is unknown.
 RayClass find_ray_class(std::string_view name);
@@ -64,6 +65,16 @@ struct alignas(16) RayRecord {
 /// The same rays, from t = 0, with all bits of the mask.
 std::vector<RayRecord> records_of(const std::vector<BenchRay>& rays);
 
+/// The rays of a camera or a scanner as fans want them: in strips of 16 columns, row by row in each.
+struct RayFan {
+  dvec3 origin{0.0};
+  int columns = 0, rows = 0;  ///< columns: a multiple of 16; 0: the set is not a fan
+  std::vector<float> dx{}, dy{}, dz{};
+  std::vector<std::uint32_t> place{};  ///< of each ray of the set
+
+  bool empty() const { return columns == 0; }
+};
+
 struct RaySet {
   RayClass ray_class;
   bool any_hit;   ///< whether the query is any-hit or closest-hit
@@ -82,7 +93,7 @@ struct RayCounts {
   std::int64_t grazing = 1 << 20;
   std::int64_t nodes = 1 << 20;
   int chunk = 1024;  ///< points per side, a multiple of 8
-  int lidar_rows = 512, lidar_columns = 2048;
+  int lidar_rows = 512, lidar_columns = 2048, lidar64_rows = 64;
 };
 
 /// The camera of the primary rays and the sun of the shadow rays.

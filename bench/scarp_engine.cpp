@@ -3,6 +3,7 @@
 
 #include "bench/protocol.h"
 #include "scarp/accel/slope_bound.h"
+#include "scarp/march/height/max_mip_fan.h"
 
 namespace scarp::bench {
 namespace {
@@ -84,6 +85,28 @@ Engine ScarpGround::vectors(const std::string& mode, const VectorOptions& option
       closest_hits_max_mip_simd(to, rays, hits, options);
       for (std::size_t i = 0; i < count; ++i) answers[i] = hits[i] ? static_cast<float>(hits[i].t) : kMiss;
     }
+  };
+  return engine;
+}
+
+Engine ScarpGround::fans() const {
+  Engine engine = this->engine(find_height_march("max-mip"));
+  engine.mode = "fan";
+  engine.in_fans = true;
+  engine.closest = nullptr, engine.blocked = nullptr;
+  const HeightTarget to = target();
+  engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+    const std::int64_t rows = set.fan.rows;
+    Fan fan;
+    fan.origin = set.fan.origin;
+    fan.dx = set.fan.dx.data() + begin, fan.dy = set.fan.dy.data() + begin, fan.dz = set.fan.dz.data() + begin;
+    fan.columns = static_cast<int>((end - begin) / rows), fan.rows = set.fan.rows;
+    fan.row_stride = 16, fan.strip_stride = 16 * rows;
+    thread_local std::vector<float> u, v;
+    thread_local std::vector<std::int32_t> col, row;
+    const auto count = static_cast<std::size_t>(end - begin);
+    u.resize(count), v.resize(count), col.resize(count), row.resize(count);
+    closest_hits_max_mip_fan(to, fan, {answers, col.data(), row.data(), u.data(), v.data()});
   };
   return engine;
 }

@@ -156,6 +156,7 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
   shared_->planes.build(field, all_blocks(), reserve);
+  shared_->relief.build(field);
 }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
@@ -167,6 +168,7 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
 void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
   shared_->edits = field.edits();
   if (levels_.empty()) return;
+  shared_->relief.update(field, changed);
   if (!is_in_range(field, shared_->range)) {
     set_range(field, shared_->range);
     build(field, {0, 0, field.cell_cols(), field.cell_rows()});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Maximum and minimum mipmap of a height field: for every block of 2^level x 2^level cells, an upper and a lower bound
-// of the surface in it, and a tilted plane above it (block_planes.h).
+// of the surface in it, and a tilted plane above it (block_planes.h). Beside it, the steepest edges (relief_map.h).
 //
 //   level 0: the cells themselves, the extremes of their FOUR corner samples (both surfaces stay between them). Not
 //            stored: a cell test needs the samples anyway, and all other levels take a quarter of the memory
@@ -25,6 +25,7 @@
 #include "scarp/accel/block_planes.h"
 #include "scarp/accel/height_code.h"
 #include "scarp/accel/pyramid_levels.h"
+#include "scarp/accel/relief_map.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
@@ -50,7 +51,9 @@ class MaxPyramid {
   int top_level() const { return static_cast<int>(levels_.size()); }
   /// Blocks of all levels.
   std::size_t entries() const { return entries_; }
-  std::size_t bytes() const { return entries_ * (sizeof(std::uint32_t) + sizeof(std::uint16_t)); }
+  std::size_t bytes() const {
+    return entries_ * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + shared_->relief.bytes();
+  }
 
   using Level = PyramidLevel;
   /// Levels 1, 2, ...; entries in rows from north to south, no padding. Three extra entries are allocated after the
@@ -62,6 +65,7 @@ class MaxPyramid {
   std::uint16_t maximum_code(std::ptrdiff_t entry) const { return static_cast<std::uint16_t>(blocks()[entry]); }
   const std::uint16_t* minima() const { return shared_->minima.get(); }
   const BlockPlanes& planes() const { return shared_->planes; }
+  const ReliefMap& relief() const { return shared_->relief; }
 
   /// Bounds of one block in sample units, level 1 .. top_level(): the minimum is -infinity if there is none, the
   /// maximum of a block of holes is that of code 0.
@@ -84,6 +88,7 @@ class MaxPyramid {
     std::unique_ptr<std::uint32_t[]> blocks;
     std::unique_ptr<std::uint16_t[]> minima;
     BlockPlanes planes;
+    ReliefMap relief;
   };
 
   static constexpr std::size_t kSpareEntries = 3;

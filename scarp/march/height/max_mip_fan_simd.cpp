@@ -1,0 +1,688 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "scarp/march/height/max_mip_fan.h"
+#include "scarp/march/height/max_mip_fan_walk.h"
+#include "scarp/march/height/max_mip_resume.h"
+#include "scarp/march/height/rounding.h"
+
+// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "scarp/march/height/max_mip_fan_simd.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h must come first.
+#include "hwy/highway.h"
+#include "scarp/march/height/max_mip_fan_lines.h"
+#include "scarp/march/height/max_mip_fan_step.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scarp {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr float kMiss_ = std::numeric_limits<float>::infinity();
+
+// Directions of a strip, one vector per row, in the order of the walk.
+struct StripRays {
+  const float *dx, *dy, *dz;
+  std::ptrdiff_t stride;
+};
+
+// Rays of one row, turned for their octants.
+struct RowRays {
+  VF per_major, m, s;
+  VI octant;
+  MF taken;
+};
+
+// The state of a pass over one octant of a strip, per lane.
+struct Lanes16 {
+  alignas(64) std::int32_t count[N];   // rays
+  alignas(64) std::int32_t broken[N];  // the last ray that may not inherit from the one below it; -1: none
+  alignas(64) float least_m[N];
+  float strip_least_m, strip_most_m;
+};
+
+template <class Sample>
+class FanWalk {
+ public:
+  FanWalk(const HeightTarget& target, const SampleGrid<Sample>& grid, const Fan& fan, const FanHits& hits,
+          const FanOptions& options, std::vector<max_mip::FanRest>& rest, FanStats& stats)
+      : field_(*target.field),
+        pyramid_(*target.pyramid),
+        fan_(fan),
+        hits_(hits),
+        options_(options),
+        rest_(rest),
+        stats_(stats) {
+    Ray ray;
+    ray.origin = fan.origin;
+    const GridRay at = field_.grid_from_world(ray);
+    origin_ = at.origin;
+    for (int i = 0; i < 8; ++i) octants_[i] = octant(grid, origin_, i);
+    const HeightField::GridScales scales = field_.grid_scales();
+    per_x_ = static_cast<float>(scales.per_cell_x), per_y_ = static_cast<float>(-scales.per_cell_y);
+    per_z_ = static_cast<float>(scales.per_scale);
+    triangles_ = field_.settings().surface == Surface::triangles;
+    const double low = field_.min_sample(), high = field_.max_sample();
+    // Above it, rays are above all ground, whatever rounding does to their height.
+    highest_ = static_cast<float>(high - origin_.z + 0x1p-19 * (std::abs(high - origin_.z) + high - low));
+    const double tall = std::max({high - low, std::abs(origin_.z - low), std::abs(origin_.z - high)});
+    steepest_ray_ = static_cast<float>(std::clamp(tall * 0x1p18, 0x1p-60, 0x1p90));
+    // Rounding of doubles, for any ray over the field: four times rounding_of_clearance(), for the signs of both
+    // marches.
+    const double wide = std::abs(origin_.x) + std::abs(origin_.y) + field_.cell_cols() + field_.cell_rows();
+    const GridRay far{{wide, wide, std::abs(origin_.z)}, {0, 0, std::abs(low) + std::abs(high) + std::abs(origin_.z)}};
+    doubt_ = static_cast<float>(4 * rounding_of_clearance(field_, far, 1));
+    rounding_ = kFanRounding * options.margin;
+    cell_relief_ = static_cast<float>(pyramid_.cell_relief() * pyramid_.code().step) * (1 + 0x1p-20f);
+    planes_ = fan_planes(pyramid_, origin_.z);
+    origin_cell_ = {static_cast<std::int32_t>(std::floor(origin_.x)), static_cast<std::int32_t>(std::floor(origin_.y))};
+    in_cell_x_ = static_cast<float>(origin_.x - origin_cell_.col);
+    in_cell_y_ = static_cast<float>(origin_.y - origin_cell_.row);
+    const auto rows = static_cast<std::size_t>(fan.rows);
+    m_.resize((rows + 1) * N), s_.resize((rows + 1) * N), T_.resize(rows * N), cell_.resize(rows * N);
+  }
+
+  void run(int begin, int end) {
+    for (int column = begin; column < end; column += N) strip(column, std::min<int>(N, end - column));
+  }
+
+ private:
+  std::ptrdiff_t place(int row, int column) const {
+    return row * fan_.row_stride + column / 16 * fan_.strip_stride + column % 16;
+  }
+
+  void strip(int column, int width) {
+    ++stats_.strips;
+    stats_.rays += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(fan_.rows);
+    const bool falls = slope_at(0, column + width / 2) > slope_at(fan_.rows - 1, column + width / 2);
+    const int first = falls ? fan_.rows - 1 : 0;
+    begin_ = place(first, column);
+    step_ = falls ? -fan_.row_stride : fan_.row_stride;
+    width_ = width;
+    // Whole vectors must not cross from a strip of 16 columns into memory of another.
+    if (width == static_cast<int>(N) && column % 16 + width <= 16) {
+      rays_ = {fan_.dx + begin_, fan_.dy + begin_, fan_.dz + begin_, step_};
+    } else {
+      copy_rays();
+    }
+    prepare();
+    answer();
+  }
+
+  float slope_at(int row, int column) const {
+    const std::ptrdiff_t i = place(row, column);
+    return fan_.dz[i] / std::hypot(fan_.dx[i], fan_.dy[i]);
+  }
+
+  // The last columns, with copies of one of them.
+  void copy_rays() {
+    const auto rows = static_cast<std::size_t>(fan_.rows);
+    copies_.resize(3 * rows * N);
+    float* to = copies_.data();
+    for (const float* from : {fan_.dx, fan_.dy, fan_.dz}) {
+      for (int row = 0; row < fan_.rows; ++row) {
+        for (int i = 0; i < static_cast<int>(N); ++i) *to++ = from[begin_ + row * step_ + std::min(i, width_ - 1)];
+      }
+    }
+    rays_ = {copies_.data(), copies_.data() + rows * N, copies_.data() + 2 * rows * N, N};
+  }
+
+  HWY_INLINE RowRays row(int i) const {
+    const VF zero = hn::Zero(df);
+    const VF gx = hn::Mul(hn::LoadU(df, rays_.dx + i * rays_.stride), hn::Set(df, per_x_));
+    const VF gy = hn::Mul(hn::LoadU(df, rays_.dy + i * rays_.stride), hn::Set(df, per_y_));
+    const VF gz = hn::Mul(hn::LoadU(df, rays_.dz + i * rays_.stride), hn::Set(df, per_z_));
+    const VF x = hn::Abs(gx), y = hn::Abs(gy);
+    const MF turned = hn::Gt(y, x);
+    const VF major = hn::IfThenElse(turned, y, x), minor = hn::IfThenElse(turned, x, y);
+    RowRays r;
+    r.per_major = hn::Div(hn::Set(df, 1), major);
+    const VF m = hn::Mul(minor, r.per_major);
+    r.s = hn::Mul(gz, r.per_major);
+    // False for NaN.
+    r.taken = hn::And(hn::And(hn::Gt(major, hn::Set(df, 0x1p-60f)), hn::Lt(major, hn::Set(df, 0x1p60f))),
+                      hn::And(hn::Le(m, hn::Set(df, 2)), hn::Lt(hn::Abs(r.s), hn::Set(df, steepest_ray_))));
+    r.m = hn::Min(m, hn::Set(df, 1));
+    const auto bit = [&](MF set, std::int32_t value)
+                         HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, set), hn::Set(di, value)); };
+    r.octant = hn::Or(bit(turned, 1), hn::Or(bit(hn::Lt(gx, zero), 2), bit(hn::Lt(gy, zero), 4)));
+    return r;
+  }
+
+  // Whether the second ray is above the ground wherever the first one is, over ground of this relief.
+  static HWY_INLINE MF inherits(VF m0, VF s0, VF m1, VF s1, VF relief) {
+    const VF aside = hn::Mul(hn::Mul(relief, hn::Set(df, 1 + 0x1p-18f)), hn::Abs(hn::Sub(m1, m0)));
+    const VF rounds = hn::Add(hn::Add(hn::Abs(s0), hn::Abs(s1)), relief);
+    return hn::Ge(hn::Sub(s1, s0), hn::MulAdd(rounds, hn::Set(df, 0x1p-20f), aside));
+  }
+  static bool inherits(float m0, float s0, float m1, float s1, float relief) {
+    return s1 - s0 >= relief * (1 + 0x1p-18f) * std::abs(m1 - m0) + 0x1p-20f * (std::abs(s0) + std::abs(s1) + relief);
+  }
+
+  // Tables of m and s, and the walks: one per octant that the strip's rays are in.
+  HWY_NOINLINE void prepare() {
+    const RowRays first = row(0);
+    VI seen = hn::Zero(di);
+    bool all_taken = true;
+    VF least = hn::Set(df, 2), most = hn::Zero(df);
+    VI broken = hn::Set(di, -1);
+    VF m0 = first.m, s0 = hn::Set(df, -kMiss_);
+    const VF relief = hn::Set(df, cell_relief_);
+    for (int i = 0; i < fan_.rows; ++i) {
+      const RowRays r = row(i);
+      const auto at = static_cast<std::size_t>(i) * N;
+      hn::StoreU(r.m, df, m_.data() + at), hn::StoreU(r.s, df, s_.data() + at);
+      hn::StoreU(hn::IfThenElse(r.taken, hn::Set(df, kMiss_), hn::Set(df, -kMiss_)), df, T_.data() + at);
+      all_taken &= hn::AllTrue(df, r.taken);
+      const VI one = hn::Shl(hn::Set(di, 1), r.octant);
+      seen = hn::Or(seen, hn::IfThenElseZero(hn::RebindMask(di, r.taken), one));
+      least = hn::Min(least, r.m), most = hn::Max(most, r.m);
+      const MI breaks = hn::RebindMask(di, hn::Not(inherits(m0, s0, r.m, r.s, relief)));
+      broken = hn::IfThenElse(breaks, hn::Set(di, i), broken);
+      m0 = r.m, s0 = r.s;
+    }
+    alignas(64) std::int32_t octants[N];
+    hn::Store(seen, di, octants);
+    std::int32_t all = 0;
+    for (const std::int32_t o : octants) all |= o;
+    Lanes16 lanes;
+    if (all_taken && std::has_single_bit(static_cast<unsigned>(all))) {
+      hn::Store(hn::Set(di, fan_.rows), di, lanes.count);
+      for (std::size_t l = static_cast<std::size_t>(width_); l < N; ++l) lanes.count[l] = 0;
+      hn::Store(broken, di, lanes.broken), hn::Store(least, df, lanes.least_m);
+      lanes.strip_least_m = hn::GetLane(hn::MinOfLanes(df, least));
+      lanes.strip_most_m = hn::GetLane(hn::MaxOfLanes(df, most));
+      rows_ = nullptr;
+      walk(octants_[std::countr_zero(static_cast<unsigned>(all))], lanes);
+      return;
+    }
+    row_of_.resize(m_.size());
+    for (; all != 0; all &= all - 1) {
+      const int o = std::countr_zero(static_cast<unsigned>(all));
+      take(o, lanes);
+      rows_ = row_of_.data();
+      walk(octants_[o], lanes);
+    }
+  }
+
+  // Tables of the rays in one octant alone.
+  HWY_NOINLINE void take(int octant, Lanes16& lanes) {
+    std::fill_n(lanes.count, N, 0), std::fill_n(lanes.broken, N, -1), std::fill_n(lanes.least_m, N, 2.0f);
+    std::fill_n(m_.begin(), N, 0.0f), std::fill_n(s_.begin(), N, 0.0f);
+    float most = 0;
+    alignas(64) float m[N], s[N];
+    for (int i = 0; i < fan_.rows; ++i) {
+      const RowRays r = row(i);
+      const MF in = hn::And(r.taken, hn::RebindMask(df, hn::Eq(r.octant, hn::Set(di, octant))));
+      std::uint64_t bits = bits_of(in) & ((std::uint64_t{1} << width_) - 1);
+      if (bits == 0) continue;
+      hn::Store(r.m, df, m), hn::Store(r.s, df, s);
+      for (; bits != 0; bits &= bits - 1) {
+        const auto l = static_cast<std::size_t>(std::countr_zero(bits));
+        const auto count = static_cast<std::size_t>(lanes.count[l]++), to = count * N + l;
+        m_[to] = m[l], s_[to] = s[l], row_of_[to] = i;
+        if (count > 0 && !inherits(m_[to - N], s_[to - N], m[l], s[l], cell_relief_))
+          lanes.broken[l] = static_cast<std::int32_t>(count);
+        lanes.least_m[l] = std::min(lanes.least_m[l], m[l]);
+        most = std::max(most, m[l]);
+      }
+    }
+    lanes.strip_least_m = *std::min_element(lanes.least_m, lanes.least_m + N);
+    lanes.strip_most_m = most;
+  }
+
+  // The line from which on rays may be near the ground.
+  std::int32_t first_line(const Octant<Sample>& o, const Lanes16& lanes) const {
+    double T = 0;
+    if (highest_ < 0) {
+      T = std::numeric_limits<double>::infinity();
+      for (std::size_t l = 0; l < N; ++l) {
+        if (lanes.count[l] > 0 && s_[l] < 0)
+          T = std::min(T, static_cast<double>(highest_) / static_cast<double>(s_[l]) * (1 - 0x1p-20));
+      }
+    }
+    // Beside the field there is no ground.
+    double first = std::max(std::floor(T + o.fx) - 1, -static_cast<double>(o.line0));
+    if (o.node0 < 0 && lanes.strip_most_m > 0) {
+      const double enters = (-o.node0 - o.fy) / static_cast<double>(lanes.strip_most_m) * (1 - 0x1p-20);
+      first = std::max(first, std::floor(enters + o.fx) - 2);
+    }
+    const auto line =
+        static_cast<std::int32_t>(std::clamp(first, 0.0, static_cast<double>(std::max(o.last_line(), 0))));
+    return line == 0 && o.fx == 1 ? 1 : line;
+  }
+
+  void walk(const Octant<Sample>& o, const Lanes16& lanes) {
+    if (triangles_) {
+      walk_over<true>(o, lanes);
+    } else {
+      walk_over<false>(o, lanes);
+    }
+  }
+
+  template <bool triangles>
+  HWY_NOINLINE void walk_over(const Octant<Sample>& o, const Lanes16& lanes) {
+    const bool rises = o.rises;
+    const std::int32_t end = o.last_line();
+    const VI n = hn::Load(di, lanes.count), lane = hn::Iota(di, 0), one = hn::Set(di, 1);
+    VI j = hn::Zero(di);
+    MF active = hn::RebindMask(df, hn::Gt(n, j)), refused = hn::RebindMask(df, hn::Lt(n, j));
+    FanRays r;
+    r.m = hn::LoadU(df, m_.data()), r.s = hn::LoadU(df, s_.data()), r.per_m = per(r.m);
+    VF m_ok = r.m, s_ok = r.s;
+    // The rays behind these, early: they come from memory.
+    VF m_next, s_next, per_next;
+    const auto load_next = [&]() HWY_ATTR {
+      const VI from = hn::Add(hn::ShiftLeft<kLaneBits>(hn::Min(hn::Add(j, one), hn::Set(di, fan_.rows))), lane);
+      m_next = hn::GatherIndex(df, m_.data(), from), s_next = hn::GatherIndex(df, s_.data(), from);
+      per_next = per(m_next);
+    };
+    load_next();
+    const VF least_m = hn::Load(df, lanes.least_m);
+    std::int32_t k = first_line(o, lanes);
+    WedgeRelief<Sample> relief(o, pyramid_.relief(), std::max(k - 1, 0), static_cast<double>(lanes.strip_least_m),
+                               static_cast<double>(lanes.strip_most_m));
+
+    std::int32_t b = 0;
+    bool wide = false;
+    FanLine at;
+    float low_y = 0, high_y = 0;  // the field's sides, from the first node of the windows
+    float doubt = 0;
+    const Sample *line0 = nullptr, *line1 = nullptr;
+    // Wide: the nodes of each lane from far_node on, one more at the next line.
+    const VF zero = hn::Zero(df);
+    FanNodes nodes{zero, zero, zero, zero, zero, zero};
+    VI far_node = hn::Set(di, -1);
+    VF b3 = zero;
+    const auto set_window = [&](std::int32_t first) {
+      b = first;
+      at.y = static_cast<float>(o.fy - b);
+      low_y = static_cast<float>(-o.node0 - b), high_y = static_cast<float>(o.minor_cells - o.node0 - b);
+    };
+    const auto set_line = [&] {
+      at.T0 = o.T_at(k), at.T1 = o.T_at(k + 1);
+      at.length = k == 0 ? at.T1 : 1, at.per_length = k == 0 ? 1 / at.T1 : 1;
+      at.aside = 0x1p-10f + 0x1p-19f * (lanes.strip_most_m * at.T1);
+      // The cut through the origin's cell is rounded as its whole sides are.
+      doubt = k == 0 ? doubt_ + 4 * rounding_ * relief.up_to(1) : doubt_;
+    };
+    // The line through the origin: the ground that is cut off there is bilinear again.
+    const auto cut = [&](float* window, const float* next) HWY_ATTR {
+      for (int i = 0; i < kWindow; i += N) {
+        const VF a = hn::Load(df, window + i), c = hn::Load(df, next + i);
+        hn::Store(hn::MulAdd(hn::Sub(c, a), hn::Set(df, static_cast<float>(o.fx)), a), df, window + i);
+      }
+    };
+    const auto load_lines = [&]() HWY_ATTR {
+      load_window(o, k, b, window0_), load_window(o, k + 1, b, window1_);
+      if (k == 0) cut(window0_, window1_);
+    };
+    // Windows from the least node of the lanes on; lanes that do not fit gather.
+    const auto move_window = [&](FanPlaces& p) HWY_ATTR {
+      const VF far = hn::IfThenElse(active, p.node, hn::Set(df, 0x1p30f));
+      const float least = hn::GetLane(hn::MinOfLanes(df, far));
+      set_window(b + static_cast<std::int32_t>(least));
+      p = places(at, r);
+      const MF out = hn::And(active, hn::Or(hn::Lt(p.node, hn::Zero(df)), hn::Gt(p.node, hn::Set(df, kWindow - 3))));
+      wide = !hn::AllFalse(df, out);
+      if (wide) {
+        line0 = o.line(k), line1 = o.line(k + 1);
+        far_node = hn::Set(di, std::numeric_limits<std::int32_t>::min());
+      } else {
+        load_lines();
+      }
+    };
+
+    set_window(0);
+    set_line();
+    load_lines();
+    int level = kLeastLevel;
+    const int top = pyramid_.top_level();
+    const auto& levels = pyramid_.levels();
+    std::int32_t no_jump = options_.jumps && pyramid_.planes().exist() ? 1 : std::numeric_limits<std::int32_t>::max();
+    for (;;) {
+      if (k >= end) {
+        end_lanes(active, j, m_ok, s_ok, relief, k, lanes);
+        return;
+      }
+      // Over blocks.
+      const std::int32_t real = o.back_major ? o.major_cells - (o.line0 + k) : o.line0 + k;
+      if (k >= no_jump && (real & ((1 << kLeastLevel) - 1)) == 0) {
+        const int fits = real == 0 ? top : std::min(top, std::countr_zero(static_cast<unsigned>(real)));
+        bool jumped = false;
+        for (int l = std::min(level, fits); l >= kLeastLevel && !jumped; --l) {
+          ++stats_.jump_tries;
+          const MF clear =
+              clears_blocks(o, planes_, levels[static_cast<std::size_t>(l - 1)], l, k, at, b, r, doubt_, rounding_);
+          if (hn::AllTrue(df, hn::Or(clear, hn::Not(active)))) {
+            ++stats_.jumps;
+            k += 1 << l;
+            level = l + 1;
+            jumped = true;
+          } else {
+            level = kLeastLevel;
+          }
+        }
+        if (jumped) {
+          if (k >= end) continue;
+          wide = false;
+          set_line();
+          FanPlaces p = places(at, r);
+          move_window(p);
+          continue;
+        }
+      }
+      ++stats_.lines;
+      stats_.wide_lines += wide;
+      FanPlaces p;
+      for (;;) {
+        ++stats_.turns;
+        p = places(at, r);
+        if (!wide) {
+          const MF out =
+              hn::And(active, hn::Or(hn::Lt(p.node, hn::Zero(df)), hn::Gt(p.node, hn::Set(df, kWindow - 3))));
+          if (!hn::AllFalse(df, out)) move_window(p);
+        }
+        const VI node = hn::ConvertTo(di, p.node);
+        if (!wide) {
+          const VI i0 = hn::And(node, hn::Set(di, kWindow - 1)), i1 = hn::And(hn::Add(node, one), hn::Set(di, 15)),
+                   i2 = hn::And(hn::Add(node, hn::Set(di, 2)), hn::Set(di, 15));
+          nodes = {look_up(window0_, i0), look_up(window0_, i1), look_up(window0_, i2),
+                   look_up(window1_, i0), look_up(window1_, i1), look_up(window1_, i2)};
+        } else if (!hn::AllFalse(di, hn::And(hn::RebindMask(di, active), hn::Ne(node, far_node)))) {
+          far_node = node;
+          const VI i0 = hn::Add(node, hn::Set(di, o.node0 + b)), i1 = hn::Add(i0, one), i2 = hn::Add(i1, one);
+          nodes = {look_far(o, line0, i0), look_far(o, line0, i1), look_far(o, line0, i2),
+                   look_far(o, line1, i0), look_far(o, line1, i1), look_far(o, line1, i2)};
+          b3 = look_far(o, line1, hn::Add(i2, one));
+        }
+        const FanStep e = step_over<triangles>(at, r, p, nodes, rises, doubt, rounding_);
+        VF low = hn::Min(e.low1, e.low2);
+        // The cell of the origin has been cut as if it were bilinear: a quarter of its twist higher than triangles.
+        if (triangles && k == 0) low = hn::Sub(low, hn::Set(df, 0.5f * relief.up_to(1)));
+        const MF clear = hn::Gt(low, e.margin);
+        const VF beyond = hn::Set(df, high_y + at.aside);
+        const MF out = hn::AndNot(refused, hn::Gt(p.y, beyond));
+        const MF above = hn::AndNot(refused, hn::And(hn::Ge(r.s, hn::Zero(df)), hn::Gt(e.h0, hn::Set(df, highest_))));
+        const MF go = hn::And(active, hn::Or(hn::Or(hn::Not(clear), out), hn::Or(above, refused)));
+        if (hn::AllFalse(df, go)) break;
+        const MF all_out = hn::And(out, hn::Gt(hn::MulAdd(least_m, hn::Set(df, at.T0), hn::Set(df, at.y)), beyond));
+        const MF ends = hn::And(go, hn::Or(above, all_out));
+        if (!hn::AllFalse(df, ends)) {
+          end_lanes(ends, j, m_ok, s_ok, relief, k, lanes);
+          active = hn::AndNot(ends, active);
+        }
+        const MF candidates = hn::AndNot(hn::Or(ends, out), go);
+        if (!hn::AllFalse(df, candidates))
+          put_hits<triangles>(o, k, b, at, low_y, high_y, p, e, candidates, refused, j);
+        // The next rays of these lanes.
+        const MF next = hn::AndNot(ends, go);
+        j = hn::IfThenElse(hn::RebindMask(di, next), hn::Add(j, one), j);
+        const MF left = hn::RebindMask(df, hn::Gt(n, j));
+        active = hn::And(active, left);
+        if (hn::AllFalse(df, active)) return;
+        const MF replaced = hn::And(next, left);
+        r.m = hn::IfThenElse(replaced, m_next, r.m), r.s = hn::IfThenElse(replaced, s_next, r.s);
+        r.per_m = hn::IfThenElse(replaced, per_next, r.per_m);
+        load_next();
+        const MF linked = inherits(m_ok, s_ok, r.m, r.s, hn::Set(df, relief.up_to(k)));
+        refused = hn::Or(hn::AndNot(replaced, refused), hn::AndNot(linked, replaced));
+        const MF ok = hn::And(replaced, linked);
+        m_ok = hn::IfThenElse(ok, r.m, m_ok), s_ok = hn::IfThenElse(ok, r.s, s_ok);
+      }
+      ++k;
+      set_line();
+      prefetch_line(o, k, lanes.strip_least_m, lanes.strip_most_m);
+      if (wide) {
+        // The nodes at the next line are known already, but for a lane's move to the side.
+        const MF moves = hn::Ge(p.q, hn::Set(df, 1));
+        nodes.a0 = hn::IfThenElse(moves, nodes.b1, nodes.b0), nodes.a1 = hn::IfThenElse(moves, nodes.b2, nodes.b1);
+        nodes.a2 = hn::IfThenElse(moves, b3, nodes.b2);
+        far_node = hn::Add(far_node, hn::IfThenElseZero(hn::RebindMask(di, moves), one));
+        line0 = line1, line1 = o.line(k + 1);
+        const VI i0 = hn::Add(far_node, hn::Set(di, o.node0 + b)), i1 = hn::Add(i0, one), i2 = hn::Add(i1, one);
+        nodes.b0 = look_far(o, line1, i0), nodes.b1 = look_far(o, line1, i1), nodes.b2 = look_far(o, line1, i2);
+        b3 = look_far(o, line1, hn::Add(i2, one));
+      } else {
+        for (int i = 0; i < kWindow; i += N) hn::Store(hn::Load(df, window1_ + i), df, window0_ + i);
+        if (k == 1) {
+          load_lines();
+        } else {
+          load_window(o, k + 1, b, window1_);
+        }
+      }
+    }
+  }
+  static constexpr int kLaneBits = std::countr_zero(N);
+  // The blocks that are skipped: over smaller ones a step per line is as fast.
+  static constexpr int kLeastLevel = 3;
+
+  // Rays that hit for certain, and those that floats do not decide.
+  template <bool triangles>
+  HWY_NOINLINE void put_hits(const Octant<Sample>& o, std::int32_t k, std::int32_t b, const FanLine& at, float low_y,
+                             float high_y, const FanPlaces& p, const FanStep& e, MF candidates, MF refused, VI j) {
+    // Away from the sides, which rounding may place elsewhere: a ray along one may cross it much earlier or later.
+    const VF low_side = hn::Set(df, low_y + at.aside), high_side = hn::Set(df, high_y - at.aside);
+    const FanCrossing f = triangles ? triangle_crossing(e) : bilinear_crossing(e);
+    const MF first = f.first;
+    const VF ends = hn::Add(p.node, hn::IfThenElse(first, hn::Min(p.q, hn::Set(df, 1)), p.q));
+    const MF within = hn::And(hn::Ge(p.y, low_side), hn::Le(ends, high_side));
+    MF sure = hn::And(hn::AndNot(refused, candidates), hn::And(within, hn::And(hn::Gt(e.c0, e.margin), f.sure)));
+    if (at.length < 0x1p-12f || (triangles && at.length < 1)) sure = hn::AndNot(sure, sure);
+    const VF T = hn::MulAdd(f.share, hn::Set(df, at.length), hn::Set(df, at.T0));
+    // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must see all of a ray, which may
+    // cross it slowly.
+    const MF beside = hn::Or(hn::Lt(p.y, low_side), hn::Gt(p.y, high_side));
+    const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kMiss_), hn::Set(df, -1 - at.T0));
+    const VI cell =
+        hn::Add(hn::ConvertTo(di, p.node), hn::IfThenElseZero(hn::RebindMask(di, hn::Not(first)), hn::Set(di, 1)));
+    const VI mirrored = hn::Add(cell, hn::Set(di, o.node0 + b));
+    const VI minor = o.back_minor ? hn::Sub(hn::Set(di, o.minor_cells - 1), mirrored) : mirrored;
+    const std::int32_t major = o.back_major ? o.major_cells - 1 - (o.line0 + k) : o.line0 + k;
+    const VI packed = o.turned
+                          ? hn::Or(hn::Set(di, static_cast<std::int32_t>(static_cast<unsigned>(major) << 16)), minor)
+                          : hn::Or(hn::ShiftLeft<16>(minor), hn::Set(di, major));
+    alignas(64) float times[N];
+    alignas(64) std::int32_t cells[N], rows[N];
+    hn::Store(hn::IfThenElse(sure, T, doubtful), df, times);
+    hn::Store(packed, di, cells), hn::Store(j, di, rows);
+    for (std::uint64_t bits = bits_of(candidates); bits != 0; bits &= bits - 1) {
+      const auto l = static_cast<std::size_t>(std::countr_zero(bits));
+      const std::size_t to = slot(static_cast<std::size_t>(rows[l]), l);
+      T_[to] = times[l], cell_[to] = cells[l];
+    }
+  }
+  std::size_t slot(std::size_t j, std::size_t lane) const {
+    const std::size_t at = j * N + lane;
+    return rows_ ? static_cast<std::size_t>(rows_[at]) * N + lane : at;
+  }
+
+  // Rays behind those of some lanes, which have left the field or are above all ground: they miss if they inherit that.
+  HWY_NOINLINE void end_lanes(MF ends, VI j, VF m_ok, VF s_ok, WedgeRelief<Sample>& relief, std::int32_t k,
+                              const Lanes16& lanes) {
+    alignas(64) std::int32_t rows[N];
+    alignas(64) float m[N], s[N];
+    hn::Store(j, di, rows), hn::Store(m_ok, df, m), hn::Store(s_ok, df, s);
+    for (std::uint64_t bits = bits_of(ends); bits != 0; bits &= bits - 1) {
+      const auto l = static_cast<std::size_t>(std::countr_zero(bits));
+      if (lanes.broken[l] <= rows[l]) continue;
+      const float steepest = relief.up_to(k);
+      for (std::int32_t i = rows[l] + 1; i < lanes.count[l]; ++i) {
+        const std::size_t at = static_cast<std::size_t>(i) * N + l;
+        if (inherits(m[l], s[l], m_[at], s_[at], steepest)) {
+          m[l] = m_[at], s[l] = s_[at];
+        } else {
+          T_[slot(static_cast<std::size_t>(i), l)] = -kMiss_;
+        }
+      }
+    }
+  }
+
+  // Answers of the strip, and the rays that are left.
+  HWY_NOINLINE void answer() {
+    const bool direct = width_ == static_cast<int>(N) && rays_.dx != copies_.data();
+    const bool limited = fan_.t_min != 0 || fan_.t_max < std::numeric_limits<double>::infinity();
+    for (int i = 0; i < fan_.rows; ++i) {
+      const RowRays r = row(i);
+      const VF zero = hn::Zero(df), one = hn::Set(df, 1), never = hn::Set(df, kMiss_);
+      VF T = hn::LoadU(df, T_.data() + static_cast<std::size_t>(i) * N);
+      if (limited) T = limit(T, r.per_major);
+      const VI cell = hn::LoadU(di, cell_.data() + static_cast<std::size_t>(i) * N);
+      const MF hit = hn::And(hn::Lt(T, never), hn::Ge(T, zero));
+      const MI hits = hn::RebindMask(di, hit);
+      const VF t = hn::IfThenElse(hit, hn::Mul(T, r.per_major), never);
+      const VI col = hn::And(cell, hn::Set(di, 0xffff)), row_ = hn::And(hn::ShiftRight<16>(cell), hn::Set(di, 0xffff));
+      const VF gx = hn::Mul(hn::LoadU(df, rays_.dx + i * rays_.stride), hn::Set(df, per_x_));
+      const VF gy = hn::Mul(hn::LoadU(df, rays_.dy + i * rays_.stride), hn::Set(df, per_y_));
+      const auto within = [&](VF g, float in_cell, VI number, std::int32_t origin) HWY_ATTR {
+        const VF from = hn::Sub(hn::Set(df, in_cell), hn::ConvertTo(df, hn::Sub(number, hn::Set(di, origin))));
+        return hn::IfThenElseZero(hit, hn::Min(hn::Max(hn::MulAdd(g, t, from), zero), one));
+      };
+      const VF u = within(gx, in_cell_x_, col, origin_cell_.col), v = within(gy, in_cell_y_, row_, origin_cell_.row);
+      const VI none = hn::Set(di, -1);
+      const std::ptrdiff_t to = begin_ + i * step_;
+      put(t, hits_.t + to, direct), put(u, hits_.u + to, direct), put(v, hits_.v + to, direct);
+      put(hn::IfThenElse(hits, col, none), hits_.col + to, direct);
+      put(hn::IfThenElse(hits, row_, none), hits_.row + to, direct);
+      const std::uint64_t some = (std::uint64_t{1} << width_) - 1;
+      if (hits_.status) {
+        const std::uint64_t bits = bits_of(hit);
+        for (int l = 0; l < width_; ++l) hits_.status[to + l] = bits >> l & 1 ? HitStatus::hit : HitStatus::miss;
+      }
+      std::uint64_t rest = bits_of(hn::Lt(T, zero)) & some;
+      if (rest == 0) continue;
+      alignas(64) float times[N], per_major[N];
+      hn::Store(T, df, times), hn::Store(r.per_major, df, per_major);
+      for (; rest != 0; rest &= rest - 1) {
+        const int l = std::countr_zero(rest);
+        const double until = -1 - static_cast<double>(times[l]), clear = until - 0x1p-20 * (until + 1);
+        rest_.push_back({to + l, std::isfinite(until) && clear > 0 ? clear * static_cast<double>(per_major[l])
+                                                                   : max_mip::kNotClear});
+      }
+    }
+  }
+  // Times of hits that the range excludes, or may exclude.
+  HWY_NOINLINE VF limit(VF T, VF per_major) const {
+    const VF never = hn::Set(df, kMiss_), zero = hn::Zero(df);
+    const auto time = [](double t) { return static_cast<float>(std::clamp(t, -0x1p126, 0x1p126)); };
+    const VF near = hn::Div(hn::Set(df, time(fan_.t_min)), per_major);
+    const VF far = hn::Div(hn::Set(df, time(fan_.t_max)), per_major);
+    const MF hit = hn::And(hn::Ge(T, zero), hn::Lt(T, never));
+    // A hit is within its step, floats are off by less than another one.
+    const VF slack =
+        hn::MulAdd(hn::Set(df, 0x1p-20f), hn::Add(hn::Abs(T), hn::Max(hn::Abs(near), zero)), hn::Set(df, 3));
+    const MF late = hn::And(hit, hn::Gt(hn::Sub(T, slack), far));
+    const MF early = hn::And(hit, hn::Lt(hn::Sub(T, slack), near));
+    const MF at_end = hn::And(hit, hn::Ge(hn::Add(T, slack), far));
+    const VF unknown = hn::Set(df, -kMiss_);
+    // Before a late hit the ray is above, but t_min may be behind it.
+    T = hn::IfThenElse(hn::Or(early, at_end), unknown, T);
+    return hn::IfThenElse(hn::AndNot(early, late), never, T);
+  }
+  template <class V, class E>
+  HWY_INLINE void put(V v, E* to, bool direct) const {
+    constexpr hn::Simd<E, N, 0> d;
+    if (direct) {
+      hn::StoreU(v, d, to);
+      return;
+    }
+    alignas(64) E all[N];
+    hn::Store(v, d, all);
+    for (int i = 0; i < width_; ++i) to[i] = all[i];
+  }
+
+  const HeightField& field_;
+  const MaxPyramid& pyramid_;
+  const Fan& fan_;
+  const FanHits& hits_;
+  const FanOptions& options_;
+  std::vector<max_mip::FanRest>& rest_;
+  FanStats& stats_;
+  dvec3 origin_;
+  Octant<Sample> octants_[8];
+  FanPlanes planes_;
+  float per_x_, per_y_, per_z_;
+  bool triangles_;
+  float highest_, steepest_ray_, doubt_, rounding_, cell_relief_;
+  Cell origin_cell_;
+  float in_cell_x_, in_cell_y_;
+
+  StripRays rays_;
+  std::ptrdiff_t begin_ = 0, step_ = 0;  // of the strip's answers
+  int width_ = 0;
+  const std::int32_t* rows_ = nullptr;  // rows of the entries of the tables; null: the same
+  alignas(64) float window0_[kWindow], window1_[kWindow];
+  std::vector<float> m_, s_, T_, copies_;
+  std::vector<std::int32_t> cell_, row_of_;
+};
+
+void walk(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
+          const FanOptions& options, std::vector<max_mip::FanRest>& rest, FanStats& stats) {
+  target.field->visit([&](const auto& grid) {
+    using Sample = std::remove_cvref_t<decltype(grid.data[0])>;
+    FanWalk<Sample>(target, grid, fan, hits, options, rest, stats).run(begin, end);
+  });
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace scarp
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scarp {
+namespace {
+
+HWY_EXPORT(walk);
+
+// Sides that a cell's 16-bit numbers reach, and from how far away a walk over the field makes sense.
+constexpr int kMostCells = 1 << 16;
+constexpr double kFarthest = 0x1p16;
+// In cells; in heights of the field.
+constexpr double kOnBorder = 0x1p-20, kAboveBorder = 0x1p-12;
+
+}  // namespace
+
+bool max_mip::walks_fan(const HeightTarget& target, const Fan& fan) {
+  const HeightField& field = *target.field;
+  if (field.nodata_count() > 0 || field.wraps() || !field.has_cells()) return false;
+  if (field.cell_cols() > kMostCells || field.cell_rows() > kMostCells) return false;
+  if (!(fan.t_min >= 0) || !std::isfinite(fan.t_min) || !(fan.t_max >= fan.t_min)) return false;
+  Ray ray;
+  ray.origin = fan.origin;
+  const dvec3 at = field.grid_from_world(ray).origin;
+  const auto near = [](double place, int cells) { return place > -kFarthest && place < cells + kFarthest; };
+  if (!near(at.x, field.cell_cols()) || !near(at.y, field.cell_rows()) || !std::isfinite(at.z)) return false;
+  const double relief = field.max_sample() - field.min_sample();
+  const double tallest = std::max({std::abs(at.z), std::abs(field.min_sample()), std::abs(field.max_sample())});
+  if (!(tallest < 0x1p60) || !(relief < 0x1p60)) return false;
+  const auto ground = field.height(fan.origin.x, fan.origin.y);
+  if (ground && !(fan.origin.z > *ground)) return false;
+  // On the border rays may touch a rim before or behind the field, unless they are well above it.
+  const auto on_border = [](double place, int cells) {
+    return std::min(std::abs(place), std::abs(place - cells)) < kOnBorder;
+  };
+  const bool beside = on_border(at.x, field.cell_cols()) || on_border(at.y, field.cell_rows());
+  const double rim = ground.value_or(field.max_height()), tall = field.max_height() - field.min_height();
+  return !beside || fan.origin.z - rim > kAboveBorder * tall;
+}
+
+void max_mip::walk_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
+                       const FanOptions& options, std::vector<FanRest>& rest, FanStats& stats) {
+  HWY_DYNAMIC_DISPATCH(walk)(target, fan, hits, begin, end, options, rest, stats);
+}
+
+}  // namespace scarp
+#endif

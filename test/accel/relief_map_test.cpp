@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/accel/relief_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "scarp/accel/max_pyramid.h"
+
+namespace scarp {
+namespace {
+
+constexpr int kSide = 1 << ReliefMap::kLevel;
+
+// The steepest edge of a block's cells, straight from the samples; infinity with a hole.
+double brute_force(const HeightField& field, int col, int row) {
+  double steepest = 0;
+  for (int r = row * kSide; r < std::min((row + 1) * kSide, field.cell_rows()); ++r) {
+    for (int c = col * kSide; c < std::min((col + 1) * kSide, field.cell_cols()); ++c) {
+      const auto h = field.cell_heights({c, r});
+      if (!h) return std::numeric_limits<double>::infinity();
+      steepest = std::max({steepest, std::abs(h->h10 - h->h00), std::abs(h->h11 - h->h01), std::abs(h->h01 - h->h00),
+                           std::abs(h->h11 - h->h10)});
+    }
+  }
+  return steepest;
+}
+
+void expect_tight(const HeightField& field, const ReliefMap& map) {
+  ASSERT_EQ(map.cols(), (field.cell_cols() + kSide - 1) / kSide);
+  ASSERT_EQ(map.rows(), (field.cell_rows() + kSide - 1) / kSide);
+  for (int row = 0; row < map.rows(); ++row) {
+    for (int col = 0; col < map.cols(); ++col) {
+      const double truth = brute_force(field, col, row), there = static_cast<double>(map.row(row)[col]);
+      ASSERT_GE(there, truth) << col << " " << row;
+      if (std::isfinite(truth)) {
+        ASSERT_LE(there, truth * (1 + 0x1p-20)) << col << " " << row;
+      }
+    }
+  }
+}
+
+template <class T>
+std::vector<T> noise(int cols, int rows, double scale) {
+  std::mt19937 random(11);
+  std::vector<T> samples(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));
+  for (T& s : samples) s = static_cast<T>(scale * (static_cast<double>(random() % 60000) - 30000));
+  return samples;
+}
+
+TEST(ReliefMap, HasTheSteepestEdgeOfEachBlockAtAnySize) {
+  for (const auto& [cols, rows] : {std::pair{2, 2}, {9, 9}, {8, 8}, {10, 17}, {65, 33}, {101, 97}, {3, 130}}) {
+    for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
+      SCOPED_TRACE(testing::Message() << cols << " x " << rows);
+      const auto check = [&](const HeightField& field) {
+        ReliefMap map;
+        map.build(field);
+        expect_tight(field, map);
+      };
+      check(HeightField::own(noise<float>(cols, rows, 0.37), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(noise<float>(cols, rows, 1e-44), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(noise<std::int16_t>(cols, rows, 1), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(noise<std::uint16_t>(cols, rows, 0.5), cols, rows, {.nodata = 77, .wrap = wrap}));
+    }
+  }
+}
+
+TEST(ReliefMap, HasNoBoundOverHoles) {
+  auto samples = noise<float>(40, 33, 1);
+  samples[40 * 16 + 16] = std::numeric_limits<float>::quiet_NaN();
+  const HeightField field = HeightField::own(samples, 40, 33);
+  ReliefMap map;
+  map.build(field);
+  expect_tight(field, map);
+  EXPECT_EQ(map.row(1)[1], std::numeric_limits<float>::infinity());
+  EXPECT_TRUE(std::isfinite(map.row(0)[0]));
+}
+
+TEST(ReliefMap, FollowsEdits) {
+  std::mt19937 random(12);
+  for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
+    const int cols = 75, rows = 50;
+    HeightField field = HeightField::own(noise<float>(cols, rows, 1), cols, rows, {.wrap = wrap});
+    MaxPyramid pyramid(field);
+    for (int i = 0; i < 40; ++i) {
+      const int col = static_cast<int>(random() % cols), row = static_cast<int>(random() % rows);
+      const SampleRect rect{col, row, 1 + static_cast<int>(random() % static_cast<unsigned>(cols - col)),
+                            1 + static_cast<int>(random() % static_cast<unsigned>(rows - row))};
+      const std::vector<float> samples(static_cast<std::size_t>(rect.cols * rect.rows),
+                                       static_cast<float>(random() % 60000) - 30000);
+      pyramid.update(field, field.set_samples(rect, samples.data(), rect.cols));
+      expect_tight(field, pyramid.relief());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scarp

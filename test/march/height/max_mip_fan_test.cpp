@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: MIT
+// Fans hit where the scalar march does, within the tolerance of numerics.md: over every kind of field, from eyes near,
+// far, beside and below it, with fans of cameras and scanners and with spiteful ones, on every instruction set.
+#include "scarp/march/height/max_mip_fan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cases.h"
+#include "march/height/spiteful.h"
+#include "march/instruction_sets.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/rounding.h"
+#include "scarp/march/usual_ray.h"
+
+namespace scarp::test {
+namespace {
+
+const int kFansPerField = cases(400, 40, 2);
+const int kRounds = cases(40, 2, 1);
+constexpr double kPi = std::numbers::pi;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// The arrays of a fan, in rows or in strips.
+struct Rays {
+  dvec3 origin{0.0};
+  int columns = 1, rows = 1;
+  bool strips = false;
+  std::vector<float> dx{}, dy{}, dz{};
+  double t_min = 0, t_max = std::numeric_limits<double>::infinity();
+
+  Rays(dvec3 eye, int width, int height, bool in_strips)
+      : origin(eye), columns(width), rows(height), strips(in_strips) {
+    const auto count = static_cast<std::size_t>((columns + 15) / 16 * 16 * rows);
+    for (std::vector<float>* numbers : {&dx, &dy, &dz}) numbers->resize(count, 1.0f);
+  }
+  Fan fan() const {
+    Fan f;
+    f.origin = origin;
+    f.dx = dx.data(), f.dy = dy.data(), f.dz = dz.data();
+    f.columns = columns, f.rows = rows;
+    f.row_stride = strips ? 16 : columns, f.strip_stride = strips ? 16 * rows : 16;
+    f.t_min = t_min, f.t_max = t_max;
+    return f;
+  }
+  std::size_t at(int column, int row) const {
+    const Fan f = fan();
+    return static_cast<std::size_t>(row * f.row_stride + column / 16 * f.strip_stride + column % 16);
+  }
+  void put(int column, int row, dvec3 direction) {
+    const std::size_t i = at(column, row);
+    dx[i] = static_cast<float>(direction.x), dy[i] = static_cast<float>(direction.y);
+    dz[i] = static_cast<float>(direction.z);
+  }
+  Ray ray(std::size_t i) const {
+    Ray r;
+    r.origin = origin;
+    r.direction = {static_cast<double>(dx[i]), static_cast<double>(dy[i]), static_cast<double>(dz[i])};
+    r.t_min = t_min, r.t_max = t_max;
+    return r;
+  }
+};
+
+// How far above or below the surface the place of a hit may be, in sample units: numerics.md, Fans.
+double tolerance(const HeightTarget& target, const Ray& ray, double t) {
+  const HeightField& field = *target.field;
+  const GridRay g = field.grid_from_world(ray);
+  const double relief =
+      std::min(field.max_sample() - field.min_sample(), target.pyramid->cell_relief() * target.pyramid->code().step);
+  const double cells = std::max(std::abs(g.direction.x), std::abs(g.direction.y)) * std::abs(t);
+  return 0x1p-18 * (std::abs(g.direction.z * t) + (cells + 12) * relief) + 8 * rounding_of_clearance(field, g, t);
+}
+
+double height_over(const HeightField& field, const Ray& ray, double t, Cell cell) {
+  const GridRay g = field.grid_from_world(ray);
+  const auto h = field.cell_heights(cell);
+  const double u = std::clamp(g.origin.x + g.direction.x * t - cell.col, 0.0, 1.0);
+  const double v = std::clamp(g.origin.y + g.direction.y * t - cell.row, 0.0, 1.0);
+  return g.origin.z + g.direction.z * t - height_in_cell(field.settings().surface, *h, u, v);
+}
+
+testing::AssertionResult same(const HeightTarget& target, const Ray& ray, const Hit& expected, HitStatus status,
+                              double t, Cell cell, double u, double v) {
+  const auto failure = [&](const char* why) {
+    return testing::AssertionFailure() << why << ": status " << int(status) << ", expected " << int(expected.status)
+                                       << ", t " << t << ", expected " << expected.t << ", cell " << cell.col << " "
+                                       << cell.row << ", expected " << expected.cell.col << " " << expected.cell.row
+                                       << ", u " << u << ", v " << v << ", direction " << ray.direction.x << " "
+                                       << ray.direction.y << " " << ray.direction.z << ", origin " << ray.origin.x
+                                       << " " << ray.origin.y << " " << ray.origin.z;
+  };
+  if (status != expected.status) return failure("status");
+  if (status != HitStatus::hit) {
+    const bool nothing = t == std::numeric_limits<double>::infinity() && cell == Cell{} && u == 0 && v == 0;
+    return nothing ? testing::AssertionSuccess() : failure("numbers of a miss");
+  }
+  const HeightField& field = *target.field;
+  if (!(cell.col >= 0 && cell.col < field.cell_cols() && cell.row >= 0 && cell.row < field.cell_rows()))
+    return failure("no such cell");
+  if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return failure("beside its cell");
+  // Times of such directions are hardly floats.
+  const double longest = longest_of(ray.direction);
+  if (!(longest > 0x1p-60 && longest < 0x1p60)) return testing::AssertionSuccess();
+  if (expected.wall || field.wraps()) return testing::AssertionSuccess();
+  const GridRay g = field.grid_from_world(ray);
+  const double cells = std::max(std::abs(g.direction.x), std::abs(g.direction.y)) * std::abs(t);
+  const double aside = 0x1p-19 * (cells + 4) + HeightField::rounding_of_line(g.origin.x, field.cell_cols()) +
+                       HeightField::rounding_of_line(g.origin.y, field.cell_rows());
+  if (std::abs(g.origin.x + g.direction.x * t - cell.col - u) > aside ||
+      std::abs(g.origin.y + g.direction.y * t - cell.row - v) > aside) {
+    return failure("not on the ray");
+  }
+  const double most = tolerance(target, ray, std::max(std::abs(t), std::abs(expected.t)));
+  if (std::abs(height_over(field, ray, t, cell)) > most) return failure("not on the surface");
+  // No other hit: along the surface from one to the other.
+  for (int i = 1; i < 8; ++i) {
+    const double between = t + (expected.t - t) * i / 8;
+    const dvec3 p = ray.at(between);
+    const auto z = field.height(p.x, p.y);
+    if (z && std::abs(p.z - *z) * field.grid_scales().per_scale > 2 * most) return failure("another hit");
+  }
+  return testing::AssertionSuccess();
+}
+
+void check(const HeightTarget& target, const Rays& rays, const std::string& what, const FanOptions& options = {}) {
+  const Fan fan = rays.fan();
+  const std::size_t count = rays.dx.size();
+  std::vector<float> t(count, -7), u(count, -7), v(count, -7);
+  std::vector<std::int32_t> col(count, -7), row(count, -7);
+  std::vector<HitStatus> status(count, HitStatus::exhausted);
+  FanOptions always = options;
+  always.always = true;
+  const int middle = (rays.columns / 2 + 15) / 16 * 16;
+  const FanHits hits{t.data(), col.data(), row.data(), u.data(), v.data(), status.data()};
+  closest_hits_max_mip_fan(target, fan, hits, 0, std::min(middle, rays.columns), always);
+  closest_hits_max_mip_fan(target, fan, hits, middle, rays.columns, always);
+  for (int c = 0; c < rays.columns; ++c) {
+    for (int r = 0; r < rays.rows; ++r) {
+      const std::size_t i = rays.at(c, r);
+      const Ray ray = rays.ray(i);
+      const Hit expected = is_followable(ray) ? march_max_mip(target, ray) : Hit{};
+      ASSERT_TRUE(same(target, ray, expected, status[i], static_cast<double>(t[i]), {col[i], row[i]},
+                       static_cast<double>(u[i]), static_cast<double>(v[i])))
+          << what << ", column " << c << " of " << rays.columns << ", row " << r << " of " << rays.rows << std::hexfloat
+          << ", directions " << rays.dx[i] << " " << rays.dy[i] << " " << rays.dz[i];
+    }
+  }
+}
+
+dvec3 direction_to(double azimuth, double altitude) {
+  return {std::sin(azimuth) * std::cos(altitude), std::cos(azimuth) * std::cos(altitude), std::sin(altitude)};
+}
+
+double tall(const HeightField& f) {
+  return f.all_nodata() ? 1 : std::max(f.max_height() - f.min_height(), 0.01 * f.settings().cell_x);
+}
+
+// Over nodes, edges and cells, at any height; beside the field and far from it; on its border.
+dvec3 eye(const HeightField& f, Random& random) {
+  const auto along = [&](int cells) {
+    const int kind = whole(random, 0, 9);
+    if (kind == 0) return uniform(random, -3, 0) * cells;
+    if (kind == 1) return cells * uniform(random, 1, 40);
+    if (kind == 2) return static_cast<double>(whole(random, 0, cells));
+    return uniform(random, 0, cells);
+  };
+  const dvec3 at = f.world_from_grid(along(f.cell_cols()), along(f.cell_rows()), 0);
+  const double low = f.all_nodata() ? 0 : f.min_height();
+  const double ground = f.height(at.x, at.y).value_or(uniform(random, low, low + tall(f)));
+  const int kind = whole(random, 0, 9);
+  const double above = kind == 0   ? -uniform(random, 0, 1)
+                       : kind == 1 ? 0
+                       : kind == 2 ? uniform(random, 1, 50)
+                                   : std::exp2(uniform(random, -16, 1));
+  return {at.x, at.y, ground + above * tall(f)};
+}
+
+// Slopes suit the field: some rays meet the ground near and some far away.
+Rays camera(const HeightField& f, Random& random, dvec3 from) {
+  Rays rays(from, whole(random, 1, 40), whole(random, 1, 40), whole(random, 0, 1) == 0);
+  const double yaw = uniform(random, 0, 2 * kPi), pitch = uniform(random, -1.5, 0.6);
+  const double roll = whole(random, 0, 2) == 0 ? uniform(random, -0.5, 0.5) : 0;
+  const dvec3 forward = direction_to(yaw, pitch), flat = normalize(cross(forward, dvec3(0, 0, 1)));
+  const dvec3 tilted = cross(flat, forward);
+  const dvec3 right = std::cos(roll) * flat + std::sin(roll) * tilted;
+  const dvec3 up = cross(right, forward);
+  const double half = uniform(random, 0.01, 1), lift = whole(random, 0, 1) ? tall(f) / (f.width() + f.depth()) : 1;
+  for (int c = 0; c < rays.columns; ++c) {
+    for (int r = 0; r < rays.rows; ++r) {
+      const double x = (c + 0.5) / rays.columns * 2 - 1, y = 1 - (r + 0.5) / rays.rows * 2;
+      dvec3 direction = forward + half * x * right + half * y * up;
+      direction.z *= lift;
+      rays.put(c, r, direction);
+    }
+  }
+  return rays;
+}
+
+Rays scanner(const HeightField& f, Random& random, dvec3 from) {
+  Rays rays(from, whole(random, 1, 70), whole(random, 1, 40), whole(random, 0, 1) == 0);
+  const double from_azimuth = whole(random, 0, 1) ? 0 : uniform(random, 0, 7);
+  const double lift = whole(random, 0, 1) ? tall(f) / (f.width() + f.depth()) : 1;
+  const bool rising = whole(random, 0, 1);
+  for (int c = 0; c < rays.columns; ++c) {
+    for (int r = 0; r < rays.rows; ++r) {
+      const double share = (r + 0.5) / rays.rows;
+      dvec3 direction =
+          direction_to(from_azimuth + 2 * kPi * c / rays.columns, -1.4 + 2 * (rising ? share : 1 - share));
+      direction.z *= lift;
+      rays.put(c, r, direction);
+    }
+  }
+  return rays;
+}
+
+// Through nodes, edges and diagonals.
+Rays aimed(const HeightField& f, Random& random, dvec3 from) {
+  Rays rays(from, whole(random, 1, 33), whole(random, 1, 33), whole(random, 0, 1) == 0);
+  for (int c = 0; c < rays.columns; ++c) {
+    std::vector<dvec3> column;
+    const int col = whole(random, 0, f.cols() - 1), row = whole(random, 0, f.rows() - 1);
+    for (int r = 0; r < rays.rows; ++r) {
+      const bool same_way = whole(random, 0, 3) != 0;
+      dvec3 to = f.world_from_grid(same_way ? col : whole(random, 0, f.cols() - 1),
+                                   same_way ? row : whole(random, 0, f.rows() - 1), 0);
+      to.z = f.height(to.x, to.y).value_or(0) + (whole(random, 0, 2) ? uniform(random, -0.1, 0.1) * tall(f) : 0);
+      column.push_back(to - from);
+    }
+    const auto slope = [](const dvec3& d) { return d.z / std::hypot(d.x, d.y); };
+    if (whole(random, 0, 3)) {
+      std::sort(column.begin(), column.end(), [&](const dvec3& a, const dvec3& b) { return slope(a) < slope(b); });
+    }
+    for (int r = 0; r < rays.rows; ++r) rays.put(c, r, column[static_cast<std::size_t>(r)]);
+  }
+  return rays;
+}
+
+// Numbers that are none, none too many, equal slopes, slopes in any order, axes, diagonals and vertical rays.
+Rays spiteful(const HeightField& f, Random& random, dvec3 from) {
+  Rays rays(from, whole(random, 1, 33), whole(random, 1, 33), whole(random, 0, 1) == 0);
+  const float numbers[] = {0.0f,     -0.0f,    1.0f,   -1.0f,     1e-40f,
+                           -1e-45f,  1e38f,    -3e38f, kInfinity, std::numeric_limits<float>::quiet_NaN(),
+                           0x1p-20f, 0x1p-30f, 1e6f};
+  const auto number = [&] { return numbers[whole(random, 0, static_cast<int>(std::size(numbers)) - 1)]; };
+  const double slope = uniform(random, -1, 0) * tall(f) / (f.width() + f.depth());
+  for (int c = 0; c < rays.columns; ++c) {
+    const double turn = c % 3 ? uniform(random, 0, 7) : whole(random, 0, 8) * kPi / 4;
+    for (int r = 0; r < rays.rows; ++r) {
+      const int kind = whole(random, 0, 7);
+      const std::size_t i = rays.at(c, r);
+      rays.put(c, r,
+               {std::sin(turn), std::cos(turn),
+                kind == 0  ? slope * r
+                : kind < 4 ? slope
+                           : uniform(random, -2, 1)});
+      if (kind == 7) rays.dx[i] = number(), rays.dy[i] = number(), rays.dz[i] = number();
+      if (kind == 6) rays.dz[i] = whole(random, 0, 1) ? number() : -1e30f;
+    }
+  }
+  return rays;
+}
+
+template <class F>
+void for_some_fans(const HeightTarget& target, Random& random, int count, const F& each) {
+  for (int i = 0; i < count; ++i) {
+    const HeightField& field = *target.field;
+    const dvec3 from = eye(field, random);
+    // Over a field that wraps round, rays must not be long.
+    const int kind = whole(random, 0, field.wraps() ? 2 : 3);
+    Rays rays = kind == 0   ? camera(field, random, from)
+                : kind == 1 ? scanner(field, random, from)
+                : kind == 2 ? aimed(field, random, from)
+                            : spiteful(field, random, from);
+    if (field.wraps() || whole(random, 0, 3) == 0) {
+      const double most = kind == 2 ? 1 : field.width() + field.depth();
+      rays.t_max = uniform(random, 0, 2) * most;
+    }
+    if (whole(random, 0, 5) == 0) rays.t_min = std::min(rays.t_max, uniform(random, -0.1, 1) * field.width());
+    each(rays, "fan " + std::to_string(i) + " of kind " + std::to_string(kind));
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
+TEST(MaxMipFan, HitsWhereTheScalarMarchDoesOverEveryKindOfField) {
+  Random random(91);
+  for (int round = 0; round < kRounds; ++round) {
+    for (const FieldKind& kind : spiteful_fields()) {
+      const HeightField field = kind.make(random);
+      const MaxPyramid pyramid(field);
+      const HeightTarget target{&field, &pyramid};
+      if (!field.has_cells()) continue;
+      for_some_fans(target, random, kFansPerField, [&](const Rays& rays, const std::string& what) {
+        check(target, rays, std::string(kind.name) + ", " + what);
+      });
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+// Sums of waves from a cell to the whole field wide.
+template <class T>
+HeightField terrain(Random& random, int cols, int rows, double base, double roughness, HeightFieldSettings settings) {
+  std::vector<T> samples;
+  const double phase = uniform(random, 0, 6);
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const double z = 60 * std::sin(0.011 * col + phase) * std::cos(0.013 * row) +
+                       9 * std::sin(0.11 * col + 0.07 * row) + 2 * std::sin(0.9 * col) * std::cos(0.8 * row) +
+                       roughness * uniform(random, 0, 1);
+      samples.push_back(static_cast<T>(base + z));
+    }
+  }
+  settings.cell_x = uniform(random, 0.5, 2), settings.cell_y = uniform(random, 0.5, 2);
+  return HeightField::own(std::move(samples), cols, rows, settings);
+}
+
+TEST(MaxMipFan, HitsWhereTheScalarMarchDoesOverLargerGroundOnEveryInstructionSet) {
+  Random random(92);
+  const std::vector<std::int64_t> sets = instruction_sets();
+  for (int round = 0; round < 3 * kRounds; ++round) {
+    const int cols = whole(random, 60, 700), rows = whole(random, 60, 500);
+    const double roughness = round % 3 == 0 ? 0 : std::exp2(uniform(random, -4, 5));
+    const HeightFieldSettings settings{.scale = round % 2 ? 1.0 : 0.03125, .offset = round % 2 ? 0.0 : 100.0};
+    const HeightField field = round % 3 == 0
+                                  ? terrain<float>(random, cols, rows, round % 2 ? 0 : 8848, roughness, settings)
+                              : round % 3 == 1 ? terrain<std::int16_t>(random, cols, rows, 0, roughness, settings)
+                                               : terrain<std::uint16_t>(random, cols, rows, 500, roughness, settings);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    for_some_fans(target, random, 4 * kFansPerField, [&](const Rays& rays, const std::string& what) {
+      for (const std::int64_t set : sets) {
+        const InstructionSet only(set);
+        check(target, rays, what + ", " + hwy::TargetName(set));
+      }
+      check(target, rays, what + ", no jumps", {.jumps = false});
+    });
+    if (HasFatalFailure()) return;
+  }
+}
+
+// Most rays of a usual camera and scanner are decided by floats.
+TEST(MaxMipFan, UsualFansLeaveFewRays) {
+  Random random(93);
+  const HeightField field = terrain<float>(random, 513, 513, 0, 0.5, {});
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const double x = 0.5 * field.width(), y = 0.5 * field.depth();
+  Rays rays({x, y, *field.height(x, y) + 2}, 256, 128, true);
+  for (int c = 0; c < rays.columns; ++c) {
+    for (int r = 0; r < rays.rows; ++r)
+      rays.put(c, r, direction_to(2 * kPi * c / rays.columns, 0.2 - 0.6 * r / rays.rows));
+  }
+  take_fan_stats();
+  check(target, rays, "scanner");
+  const FanStats stats = take_fan_stats();
+  EXPECT_EQ(stats.rays, static_cast<std::uint64_t>(rays.columns) * static_cast<std::uint64_t>(rays.rows));
+  EXPECT_LT(stats.resumed + stats.from_start, stats.rays / 100);
+}
+
+}  // namespace
+}  // namespace scarp::test
