@@ -8,6 +8,7 @@
 //   scarp::Hit hit = scarp::cast(terrain, ray);              // the closest hit of a ray
 //   bool hidden = scarp::occluded(terrain, ray);             // whether anything blocks it
 //   scarp::cast(terrain, rays, hits);                        // a batch, on all threads
+//   scarp::cast_from(terrain, camera, answers);              // all rays of a camera or a scanner
 //   terrain.samples_changed({.col = 9, .row = 9, .cols = 3, .rows = 2});
 //
 //   auto voxels = scarp::Voxels::copy(indices, {64, 64, 32}, {.palette = colours});
@@ -30,6 +31,7 @@
 #include "scarp/field/distance_field.h"
 #include "scarp/field/height_function.h"
 #include "scarp/scene/cast.h"
+#include "scarp/scene/cast_from.h"
 #include "scarp/scene/combine.h"
 #include "scarp/scene/scene.h"
 #include "scarp/scene/terrain.h"

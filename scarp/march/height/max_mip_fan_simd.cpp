@@ -30,7 +30,7 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr float kMiss_ = std::numeric_limits<float>::infinity();
+constexpr float kNoTime = std::numeric_limits<float>::infinity();
 
 // Directions of a strip, one vector per row, in the order of the walk.
 struct StripRays {
@@ -178,13 +178,13 @@ class FanWalk {
     bool all_taken = true;
     VF least = hn::Set(df, 2), most = hn::Zero(df);
     VI broken = hn::Set(di, -1);
-    VF m0 = first.m, s0 = hn::Set(df, -kMiss_);
+    VF m0 = first.m, s0 = hn::Set(df, -kNoTime);
     const VF relief = hn::Set(df, cell_relief_);
     for (int i = 0; i < fan_.rows; ++i) {
       const RowRays r = row(i);
       const auto at = static_cast<std::size_t>(i) * N;
       hn::StoreU(r.m, df, m_.data() + at), hn::StoreU(r.s, df, s_.data() + at);
-      hn::StoreU(hn::IfThenElse(r.taken, hn::Set(df, kMiss_), hn::Set(df, -kMiss_)), df, T_.data() + at);
+      hn::StoreU(hn::IfThenElse(r.taken, hn::Set(df, kNoTime), hn::Set(df, -kNoTime)), df, T_.data() + at);
       all_taken &= hn::AllTrue(df, r.taken);
       const VI one = hn::Shl(hn::Set(di, 1), r.octant);
       seen = hn::Or(seen, hn::IfThenElseZero(hn::RebindMask(di, r.taken), one));
@@ -197,7 +197,7 @@ class FanWalk {
     hn::Store(seen, di, octants);
     std::int32_t all = 0;
     for (const std::int32_t o : octants) all |= o;
-    Lanes16 lanes;
+    StripLanes lanes;
     if (all_taken && std::has_single_bit(static_cast<unsigned>(all))) {
       hn::Store(hn::Set(di, fan_.rows), di, lanes.count);
       for (std::size_t l = static_cast<std::size_t>(width_); l < N; ++l) lanes.count[l] = 0;
@@ -218,7 +218,7 @@ class FanWalk {
   }
 
   // Tables of the rays in one octant alone.
-  HWY_NOINLINE void take(int octant, Lanes16& lanes) {
+  HWY_NOINLINE void take(int octant, StripLanes& lanes) {
     std::fill_n(lanes.count, N, 0), std::fill_n(lanes.broken, N, -1), std::fill_n(lanes.least_m, N, 2.0f);
     std::fill_n(m_.begin(), N, 0.0f), std::fill_n(s_.begin(), N, 0.0f);
     float most = 0;
@@ -244,7 +244,7 @@ class FanWalk {
   }
 
   // The line from which on rays may be near the ground.
-  std::int32_t first_line(const Octant<Sample>& o, const Lanes16& lanes) const {
+  std::int32_t first_line(const Octant<Sample>& o, const StripLanes& lanes) const {
     double T = 0;
     if (highest_ < 0) {
       T = std::numeric_limits<double>::infinity();
@@ -264,7 +264,7 @@ class FanWalk {
     return line == 0 && o.fx == 1 ? 1 : line;
   }
 
-  void walk(const Octant<Sample>& o, const Lanes16& lanes) {
+  void walk(const Octant<Sample>& o, const StripLanes& lanes) {
     if (triangles_) {
       walk_over<true>(o, lanes);
     } else {
@@ -273,7 +273,7 @@ class FanWalk {
   }
 
   template <bool triangles>
-  HWY_NOINLINE void walk_over(const Octant<Sample>& o, const Lanes16& lanes) {
+  HWY_NOINLINE void walk_over(const Octant<Sample>& o, const StripLanes& lanes) {
     const bool rises = o.rises;
     const std::int32_t end = o.last_line();
     const VI n = hn::Load(di, lanes.count), lane = hn::Iota(di, 0), one = hn::Set(di, 1);
@@ -471,7 +471,7 @@ class FanWalk {
 
   // Rays that hit for certain, and those that floats do not decide.
   template <bool triangles>
-  HWY_NOINLINE void put_hits(const Octant<Sample>& o, std::int32_t k, std::int32_t b, const FanLine& at, float low_y,
+  HWY_INLINE void put_hits(const Octant<Sample>& o, std::int32_t k, std::int32_t b, const FanLine& at, float low_y,
                              float high_y, const FanPlaces& p, const FanStep& e, MF candidates, MF refused, VI j) {
     // Away from the sides, which rounding may place elsewhere: a ray along one may cross it much earlier or later.
     const VF low_side = hn::Set(df, low_y + at.aside), high_side = hn::Set(df, high_y - at.aside);
@@ -485,7 +485,7 @@ class FanWalk {
     // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must see all of a ray, which may
     // cross it slowly.
     const MF beside = hn::Or(hn::Lt(p.y, low_side), hn::Gt(p.y, high_side));
-    const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kMiss_), hn::Set(df, -1 - at.T0));
+    const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kNoTime), hn::Set(df, -1 - at.T0));
     const VI cell =
         hn::Add(hn::ConvertTo(di, p.node), hn::IfThenElseZero(hn::RebindMask(di, hn::Not(first)), hn::Set(di, 1)));
     const VI mirrored = hn::Add(cell, hn::Set(di, o.node0 + b));
@@ -511,7 +511,7 @@ class FanWalk {
 
   // Rays behind those of some lanes, which have left the field or are above all ground: they miss if they inherit that.
   HWY_NOINLINE void end_lanes(MF ends, VI j, VF m_ok, VF s_ok, WedgeRelief<Sample>& relief, std::int32_t k,
-                              const Lanes16& lanes) {
+                              const StripLanes& lanes) {
     alignas(64) std::int32_t rows[N];
     alignas(64) float m[N], s[N];
     hn::Store(j, di, rows), hn::Store(m_ok, df, m), hn::Store(s_ok, df, s);
@@ -524,7 +524,7 @@ class FanWalk {
         if (inherits(m[l], s[l], m_[at], s_[at], steepest)) {
           m[l] = m_[at], s[l] = s_[at];
         } else {
-          T_[slot(static_cast<std::size_t>(i), l)] = -kMiss_;
+          T_[slot(static_cast<std::size_t>(i), l)] = -kNoTime;
         }
       }
     }
@@ -536,7 +536,7 @@ class FanWalk {
     const bool limited = fan_.t_min != 0 || fan_.t_max < std::numeric_limits<double>::infinity();
     for (int i = 0; i < fan_.rows; ++i) {
       const RowRays r = row(i);
-      const VF zero = hn::Zero(df), one = hn::Set(df, 1), never = hn::Set(df, kMiss_);
+      const VF zero = hn::Zero(df), one = hn::Set(df, 1), never = hn::Set(df, kNoTime);
       VF T = hn::LoadU(df, T_.data() + static_cast<std::size_t>(i) * N);
       if (limited) T = limit(T, r.per_major);
       const VI cell = hn::LoadU(di, cell_.data() + static_cast<std::size_t>(i) * N);
@@ -575,7 +575,7 @@ class FanWalk {
   }
   // Times of hits that the range excludes, or may exclude.
   HWY_NOINLINE VF limit(VF T, VF per_major) const {
-    const VF never = hn::Set(df, kMiss_), zero = hn::Zero(df);
+    const VF never = hn::Set(df, kNoTime), zero = hn::Zero(df);
     const auto time = [](double t) { return static_cast<float>(std::clamp(t, -0x1p126, 0x1p126)); };
     const VF near = hn::Div(hn::Set(df, time(fan_.t_min)), per_major);
     const VF far = hn::Div(hn::Set(df, time(fan_.t_max)), per_major);
@@ -586,7 +586,7 @@ class FanWalk {
     const MF late = hn::And(hit, hn::Gt(hn::Sub(T, slack), far));
     const MF early = hn::And(hit, hn::Lt(hn::Sub(T, slack), near));
     const MF at_end = hn::And(hit, hn::Ge(hn::Add(T, slack), far));
-    const VF unknown = hn::Set(df, -kMiss_);
+    const VF unknown = hn::Set(df, -kNoTime);
     // Before a late hit the ray is above, but t_min may be behind it.
     T = hn::IfThenElse(hn::Or(early, at_end), unknown, T);
     return hn::IfThenElse(hn::AndNot(early, late), never, T);

@@ -19,12 +19,12 @@ constexpr std::array<LookEntry, 7> kLooks = {{
     {.look = Look::level, .name = "level", .measures = true},
 }};
 
-constexpr std::array<std::string_view, kLooks.size()> names() {
+constexpr std::array<std::string_view, kLooks.size()> look_names() {
   std::array<std::string_view, kLooks.size()> all{};
   for (std::size_t i = 0; i < kLooks.size(); ++i) all[i] = kLooks[i].name;
   return all;
 }
-constexpr auto kNames = names();
+constexpr auto kLookNames = look_names();
 
 static_assert([] {
   for (std::size_t i = 0; i < kLooks.size(); ++i) {
@@ -41,6 +41,6 @@ const LookEntry& entry_of(Look look) { return kLooks[static_cast<std::size_t>(lo
 
 std::string_view name_of(Look look) { return entry_of(look).name; }
 
-Look find_look(std::string_view name) { return static_cast<Look>(find_setting("look", kNames, name)); }
+Look find_look(std::string_view name) { return static_cast<Look>(find_setting("look", kLookNames, name)); }
 
 }  // namespace scarp

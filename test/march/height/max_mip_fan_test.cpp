@@ -328,7 +328,9 @@ TEST(MaxMipFan, HitsWhereTheScalarMarchDoesOverLargerGroundOnEveryInstructionSet
   for (int round = 0; round < 3 * kRounds; ++round) {
     const int cols = whole(random, 60, 700), rows = whole(random, 60, 500);
     const double roughness = round % 3 == 0 ? 0 : std::exp2(uniform(random, -4, 5));
-    const HeightFieldSettings settings{.scale = round % 2 ? 1.0 : 0.03125, .offset = round % 2 ? 0.0 : 100.0};
+    const HeightFieldSettings settings{.scale = round % 2 ? 1.0 : 0.03125,
+                                       .offset = round % 2 ? 0.0 : 100.0,
+                                       .surface = round % 3 == 2 ? Surface::triangles : Surface::bilinear};
     const HeightField field = round % 3 == 0
                                   ? terrain<float>(random, cols, rows, round % 2 ? 0 : 8848, roughness, settings)
                               : round % 3 == 1 ? terrain<std::int16_t>(random, cols, rows, 0, roughness, settings)

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Cameras, scanners and fans over a terrain hit where cast() does.
+#include "scarp/scene/cast_from.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "scarp/base/error.h"
+#include "scarp/scene/cast.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<float> waves(int cols, int rows) {
+  std::vector<float> samples;
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col)
+      samples.push_back(static_cast<float>(20 * std::sin(0.05 * col) * std::cos(0.04 * row) + std::sin(0.7 * col)));
+  }
+  return samples;
+}
+
+Terrain terrain(const HeightFieldSettings& settings = {.cell_x = 10, .cell_y = 8}) {
+  return Terrain::own(waves(201, 150), 201, 150, settings);
+}
+
+// direction(column, row): those of the answers.
+template <class Direction>
+void expect_as_cast(const Terrain& ground, const FanAnswers& answers, const dvec3& eye, double t_max,
+                    const Direction& direction) {
+  int hits = 0;
+  for (int row = 0; row < answers.rows; ++row) {
+    for (int column = 0; column < answers.columns; ++column) {
+      Ray ray;
+      ray.origin = eye;
+      ray.t_max = t_max;
+      const dvec3 d = direction(column, row);
+      ray.direction = {static_cast<double>(static_cast<float>(d.x)), static_cast<double>(static_cast<float>(d.y)),
+                       static_cast<double>(static_cast<float>(d.z))};
+      const Hit hit = cast(ground, ray);
+      const auto at = static_cast<std::size_t>(row * answers.columns + column);
+      ASSERT_EQ(answers.status[at], hit.status) << column << " " << row;
+      if (!hit) continue;
+      ++hits;
+      ASSERT_NEAR(static_cast<double>(answers.t[at]), hit.t, 1e-3 * hit.t + 1e-3) << column << " " << row;
+    }
+  }
+  EXPECT_GT(hits, answers.columns * answers.rows / 4);
+}
+
+TEST(CastFrom, ACameraHitsWhereItsRaysDo) {
+  const Terrain ground = terrain();
+  for (const int columns : {1, 16, 77}) {
+    PinholeCamera camera{.eye = {1003, 597, 45}, .forward = {0.3, 1, -0.4}, .columns = columns, .rows = 41};
+    camera.t_max = 700;
+    FanAnswers answers(camera.columns, camera.rows);
+    cast_from(ground, camera, answers);
+    const dvec3 forward = normalize(camera.forward), right = normalize(cross(forward, dvec3(0, 0, 1)));
+    const dvec3 up = cross(right, forward);
+    const double pixel = 2.0 / columns;
+    expect_as_cast(ground, answers, camera.eye, camera.t_max, [&](int column, int row) {
+      return forward + pixel * (column + 0.5 - 0.5 * columns) * right + pixel * (0.5 * camera.rows - row - 0.5) * up;
+    });
+  }
+}
+
+TEST(CastFrom, AScannerHitsWhereItsRaysDo) {
+  const Terrain ground = terrain();
+  Scanner scanner{.eye = {1003, 597, 40}, .columns = 100, .first_azimuth = 0.1, .azimuth_step = 2 * kPi / 100};
+  for (int row = 0; row < 30; ++row) scanner.elevations.push_back(0.1 - 0.02 * row);
+  FanAnswers answers(scanner.columns, 30);
+  cast_from(ground, scanner, answers);
+  expect_as_cast(ground, answers, scanner.eye, std::numeric_limits<double>::infinity(), [&](int column, int row) {
+    const double azimuth = scanner.first_azimuth + column * scanner.azimuth_step;
+    const double elevation = scanner.elevations[static_cast<std::size_t>(row)];
+    return dvec3(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), std::sin(elevation));
+  });
+}
+
+TEST(CastFrom, TakesDirectionsOfTheCallerOnAllThreads) {
+  const Terrain ground = terrain();
+  const int columns = 333, rows = 64;
+  FanAnswers answers(columns, rows);
+  std::vector<float> dx, dy, dz;
+  const auto direction = [&](int column, int row) {
+    return dvec3(std::sin(0.01 * column), std::cos(0.01 * column), -0.5 + 0.01 * row);
+  };
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const dvec3 d = direction(column, row);
+      dx.push_back(static_cast<float>(d.x)), dy.push_back(static_cast<float>(d.y));
+      dz.push_back(static_cast<float>(d.z));
+    }
+  }
+  Fan fan;
+  fan.origin = {900, 100, 50};
+  fan.dx = dx.data(), fan.dy = dy.data(), fan.dz = dz.data();
+  fan.columns = columns, fan.rows = rows, fan.row_stride = columns;
+  cast_from(ground, fan, answers.hits());
+  expect_as_cast(ground, answers, fan.origin, fan.t_max, direction);
+}
+
+TEST(CastFrom, RefusesWhatIsUnsound) {
+  const Terrain ground = terrain(), endless = terrain({.wrap = Wrap::periodic});
+  PinholeCamera camera{.eye = {100, 100, 50}, .columns = 4, .rows = 3};
+  FanAnswers answers(4, 3);
+  EXPECT_NO_THROW(cast_from(ground, camera, answers));
+  EXPECT_THROW(cast_from(endless, camera, answers), Error);
+  FanAnswers other(3, 4);
+  EXPECT_THROW(cast_from(ground, camera, other), Error);
+  PinholeCamera bad = camera;
+  bad.forward = bad.up;
+  EXPECT_THROW(cast_from(ground, bad, answers), Error);
+  bad = camera;
+  bad.eye.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(cast_from(ground, bad, answers), Error);
+  bad = camera;
+  bad.t_max = -1;
+  EXPECT_THROW(cast_from(ground, bad, answers), Error);
+  EXPECT_THROW(cast_from(ground, Fan{.columns = 1, .rows = 1}, FanHits{}), Error);
+  auto memory = std::make_shared<std::vector<float>>(waves(9, 9));
+  const Terrain view = Terrain::view(memory->data(), 9, 9, {}, 0, memory);
+  EXPECT_NO_THROW(cast_from(view, camera, answers));
+  memory.reset();
+  EXPECT_THROW(cast_from(view, camera, answers), Error);
+}
+
+}  // namespace
+}  // namespace scarp
