@@ -46,7 +46,7 @@ struct RowRays {
 };
 
 // The state of a pass over one octant of a strip, per lane.
-struct Lanes16 {
+struct StripLanes {
   alignas(64) std::int32_t count[N];   // rays
   alignas(64) std::int32_t broken[N];  // the last ray that may not inherit from the one below it; -1: none
   alignas(64) float least_m[N];
