@@ -206,7 +206,11 @@ HWY_INLINE MF clears_blocks(const Octant<Sample>& o, const FanPlanes& f, const P
   const VF y = hn::MulAdd(r.m, hn::Set(df, T0), hn::Set(df, at.y));
   const VI node = hn::Add(hn::ConvertTo(di, hn::Floor(y)), hn::Set(di, first));
   const VI last = hn::Set(di, o.minor_cells - 1), zero = hn::Zero(di);
-  const MI inside = hn::Not(hn::Or(hn::Lt(node, zero), hn::Gt(node, last)));
+  // Inside to the end: other rays inherit the way, and may be inside where this one has left. Beyond the side, planes
+  // do not bound the ground that continues level.
+  const VF side_y = hn::Set(df, static_cast<float>(o.minor_cells - first));
+  const MF stays = hn::Le(hn::MulAdd(r.m, hn::Set(df, length), y), side_y);
+  const MI inside = hn::AndNot(hn::Or(hn::Lt(node, zero), hn::Gt(node, last)), hn::RebindMask(di, stays));
   const VI real = o.back_minor ? hn::Sub(last, node) : node;
   const VI within = hn::Min(hn::Max(real, zero), last);
   const VI block = hn::ShiftRightSame(within, level);
@@ -250,10 +254,9 @@ HWY_INLINE MF clears_blocks(const Octant<Sample>& o, const FanPlanes& f, const P
   if (!hn::AllFalse(df, leaves)) {
     const VI next = o.back_minor ? hn::Sub(block, hn::Set(di, 1)) : hn::Add(block, hn::Set(di, 1));
     const VI count = hn::Set(di, o.turned ? blocks.cols : blocks.rows);
-    const MI exists = hn::AndNot(hn::Lt(next, zero), hn::Lt(next, count));
-    const VI there = hn::IfThenElse(exists, next, zero);
+    const VI there = hn::Min(hn::Max(next, zero), hn::Sub(count, hn::Set(di, 1)));
     const MF low = hn::Not(hn::Gt(above(there, middle_way, end, end), margin));
-    clear = hn::AndNot(hn::And(leaves, hn::And(low, hn::RebindMask(df, exists))), clear);
+    clear = hn::AndNot(hn::And(leaves, low), clear);
   }
   return clear;
 }

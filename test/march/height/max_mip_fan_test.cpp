@@ -348,6 +348,41 @@ TEST(MaxMipFan, HitsWhereTheScalarMarchDoesOverLargerGroundOnEveryInstructionSet
   }
 }
 
+// Over a plane, at which blocks are bounded best, to places on it beside a side of the field: lower rays have left the
+// field where higher ones come down.
+TEST(MaxMipFan, InheritsNothingFromRaysBeyondTheSides) {
+  Random random(94);
+  for (int i = 0; i < 40 * kFansPerField; ++i) {
+    const int cols = whole(random, 20, 90), rows = whole(random, 20, 90);
+    const double along_x = uniform(random, -0.6, 0.6), along_y = uniform(random, -0.6, 0.6);
+    std::vector<float> samples;
+    for (int k = 0; k < cols * rows; ++k)
+      samples.push_back(static_cast<float>(along_x * (k % cols) + along_y * (k / cols)));
+    const HeightField field = HeightField::own(std::move(samples), cols, rows);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    const double x = uniform(random, 0.05, 0.95) * field.width(), y = uniform(random, 0.05, 0.95) * field.depth();
+    Rays rays({x, y, *field.height(x, y) + std::exp2(uniform(random, 0, 7))}, 16, 24, true);
+    for (int c = 0; c < rays.columns; ++c) {
+      const bool side = whole(random, 0, 1);
+      const dvec2 to = side ? dvec2(whole(random, 0, 1) * field.width(), whole(random, 1, rows - 2))
+                            : dvec2(whole(random, 1, cols - 2), whole(random, 0, 1) * field.depth());
+      std::vector<dvec3> column;
+      for (int r = 0; r < rays.rows; ++r) {
+        const double beside = r % 3 ? uniform(random, -1, 1) : 0;
+        dvec3 at(to.x + (side ? 0 : beside), to.y + (side ? beside : 0), 0);
+        at.z = *field.height(at.x, at.y) - (r % 2 ? std::exp2(uniform(random, -12, 0)) : 0);
+        column.push_back(at - rays.origin);
+      }
+      std::sort(column.begin(), column.end(),
+                [](const dvec3& a, const dvec3& b) { return a.z / std::hypot(a.x, a.y) < b.z / std::hypot(b.x, b.y); });
+      for (int r = 0; r < rays.rows; ++r) rays.put(c, r, column[static_cast<std::size_t>(r)]);
+    }
+    check(target, rays, "fan " + std::to_string(i));
+    if (HasFatalFailure()) return;
+  }
+}
+
 // Most rays of a usual camera and scanner are decided by floats.
 TEST(MaxMipFan, UsualFansLeaveFewRays) {
   Random random(93);
