@@ -83,6 +83,7 @@ struct RaySet {
   std::vector<RayPacket> packets{};  ///< the same rays in the layout of packet engines
   std::vector<RayRecord> records{};  ///< the same rays one after the other, in Embree's layout
   std::vector<Ray> library_rays{};   ///< the same rays in the library's layout
+  RayFan fan{};                      ///< the same rays, if they are one
 
   std::int64_t size() const { return static_cast<std::int64_t>(rays.size()); }
 };

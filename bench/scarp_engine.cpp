@@ -117,6 +117,7 @@ std::vector<Engine> ScarpGround::engines() const {
     if (march.name == "exhaustive" || !takes(march.fields, field_)) continue;
     engines.push_back(engine(march));
     if (march.simd) engines.push_back(vectors(std::string(march.name) + "-simd"));
+    if (march.simd) engines.push_back(fans());
     // Measures the gain of a separate any-hit query.
     if (march.own_any_hit) engines.push_back(closest_only(march));
   }

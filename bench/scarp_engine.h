@@ -28,6 +28,9 @@ class ScarpGround {
   /// `max-mip` in vectors, with all optimisations or some.
   Engine vectors(const std::string& mode, const VectorOptions& options = {}) const;
 
+  /// `max-mip` in fans, for sets that are fans.
+  Engine fans() const;
+
   /// Every march of the table except the judge.
   std::vector<Engine> engines() const;
 
