@@ -472,7 +472,7 @@ class FanWalk {
   // Rays that hit for certain, and those that floats do not decide.
   template <bool triangles>
   HWY_INLINE void put_hits(const Octant<Sample>& o, std::int32_t k, std::int32_t b, const FanLine& at, float low_y,
-                             float high_y, const FanPlaces& p, const FanStep& e, MF candidates, MF refused, VI j) {
+                           float high_y, const FanPlaces& p, const FanStep& e, MF candidates, MF refused, VI j) {
     // Away from the sides, which rounding may place elsewhere: a ray along one may cross it much earlier or later.
     const VF low_side = hn::Set(df, low_y + at.aside), high_side = hn::Set(df, high_y - at.aside);
     const FanCrossing f = triangles ? triangle_crossing(e) : bilinear_crossing(e);

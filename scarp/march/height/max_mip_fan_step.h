@@ -206,8 +206,8 @@ HWY_INLINE MF clears_blocks(const Octant<Sample>& o, const FanPlanes& f, const P
   const VF y = hn::MulAdd(r.m, hn::Set(df, T0), hn::Set(df, at.y));
   const VI node = hn::Add(hn::ConvertTo(di, hn::Floor(y)), hn::Set(di, first));
   const VI last = hn::Set(di, o.minor_cells - 1), zero = hn::Zero(di);
-  // Inside to the end: other rays inherit the way, and may be inside where this one has left. Beyond the side, planes do
-  // not bound the ground that continues level.
+  // Inside to the end: other rays inherit the way, and may be inside where this one has left. Beyond the side, planes
+  // do not bound the ground that continues level.
   const VF side_y = hn::Set(df, static_cast<float>(o.minor_cells - first));
   const MF stays = hn::Le(hn::MulAdd(r.m, hn::Set(df, length), y), side_y);
   const MI inside = hn::AndNot(hn::Or(hn::Lt(node, zero), hn::Gt(node, last)), hn::RebindMask(di, stays));
