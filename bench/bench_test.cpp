@@ -590,6 +590,7 @@ TEST(ScarpBench, NumbersAreFinite) {
   std::map<std::string, std::vector<std::string>> options = {
       {"--rays", {"leaks", "voxel-leaks", "function-leaks"}},
       {"--embree-rays", {"leaks"}},
+      {"--fan-margin", {"leaks"}},
       {"--pass-limit", {"heights", "survey", "naive", "batches", "simd", "voxels"}},
       {"--exaggerations", {"heights", "naive", "batches", "simd"}},
       {"--miss-limit", {"naive"}},
