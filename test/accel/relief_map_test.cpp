@@ -14,13 +14,13 @@
 namespace scarp {
 namespace {
 
-constexpr int kSide = 1 << ReliefMap::kLevel;
+constexpr int kBlockSide = 1 << ReliefMap::kLevel;
 
 // The steepest edge of a block's cells, straight from the samples; infinity with a hole.
 double brute_force(const HeightField& field, int col, int row) {
   double steepest = 0;
-  for (int r = row * kSide; r < std::min((row + 1) * kSide, field.cell_rows()); ++r) {
-    for (int c = col * kSide; c < std::min((col + 1) * kSide, field.cell_cols()); ++c) {
+  for (int r = row * kBlockSide; r < std::min((row + 1) * kBlockSide, field.cell_rows()); ++r) {
+    for (int c = col * kBlockSide; c < std::min((col + 1) * kBlockSide, field.cell_cols()); ++c) {
       const auto h = field.cell_heights({c, r});
       if (!h) return std::numeric_limits<double>::infinity();
       steepest = std::max({steepest, std::abs(h->h10 - h->h00), std::abs(h->h11 - h->h01), std::abs(h->h01 - h->h00),
@@ -31,8 +31,8 @@ double brute_force(const HeightField& field, int col, int row) {
 }
 
 void expect_tight(const HeightField& field, const ReliefMap& map) {
-  ASSERT_EQ(map.cols(), (field.cell_cols() + kSide - 1) / kSide);
-  ASSERT_EQ(map.rows(), (field.cell_rows() + kSide - 1) / kSide);
+  ASSERT_EQ(map.cols(), (field.cell_cols() + kBlockSide - 1) / kBlockSide);
+  ASSERT_EQ(map.rows(), (field.cell_rows() + kBlockSide - 1) / kBlockSide);
   for (int row = 0; row < map.rows(); ++row) {
     for (int col = 0; col < map.cols(); ++col) {
       const double truth = brute_force(field, col, row), there = static_cast<double>(map.row(row)[col]);
@@ -45,7 +45,7 @@ void expect_tight(const HeightField& field, const ReliefMap& map) {
 }
 
 template <class T>
-std::vector<T> noise(int cols, int rows, double scale) {
+std::vector<T> rough_samples(int cols, int rows, double scale) {
   std::mt19937 random(11);
   std::vector<T> samples(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));
   for (T& s : samples) s = static_cast<T>(scale * (static_cast<double>(random() % 60000) - 30000));
@@ -61,16 +61,16 @@ TEST(ReliefMap, HasTheSteepestEdgeOfEachBlockAtAnySize) {
         map.build(field);
         expect_tight(field, map);
       };
-      check(HeightField::own(noise<float>(cols, rows, 0.37), cols, rows, {.wrap = wrap}));
-      check(HeightField::own(noise<float>(cols, rows, 1e-44), cols, rows, {.wrap = wrap}));
-      check(HeightField::own(noise<std::int16_t>(cols, rows, 1), cols, rows, {.wrap = wrap}));
-      check(HeightField::own(noise<std::uint16_t>(cols, rows, 0.5), cols, rows, {.nodata = 77, .wrap = wrap}));
+      check(HeightField::own(rough_samples<float>(cols, rows, 0.37), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(rough_samples<float>(cols, rows, 1e-44), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(rough_samples<std::int16_t>(cols, rows, 1), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(rough_samples<std::uint16_t>(cols, rows, 0.5), cols, rows, {.nodata = 77, .wrap = wrap}));
     }
   }
 }
 
 TEST(ReliefMap, HasNoBoundOverHoles) {
-  auto samples = noise<float>(40, 33, 1);
+  auto samples = rough_samples<float>(40, 33, 1);
   samples[40 * 16 + 16] = std::numeric_limits<float>::quiet_NaN();
   const HeightField field = HeightField::own(samples, 40, 33);
   ReliefMap map;
@@ -84,7 +84,7 @@ TEST(ReliefMap, FollowsEdits) {
   std::mt19937 random(12);
   for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
     const int cols = 75, rows = 50;
-    HeightField field = HeightField::own(noise<float>(cols, rows, 1), cols, rows, {.wrap = wrap});
+    HeightField field = HeightField::own(rough_samples<float>(cols, rows, 1), cols, rows, {.wrap = wrap});
     MaxPyramid pyramid(field);
     for (int i = 0; i < 40; ++i) {
       const int col = static_cast<int>(random() % cols), row = static_cast<int>(random() % rows);
