@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "scarp/accel/max_pyramid.h"
@@ -48,7 +49,8 @@ template <class T>
 std::vector<T> rough_samples(int cols, int rows, double scale) {
   std::mt19937 random(11);
   std::vector<T> samples(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));
-  for (T& s : samples) s = static_cast<T>(scale * (static_cast<double>(random() % 60000) - 30000));
+  const double least = std::is_unsigned_v<T> ? 0 : -30000;
+  for (T& s : samples) s = static_cast<T>(scale * (static_cast<double>(random() % 60000) + least));
   return samples;
 }
 
