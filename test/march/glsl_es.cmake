@@ -18,6 +18,10 @@ check(${ROOT}/test/march/height/textures_es.frag TRUE)
 
 # paste(TEXT MARK NAMES OUT): TEXT with the installed texts of those names, one after the other, in the place of MARK.
 function(paste text mark names out)
+  string(FIND "${text}" "${mark}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "the shader has no line '${mark}' to paste ${names} at")
+  endif()
   set(pasted "")
   foreach(name IN LISTS names)
     file(READ ${FLAT}/${name} installed)
@@ -52,8 +56,8 @@ foreach(version "300 es" "330" "450")
 endforeach()
 # All marches pasted after one another, over the same textures.
 file(READ ${ROOT}/test/march/height/textures_es.frag shader)
-string(REGEX REPLACE "\n#include [^\n]*" "" without "${shader}")
-string(REPLACE "// The marches ask the textures for their ground.\n" "MARCHES" shader "${without}")
+string(REPLACE "#include \"scarp/march/height/textures.glsl.h\"\n" "MARCHES" shader "${shader}")
+string(REGEX REPLACE "\n#include [^\n]*" "" shader "${shader}")
 paste("${shader}" "MARCHES" "textures.glsl;max_mip.glsl;height_marches.glsl;max_mip_easy.glsl" ${WORK}/pasted.frag)
 check(${WORK}/pasted.frag TRUE)
 
