@@ -275,6 +275,15 @@ struct SeamsOptions {
 };
 /// Throws Error, after the report, if a ray is lost.
 void run_seams(const SeamsOptions& options, const ReportOptions& report);
+/// `pitches`: cameras that look down by 0 to 90 degrees, by fans, batches and the choice between both.
+struct PitchesOptions {
+  FieldOptions field;
+  int width = 640, height = 480;  ///< pixels; the width is rounded down to a multiple of 32
+  int step = 10;                  ///< degrees
+  int repeats = 3;                ///< timed passes of each; the median counts
+};
+void run_pitches(const PitchesOptions& options, const ReportOptions& report);
+
 /// `sweeps`: spheres and capsules that move over ground, compared with Bullet and judged.
 struct SweepsOptions {
   int size = 1025;      ///< samples per side of the field, >= 1025

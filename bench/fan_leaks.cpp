@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -41,14 +42,15 @@ constexpr Kind kKinds[] = {Kind::camera, Kind::scanner, Kind::aimed, Kind::unord
 constexpr const char* kNames[] = {"camera", "scanner", "aimed", "unordered"};
 
 struct Count {
-  std::int64_t rays = 0, hits = 0, lost = 0, wrong = 0, moved = 0, cells = 0;
+  std::int64_t rays = 0, hits = 0, lost = 0, wrong = 0, moved = 0, cells = 0, unlike = 0;
   FanStats stats;
 
   void add(const Count& c) {
     rays += c.rays, hits += c.hits, lost += c.lost, wrong += c.wrong, moved += c.moved, cells += c.cells;
+    unlike += c.unlike;
     stats.rays += c.stats.rays, stats.resumed += c.stats.resumed, stats.from_start += c.stats.from_start;
   }
-  bool clean() const { return lost == 0 && wrong == 0 && moved == 0; }
+  bool clean() const { return lost == 0 && wrong == 0 && moved == 0 && unlike == 0; }
 };
 
 double tall(const HeightField& f) { return std::max(f.max_height() - f.min_height(), 0.01 * f.settings().cell_x); }
@@ -226,8 +228,34 @@ class FanLeaks {
         if (!same_hit(ground, ray, static_cast<double>(t[i]), truth.t)) fails(sum.moved, "another hit");
       }
     }
+    look(piece, ground, rays, fan, walk, random, sum);
     const std::scoped_lock lock(mutex_);
     counts_[k].add(sum);
+  }
+
+  // Hits of rays in double that the fan has looked for: those of the march, to the bit.
+  void look(std::int64_t piece, const LeakField& ground, const FanRays& rays, const Fan& fan, const FanOptions& options,
+            Random& random, Count& sum) {
+    std::vector<FanSight> sights(kPiece);
+    look_max_mip_fan(ground.target(), fan, sights.data(), 0, kColumns, options);
+    std::vector<Ray> precise;
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      Ray ray = rays.ray(i);
+      if (!is_followable(ray)) ray.direction = {0, 0, -1}, sights[i] = {-std::numeric_limits<float>::infinity(), 0};
+      // By less than half a unit of the last digit.
+      for (int axis = 0; axis < 3; ++axis) ray.direction[axis] *= 1 + random.uniform(-0.99, 0.99) * 0x1p-25;
+      if (random.below(4) == 0) ray.t_max = 2 * random.uniform() * std::max(ground.field.width(), 1.0);
+      precise.push_back(ray);
+    }
+    std::vector<Hit> hits(kPiece);
+    closest_hits_max_mip_seen(ground.target(), precise, sights, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const Hit truth = march_max_mip(ground.target(), precise[i]);
+      if (hits[i] == truth) continue;
+      ++sum.unlike;
+      keep(piece * kPiece + static_cast<std::int64_t>(i), ground, precise[i], "a sight leads to another hit", truth,
+           hits[i].t);
+    }
   }
 
   void keep(std::int64_t index, const LeakField& ground, const Ray& ray, const std::string& why, const Hit& truth,
@@ -253,8 +281,8 @@ void run_fan_leaks(const LeaksOptions& options, const ReportOptions& report) {
   FanLeaks leaks(options, fields);
   leaks.run();
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{
-      {"fan", "rays", "hits %", "lost", "false", "another hit", "another cell", "resumed %", "to the batch %"}};
+  std::vector<std::vector<std::string>> lines{{"fan", "rays", "hits %", "lost", "false", "another hit",
+                                               "another by sight", "another cell", "resumed %", "to the batch %"}};
   Count total;
   const auto add_row = [&](const char* name, const Count& c) {
     const auto share = [&](std::uint64_t part) {
@@ -262,12 +290,14 @@ void run_fan_leaks(const LeaksOptions& options, const ReportOptions& report) {
     };
     Json row;
     row["fan"] = name, row["rays"] = c.rays, row["hit_share"] = share(static_cast<std::uint64_t>(c.hits));
-    row["lost"] = c.lost, row["false"] = c.wrong, row["moved"] = c.moved, row["other_cell"] = c.cells;
+    row["lost"] = c.lost, row["false"] = c.wrong, row["moved"] = c.moved, row["unlike"] = c.unlike,
+    row["other_cell"] = c.cells;
     row["resumed"] = share(c.stats.resumed), row["from_start"] = share(c.stats.from_start);
     row["walked"] = c.stats.rays, row["seed"] = options.seed;
     lines.push_back({name, short_number(row["rays"]), short_number(100 * row["hit_share"].get<double>()),
                      short_number(row["lost"]), short_number(row["false"]), short_number(row["moved"]),
-                     short_number(row["other_cell"]), short_number(100 * row["resumed"].get<double>()),
+                     short_number(row["unlike"]), short_number(row["other_cell"]),
+                     short_number(100 * row["resumed"].get<double>()),
                      short_number(100 * row["from_start"].get<double>())});
     rows.push_back(std::move(row));
   };
@@ -285,8 +315,9 @@ void run_fan_leaks(const LeaksOptions& options, const ReportOptions& report) {
   const std::string dump = options.dump.empty() ? fmt::format("fan-leaks-{}.txt", options.seed) : options.dump;
   const std::vector<RayDump> failures = leaks.failures();
   write_ray_dumps(dump, failures);
-  throw Error(fmt::format("leaks --fans: {} lost, {} false, {} other hits; the first {} are in '{}', for scarp replay",
-                          total.lost, total.wrong, total.moved, failures.size(), dump));
+  throw Error(fmt::format(
+      "leaks --fans: {} lost, {} false, {} other hits, {} by sight; the first {} are in '{}', for scarp replay",
+      total.lost, total.wrong, total.moved, total.unlike, failures.size(), dump));
 }
 
 }  // namespace scarp::bench

@@ -487,6 +487,17 @@ int run(int argc, char** argv) {
   seams_command->add_option("--seed", seams.seed, "of terrains and rays")->capture_default_str();
   add_json_option(*seams_command, report);
 
+  PitchesOptions pitches;
+  CLI::App* pitches_command = app.add_subcommand(
+      "pitches", "cameras that look down by 0 to 90 degrees: rays by fans, by batches, and by the choice between both");
+  pitches_command->add_option("--size", pitches.field.size, "samples per side of the procedural DEM")
+      ->check(CLI::Range(64, 1 << 14))
+      ->capture_default_str();
+  pitches_command->add_option("--repeats", pitches.repeats, "timed passes of each; the median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  pitches_command->add_option("--step", pitches.step, "degrees")->check(CLI::Range(1, 90))->capture_default_str();
+  add_json_option(*pitches_command, report);
   SweepsOptions sweeps;
   CLI::App* sweeps_command = app.add_subcommand(
       "sweeps", "spheres and capsules that move over ground, beside Bullet; random ones, judged by all triangles");
@@ -645,6 +656,7 @@ int run(int argc, char** argv) {
   if (*edits_command) run_edits(edits, report);
   if (*scenes_command) run_scenes(scenes, report);
   if (*seams_command) run_seams(seams, report);
+  if (*pitches_command) run_pitches(pitches, report);
   if (*sweeps_command) run_sweeps(sweeps, report);
   if (*frames_command) run_frames(frames, report);
   if (*functions_command) run_functions(functions, report);

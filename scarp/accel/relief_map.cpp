@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "scarp/accel/pyramid_levels.h"
 #include "scarp/base/parallel.h"
@@ -12,7 +11,6 @@ namespace scarp {
 namespace {
 
 constexpr int kSide = 1 << ReliefMap::kLevel;
-constexpr float kNoBound = std::numeric_limits<float>::infinity();
 
 // The difference of two samples is rounded once, and so is this product: together less than 2^-22. Differences below
 // the smallest normal float are exact.
@@ -41,20 +39,41 @@ void add_across(const T* north, const T* south, int count, float* steepest) {
   }
 }
 
+// Two rows of samples without nodata.
+template <class T>
+class FilledRows {
+ public:
+  FilledRows(const SampleGrid<T>& grid, float lowest) : grid_(grid), lowest_(static_cast<T>(lowest)) {}
+  const T* operator()(int row) {
+    if (!grid_.has_holes) return grid_.row(row);
+    std::vector<T>& to = rows_[++last_ & 1];
+    to.assign(grid_.row(row), grid_.row(row) + grid_.cols);
+    for (T& sample : to) sample = grid_.is_nodata(sample) ? lowest_ : sample;
+    return to.data();
+  }
+
+ private:
+  const SampleGrid<T>& grid_;
+  T lowest_;
+  std::vector<T> rows_[2];
+  unsigned last_ = 0;
+};
+
 // One row of blocks, columns [block_begin, block_end).
 template <class T>
-void build_row(const SampleGrid<T>& grid, int block_row, int block_begin, int block_end, std::vector<float>& along,
-               std::vector<float>& across, float* to) {
+void build_row(const SampleGrid<T>& grid, float lowest, int block_row, int block_begin, int block_end,
+               std::vector<float>& along, std::vector<float>& across, float* to) {
+  FilledRows<T> filled(grid, lowest);
   const int begin = block_begin * kSide, end = std::min(block_end * kSide, grid.cell_cols), count = end - begin;
   const int plain = std::min(count, grid.cols - 1 - begin), nodes = std::min(count + 1, grid.cols - begin);
   const int first = block_row * kSide, last = std::min(first + kSide, grid.cell_rows);
   std::fill_n(along.begin(), count, 0.0f);
   std::fill_n(across.begin(), count + 1, 0.0f);
   for (int row = first; row <= last; ++row) {
-    const T* samples = grid.row(row < grid.rows ? row : 0);
+    const T* samples = filled(row < grid.rows ? row : 0);
     add_along(samples, begin, plain, count, along.data());
     if (row == last) break;
-    const T* south = grid.row(grid.south(row));
+    const T* south = filled(grid.south(row));
     add_across(samples + begin, south + begin, nodes, across.data());
     if (nodes <= count)
       across[static_cast<std::size_t>(count)] =
@@ -65,13 +84,7 @@ void build_row(const SampleGrid<T>& grid, int block_row, int block_begin, int bl
     const int from = block * kSide - begin, until = std::min(from + kSide, count);
     float steepest = *std::max_element(along.data() + from, along.data() + until);
     steepest = std::max(steepest, *std::max_element(across.data() + from, across.data() + until + 1));
-    bool hole = false;
-    if (grid.has_holes) {
-      for (int row = first; row < last; ++row) {
-        for (int col = begin + from; col < begin + until; ++col) hole |= grid.is_hole(col, row);
-      }
-    }
-    to[block] = hole ? kNoBound : rounded_up(steepest);
+    to[block] = rounded_up(steepest);
   }
 }
 
@@ -85,8 +98,11 @@ void ReliefMap::build(const HeightField& field) {
   update(field, {0, 0, field.cell_cols(), field.cell_rows()});
 }
 
-void ReliefMap::update(const HeightField& field, const CellBox& changed) {
+void ReliefMap::update(const HeightField& field, CellBox changed) {
   if (blocks_.empty()) return;
+  const float lowest = field.all_nodata() ? 0 : static_cast<float>(field.min_sample());
+  if (holes_ && lowest != lowest_) changed = {0, 0, field.cell_cols(), field.cell_rows()};
+  lowest_ = lowest, holes_ = field.nodata_count() > 0;
   for (const CellBox& part : parts_inside(field, changed)) {
     const int col_begin = part.col_begin / kSide, col_end = (part.col_end + kSide - 1) / kSide;
     const int row_begin = part.row_begin / kSide, row_end = (part.row_end + kSide - 1) / kSide;
@@ -97,7 +113,7 @@ void ReliefMap::update(const HeightField& field, const CellBox& changed) {
                      const auto cells = static_cast<std::size_t>((col_end - col_begin) * kSide) + 1;
                      std::vector<float> along(cells), across(cells);
                      for (int row = row_begin + static_cast<int>(first); row < row_begin + last; ++row) {
-                       build_row(grid, row, col_begin, col_end, along, across,
+                       build_row(grid, lowest, row, col_begin, col_end, along, across,
                                  blocks_.data() + static_cast<std::ptrdiff_t>(row) * cols_);
                      }
                    });

@@ -6,8 +6,8 @@
 //   o--o--o--o     triangles.
 //
 // Rays of one origin that go beside one another need it: as long as one of them is above the ground, another one is
-// too if it is higher by more than the ground can rise in between (march/height/max_mip_fan.h). A block with a hole has
-// no bound (infinity).
+// too if it is higher by more than the ground can rise in between (march/height/max_mip_fan.h). Nodata samples count as
+// the lowest of the field.
 //
 // Source: own. Cost: 4 bytes per 64 cells, one pass over the samples.
 #pragma once
@@ -27,16 +27,20 @@ class ReliefMap {
   /// Computes all blocks, on all threads. A field without cells has none.
   void build(const HeightField& field);
   /// Recomputes the blocks over `changed` after an edit: as build(), for these.
-  void update(const HeightField& field, const CellBox& changed);
+  void update(const HeightField& field, CellBox changed);
 
   int cols() const { return cols_; }
   int rows() const { return rows_; }
   std::size_t bytes() const { return blocks_.size() * sizeof(float); }
   /// Rows from north to south, no padding. In sample units per cell.
   const float* row(int r) const { return blocks_.data() + static_cast<std::ptrdiff_t>(r) * cols_; }
+  /// Height that nodata samples count as.
+  float lowest() const { return lowest_; }
 
  private:
   int cols_ = 0, rows_ = 0;
+  float lowest_ = 0;
+  bool holes_ = false;
   std::vector<float> blocks_;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/base/kept_memory.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_resume.h"
@@ -73,7 +74,54 @@ class Batch {
   std::vector<Hit> hits_;
 };
 
+// Sides that a cell's 16-bit numbers reach, and from how far away a walk over the field makes sense.
+constexpr int kMostCells = 1 << 16;
+constexpr double kFarthest = 0x1p16;
+// The cell of the origin and its neighbours are whole, or the origin is beside the field by more than a cell: steep
+// rays cross no rim at once.
+bool is_beside_no_hole(const HeightField& field, const dvec3& at) {
+  const auto beside = [](double place, int cells) { return std::max(-place, place - cells); };
+  const double off = std::max(beside(at.x, field.cell_cols()), beside(at.y, field.cell_rows()));
+  if (off > 1) return true;
+  if (off > 0) return false;
+  const int col = static_cast<int>(at.x), row = static_cast<int>(at.y);
+  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, field.cell_rows() - 1); ++r) {
+    for (int c = std::max(col - 1, 0); c <= std::min(col + 1, field.cell_cols() - 1); ++c) {
+      if (!field.cell_heights({c, r})) return false;
+    }
+  }
+  return true;
+}
+
+// In cells; in heights of the field.
+constexpr double kOnBorder = 0x1p-20, kAboveBorder = 0x1p-12;
+
 }  // namespace
+
+bool max_mip::walks_fan(const HeightTarget& target, const Fan& fan) {
+  const HeightField& field = *target.field;
+  if (field.wraps() || !field.has_cells() || field.all_nodata()) return false;
+  if (field.cell_cols() > kMostCells || field.cell_rows() > kMostCells) return false;
+  if (!(fan.t_min >= 0) || !std::isfinite(fan.t_min) || !(fan.t_max >= fan.t_min)) return false;
+  Ray ray;
+  ray.origin = fan.origin;
+  const dvec3 at = field.grid_from_world(ray).origin;
+  const auto near = [](double place, int cells) { return place > -kFarthest && place < cells + kFarthest; };
+  if (!near(at.x, field.cell_cols()) || !near(at.y, field.cell_rows()) || !std::isfinite(at.z)) return false;
+  if (field.nodata_count() > 0 && !is_beside_no_hole(field, at)) return false;
+  const double relief = field.max_sample() - field.min_sample();
+  const double tallest = std::max({std::abs(at.z), std::abs(field.min_sample()), std::abs(field.max_sample())});
+  if (!(tallest < 0x1p60) || !(relief < 0x1p60)) return false;
+  const auto ground = field.height(fan.origin.x, fan.origin.y);
+  if (ground && !(fan.origin.z > *ground)) return false;
+  // On the border rays may touch a rim before or behind the field, unless they are well above it.
+  const auto on_border = [](double place, int cells) {
+    return std::min(std::abs(place), std::abs(place - cells)) < kOnBorder;
+  };
+  const bool beside = on_border(at.x, field.cell_cols()) || on_border(at.y, field.cell_rows());
+  const double rim = ground.value_or(field.max_height()), tall = field.max_height() - field.min_height();
+  return !beside || fan.origin.z - rim > kAboveBorder * tall;
+}
 
 void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int column_begin,
                               int column_end, const FanOptions& options) {
@@ -105,6 +153,51 @@ void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const 
 void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int column_begin,
                               int column_end) {
   closest_hits_max_mip_fan(target, fan, hits, column_begin, column_end, {});
+}
+
+bool looks_by_fan(const HeightTarget& target, const Fan& fan) {
+  require(target, HeightPart::pyramid);
+  return pays(*target.field, fan, fan.columns) && max_mip::walks_fan(target, fan);
+}
+
+void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int column_begin, int column_end,
+                      const FanOptions& options) {
+  require(target, HeightPart::pyramid);
+  if (column_begin >= column_end || fan.rows <= 0) return;
+  if (max_mip::walks_fan(target, fan))
+    return max_mip::look_fan(target, fan, sights, column_begin, column_end, options, t_stats);
+  for (int row = 0; row < fan.rows; ++row) {
+    for (int column = column_begin; column < column_end; ++column)
+      sights[row * fan.row_stride + column / 16 * fan.strip_stride + column % 16] = {
+          -std::numeric_limits<float>::infinity(), 0};
+  }
+}
+
+void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int column_begin, int column_end) {
+  look_max_mip_fan(target, fan, sights, column_begin, column_end, {});
+}
+
+void closest_hits_max_mip_seen(const HeightTarget& target, std::span<const Ray> rays, std::span<const FanSight> sights,
+                               std::span<Hit> hits) {
+  require(target, HeightPart::pyramid);
+  max_mip::answer_seen(target, rays, sights, hits);
+  KeptVector<Ray> unknown;
+  KeptVector<std::size_t> places;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const float clear = sights[i].clear;
+    if (clear == std::numeric_limits<float>::infinity()) {
+      hits[i] = {};
+    } else if (clear < 0 && clear > -std::numeric_limits<float>::infinity()) {
+      hits[i] = resume_max_mip(target, rays[i], max_mip::clear_time(*target.field, rays[i], sights[i]));
+    } else if (!(clear >= 0)) {
+      unknown.push_back(rays[i]), places.push_back(i);
+    }
+  }
+  t_stats.from_start += unknown.size();
+  if (unknown.empty()) return;
+  KeptVector<Hit> answers(unknown.size());
+  closest_hits_max_mip_simd(target, unknown, answers);
+  for (std::size_t i = 0; i < places.size(); ++i) hits[places[i]] = answers[i];
 }
 
 FanStats take_fan_stats() { return std::exchange(t_stats, {}); }

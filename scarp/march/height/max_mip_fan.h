@@ -24,6 +24,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "scarp/march/height/height_target.h"
 
@@ -59,6 +60,27 @@ inline void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan,
   closest_hits_max_mip_fan(target, fan, hits, 0, fan.columns);
 }
 
+/// The finding of a fan about a ray, in place of its hit: enough to compute the hit in double without a march.
+struct FanSight {
+  /// Cells along the longer axis from the origin. Up to there the ray is above the ground and then hits in `cell`;
+  /// infinity: it hits nothing. Negative: it is above up to -clear, no more is known; -infinity: nothing is known.
+  float clear;
+  std::uint32_t cell;  ///< col + 2^16 row
+};
+
+/// Whether look_max_mip_fan() finds anything over this field and from this origin, and is likely to be faster than a
+/// batch.
+bool looks_by_fan(const HeightTarget& target, const Fan& fan);
+
+/// Sets sights, laid out as the rays, for t_min = 0 and any t_max. The rays may be given in double elsewhere: sights
+/// are also those of rays whose directions, or multiples of them, round to these floats. Threads and columns as above.
+void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int column_begin, int column_end);
+
+/// hits[i] is march_max_mip() of rays[i], bit for bit. sights[i] is that of the ray; its t_min is 0. Runs on the
+/// calling thread.
+void closest_hits_max_mip_seen(const HeightTarget& target, std::span<const Ray> rays, std::span<const FanSight> sights,
+                               std::span<Hit> hits);
+
 /// Options to measure with; they change no answer.
 struct FanOptions {
   bool jumps = true;    ///< skip lines below tilted planes
@@ -76,5 +98,7 @@ FanStats take_fan_stats();
 
 void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int column_begin,
                               int column_end, const FanOptions& options);
+void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int column_begin, int column_end,
+                      const FanOptions& options);
 
 }  // namespace scarp

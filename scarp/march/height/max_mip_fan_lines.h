@@ -45,6 +45,8 @@ struct Octant {
   std::ptrdiff_t step_major, step_minor;
   bool gathers;         // whether 32-bit offsets reach all nodes of a line
   float z_high, z_low;  // height of the origin in sample units: their sum
+  bool holes;
+  float nodata, lowest;  // samples that mark holes, besides NaN, and what they count as
 
   std::int32_t last_line() const { return major_cells - line0; }
   // The mirrored line or the nodes beyond the field are those of its border.
@@ -53,7 +55,7 @@ struct Octant {
 };
 
 template <class Sample>
-Octant<Sample> octant(const SampleGrid<Sample>& grid, const dvec3& origin, int number) {
+Octant<Sample> octant(const SampleGrid<Sample>& grid, const dvec3& origin, float lowest, int number) {
   Octant<Sample> o;
   o.turned = number & 1;
   const bool back_x = number & 2, back_y = number & 4;
@@ -72,6 +74,8 @@ Octant<Sample> octant(const SampleGrid<Sample>& grid, const dvec3& origin, int n
       std::is_same_v<Sample, float> && std::abs(static_cast<double>(o.step_minor)) * (o.minor_cells + 2.0) < 0x1p31;
   o.z_high = static_cast<float>(origin.z);
   o.z_low = static_cast<float>(origin.z - static_cast<double>(o.z_high));
+  o.gathers = o.gathers && !grid.has_holes;
+  o.holes = grid.has_holes, o.nodata = static_cast<float>(grid.nodata), o.lowest = lowest;
   return o;
 }
 
@@ -91,9 +95,28 @@ HWY_INLINE VF load_samples(const Sample* from) {
   }
 }
 
+// A sample, or what nodata counts as.
+template <class Sample>
+HWY_INLINE float filled(const Octant<Sample>& o, Sample sample) {
+  const auto number = static_cast<float>(sample);
+  return o.holes && (number == o.nodata || number != number) ? o.lowest : number;
+}
+
+// As load_window() over a field with holes: apart, so that the usual loads stay short.
+template <class Sample>
+HWY_NOINLINE void load_filled_window(const Octant<Sample>& o, std::int32_t k, std::int32_t b, float* window) {
+  alignas(64) float samples[kWindow];
+  const Sample* line = o.line(k);
+  for (int i = 0; i < kWindow; ++i)
+    samples[i] = filled(o, line[std::clamp(o.node0 + b + i, 0, o.minor_cells) * o.step_minor]);
+  for (int i = 0; i < kWindow; i += N) hn::Store(relative(o, hn::Load(df, samples + i)), df, window + i);
+}
+
 // Nodes first .. first + 15 of line k.
 template <class Sample>
 HWY_INLINE void load_window(const Octant<Sample>& o, std::int32_t k, std::int32_t b, float* window) {
+  if (o.holes) [[unlikely]]
+    return load_filled_window(o, k, b, window);
   const std::int32_t first = o.node0 + b;
   const Sample* line = o.line(k);
   if (first >= 0 && first + kWindow <= o.minor_cells + 1) {
@@ -155,7 +178,7 @@ HWY_INLINE VF look_far(const Octant<Sample>& o, const Sample* line, VI node) {
   alignas(64) std::int32_t nodes[N];
   alignas(64) float samples[N];
   hn::Store(at, di, nodes);
-  for (std::size_t i = 0; i < N; ++i) samples[i] = static_cast<float>(line[nodes[i] * o.step_minor]);
+  for (std::size_t i = 0; i < N; ++i) samples[i] = filled(o, line[nodes[i] * o.step_minor]);
   return relative(o, hn::Load(df, samples));
 }
 

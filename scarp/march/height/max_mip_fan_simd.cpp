@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/base/kept_memory.h"
 #include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_resume.h"
@@ -23,6 +24,7 @@
 // foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/height/max_mip_fan_lines.h"
+#include "scarp/march/height/max_mip_fan_rays.h"
 #include "scarp/march/height/max_mip_fan_step.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,36 +34,17 @@ namespace {
 
 constexpr float kNoTime = std::numeric_limits<float>::infinity();
 
-// Directions of a strip, one vector per row, in the order of the walk.
-struct StripRays {
-  const float *dx, *dy, *dz;
-  std::ptrdiff_t stride;
-};
-
-// Rays of one row, turned for their octants.
-struct RowRays {
-  VF per_major, m, s;
-  VI octant;
-  MF taken;
-};
-
-// The state of a pass over one octant of a strip, per lane.
-struct StripLanes {
-  alignas(64) std::int32_t count[N];   // rays
-  alignas(64) std::int32_t broken[N];  // the last ray that may not inherit from the one below it; -1: none
-  alignas(64) float least_m[N];
-  float strip_least_m, strip_most_m;
-};
-
 template <class Sample>
 class FanWalk {
  public:
   FanWalk(const HeightTarget& target, const SampleGrid<Sample>& grid, const Fan& fan, const FanHits& hits,
-          const FanOptions& options, std::vector<max_mip::FanRest>& rest, FanStats& stats)
+          FanSight* sights, const FanOptions& options, std::vector<max_mip::FanRest>& rest, FanStats& stats)
       : field_(*target.field),
         pyramid_(*target.pyramid),
+        grid_(grid),
         fan_(fan),
         hits_(hits),
+        sights_(sights),
         options_(options),
         rest_(rest),
         stats_(stats) {
@@ -69,7 +52,7 @@ class FanWalk {
     ray.origin = fan.origin;
     const GridRay at = field_.grid_from_world(ray);
     origin_ = at.origin;
-    for (int i = 0; i < 8; ++i) octants_[i] = octant(grid, origin_, i);
+    for (int i = 0; i < 8; ++i) octants_[i] = octant(grid, origin_, pyramid_.relief().lowest(), i);
     const HeightField::GridScales scales = field_.grid_scales();
     per_x_ = static_cast<float>(scales.per_cell_x), per_y_ = static_cast<float>(-scales.per_cell_y);
     per_z_ = static_cast<float>(scales.per_scale);
@@ -77,6 +60,7 @@ class FanWalk {
     const double low = field_.min_sample(), high = field_.max_sample();
     // Above it, rays are above all ground, whatever rounding does to their height.
     highest_ = static_cast<float>(high - origin_.z + 0x1p-19 * (std::abs(high - origin_.z) + high - low));
+    lowest_ = static_cast<float>(low - origin_.z);
     const double tall = std::max({high - low, std::abs(origin_.z - low), std::abs(origin_.z - high)});
     steepest_ray_ = static_cast<float>(std::clamp(tall * 0x1p18, 0x1p-60, 0x1p90));
     // Rounding of doubles, for any ray over the field: four times rounding_of_clearance(), for the signs of both
@@ -85,7 +69,8 @@ class FanWalk {
     const GridRay far{{wide, wide, std::abs(origin_.z)}, {0, 0, std::abs(low) + std::abs(high) + std::abs(origin_.z)}};
     doubt_ = static_cast<float>(4 * rounding_of_clearance(field_, far, 1));
     rounding_ = kFanRounding * options.margin;
-    cell_relief_ = static_cast<float>(pyramid_.cell_relief() * pyramid_.code().step) * (1 + 0x1p-20f);
+    const double relief = grid.has_holes ? high - low : pyramid_.cell_relief() * pyramid_.code().step;
+    cell_relief_ = static_cast<float>(relief) * (1 + 0x1p-20f);
     planes_ = fan_planes(pyramid_, origin_.z);
     origin_cell_ = {static_cast<std::int32_t>(std::floor(origin_.x)), static_cast<std::int32_t>(std::floor(origin_.y))};
     in_cell_x_ = static_cast<float>(origin_.x - origin_cell_.col);
@@ -118,7 +103,7 @@ class FanWalk {
       copy_rays();
     }
     prepare();
-    answer();
+    sights_ ? answer_sights() : answer();
   }
 
   float slope_at(int row, int column) const {
@@ -139,37 +124,7 @@ class FanWalk {
     rays_ = {copies_.data(), copies_.data() + rows * N, copies_.data() + 2 * rows * N, N};
   }
 
-  HWY_INLINE RowRays row(int i) const {
-    const VF zero = hn::Zero(df);
-    const VF gx = hn::Mul(hn::LoadU(df, rays_.dx + i * rays_.stride), hn::Set(df, per_x_));
-    const VF gy = hn::Mul(hn::LoadU(df, rays_.dy + i * rays_.stride), hn::Set(df, per_y_));
-    const VF gz = hn::Mul(hn::LoadU(df, rays_.dz + i * rays_.stride), hn::Set(df, per_z_));
-    const VF x = hn::Abs(gx), y = hn::Abs(gy);
-    const MF turned = hn::Gt(y, x);
-    const VF major = hn::IfThenElse(turned, y, x), minor = hn::IfThenElse(turned, x, y);
-    RowRays r;
-    r.per_major = hn::Div(hn::Set(df, 1), major);
-    const VF m = hn::Mul(minor, r.per_major);
-    r.s = hn::Mul(gz, r.per_major);
-    // False for NaN.
-    r.taken = hn::And(hn::And(hn::Gt(major, hn::Set(df, 0x1p-60f)), hn::Lt(major, hn::Set(df, 0x1p60f))),
-                      hn::And(hn::Le(m, hn::Set(df, 2)), hn::Lt(hn::Abs(r.s), hn::Set(df, steepest_ray_))));
-    r.m = hn::Min(m, hn::Set(df, 1));
-    const auto bit = [&](MF set, std::int32_t value)
-                         HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, set), hn::Set(di, value)); };
-    r.octant = hn::Or(bit(turned, 1), hn::Or(bit(hn::Lt(gx, zero), 2), bit(hn::Lt(gy, zero), 4)));
-    return r;
-  }
-
-  // Whether the second ray is above the ground wherever the first one is, over ground of this relief.
-  static HWY_INLINE MF inherits(VF m0, VF s0, VF m1, VF s1, VF relief) {
-    const VF aside = hn::Mul(hn::Mul(relief, hn::Set(df, 1 + 0x1p-18f)), hn::Abs(hn::Sub(m1, m0)));
-    const VF rounds = hn::Add(hn::Add(hn::Abs(s0), hn::Abs(s1)), relief);
-    return hn::Ge(hn::Sub(s1, s0), hn::MulAdd(rounds, hn::Set(df, 0x1p-20f), aside));
-  }
-  static bool inherits(float m0, float s0, float m1, float s1, float relief) {
-    return s1 - s0 >= relief * (1 + 0x1p-18f) * std::abs(m1 - m0) + 0x1p-20f * (std::abs(s0) + std::abs(s1) + relief);
-  }
+  HWY_INLINE RowRays row(int i) const { return row_rays(rays_, i, per_x_, per_y_, per_z_, steepest_ray_); }
 
   // Tables of m and s, and the walks: one per octant that the strip's rays are in.
   HWY_NOINLINE void prepare() {
@@ -264,11 +219,51 @@ class FanWalk {
     return line == 0 && o.fx == 1 ? 1 : line;
   }
 
+  // Whether most rays are likely to inherit, by some of them and the ground that the middle ray of a lane crosses.
+  HWY_NOINLINE bool worthwhile(const Octant<Sample>& o, const StripLanes& lanes) const {
+    constexpr std::int32_t kSamples = 24;
+    constexpr std::size_t kLaneStep = 5;
+    const auto inherit = [&](float steepest) {
+      int links = 0, broken = 0;
+      for (std::size_t l = 0; l < N; l += kLaneStep) {
+        const std::int32_t step = std::max(1, lanes.count[l] / kSamples);
+        for (std::int32_t i = 1; i < lanes.count[l]; i += step) {
+          const std::size_t at = static_cast<std::size_t>(i) * N + l;
+          ++links, broken += !inherits(m_[at - N], s_[at - N], m_[at], s_[at], steepest);
+        }
+      }
+      return static_cast<float>(broken) <= kMostBroken * static_cast<float>(links);
+    };
+    if (inherit(cell_relief_)) return true;
+    const std::int32_t first = std::max(first_line(o, lanes) - 1, 0);
+    std::int32_t last = first;
+    for (std::size_t l = 0; l < N; l += kLaneStep) {
+      if (lanes.count[l] == 0) continue;
+      const float s = s_[static_cast<std::size_t>(lanes.count[l] / 2) * N + l];
+      const double T = s < 0 ? static_cast<double>(lowest_) / static_cast<double>(s) : kFar;
+      last = std::max(last, static_cast<std::int32_t>(std::min(T, static_cast<double>(std::max(o.last_line(), 0)))));
+    }
+    WedgeRelief<Sample> relief(o, pyramid_.relief(), first, static_cast<double>(lanes.strip_least_m),
+                               static_cast<double>(lanes.strip_most_m));
+    return inherit(relief.up_to(last));
+  }
+  static constexpr double kFar = 0x1p17;
+  // A ray by the batch takes about twice the time of one in a fan; bad links are guessed from the worst ground.
+  static constexpr float kMostBroken = 0.3f;
+
   void walk(const Octant<Sample>& o, const StripLanes& lanes) {
+    if (!options_.always && !worthwhile(o, lanes)) return leave(lanes);
     if (triangles_) {
       walk_over<true>(o, lanes);
     } else {
       walk_over<false>(o, lanes);
+    }
+  }
+
+  // Leaves the rays of a pass to the batch.
+  void leave(const StripLanes& lanes) {
+    for (std::size_t l = 0; l < N; ++l) {
+      for (std::int32_t j = 0; j < lanes.count[l]; ++j) T_[slot(static_cast<std::size_t>(j), l)] = -kNoTime;
     }
   }
 
@@ -481,11 +476,14 @@ class FanWalk {
     const MF within = hn::And(hn::Ge(p.y, low_side), hn::Le(ends, high_side));
     MF sure = hn::And(hn::AndNot(refused, candidates), hn::And(within, hn::And(hn::Gt(e.c0, e.margin), f.sure)));
     if (at.length < 0x1p-12f || (triangles && at.length < 1)) sure = hn::AndNot(sure, sure);
-    const VF T = hn::MulAdd(f.share, hn::Set(df, at.length), hn::Set(df, at.T0));
+    // The hit, or where its piece begins.
+    const VF share = sights_ ? hn::IfThenElse(first, hn::Zero(df), e.u) : f.share;
+    const VF T = hn::MulAdd(share, hn::Set(df, at.length), hn::Set(df, at.T0));
     // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must see all of a ray, which may
     // cross it slowly.
     const MF beside = hn::Or(hn::Lt(p.y, low_side), hn::Gt(p.y, high_side));
-    const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kNoTime), hn::Set(df, -1 - at.T0));
+    const VF until = hn::Set(df, grid_.has_holes ? -kNoTime : -1 - at.T0);
+    const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kNoTime), until);
     const VI cell =
         hn::Add(hn::ConvertTo(di, p.node), hn::IfThenElseZero(hn::RebindMask(di, hn::Not(first)), hn::Set(di, 1)));
     const VI mirrored = hn::Add(cell, hn::Set(di, o.node0 + b));
@@ -502,7 +500,17 @@ class FanWalk {
       const auto l = static_cast<std::size_t>(std::countr_zero(bits));
       const std::size_t to = slot(static_cast<std::size_t>(rows[l]), l);
       T_[to] = times[l], cell_[to] = cells[l];
+      if (grid_.has_holes && times[l] >= 0 && beside_hole(cells[l] & 0xffff, cells[l] >> 16 & 0xffff))
+        T_[to] = -kNoTime;
     }
+  }
+  bool beside_hole(int col, int row) const {
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, grid_.cell_rows - 1); ++r) {
+      for (int c = std::max(col - 1, 0); c <= std::min(col + 1, grid_.cell_cols - 1); ++c) {
+        if (grid_.is_hole(c, r)) return true;
+      }
+    }
+    return false;
   }
   std::size_t slot(std::size_t j, std::size_t lane) const {
     const std::size_t at = j * N + lane;
@@ -573,6 +581,24 @@ class FanWalk {
       }
     }
   }
+  // Sights of the strip. Times are rounded down by more than the rounding of T, m and the ways in double.
+  HWY_NOINLINE void answer_sights() {
+    const VF zero = hn::Zero(df), one = hn::Set(df, 1), never = hn::Set(df, kNoTime), unknown = hn::Set(df, -kNoTime);
+    alignas(64) float clear[N];
+    alignas(64) std::int32_t cells[N];
+    for (int i = 0; i < fan_.rows; ++i) {
+      const VF T = hn::LoadU(df, T_.data() + static_cast<std::size_t>(i) * N);
+      const MF hit = hn::Ge(T, zero), open = hn::And(hn::Lt(T, zero), hn::Gt(T, unknown));
+      const VF until = hn::IfThenElse(open, hn::Sub(hn::Neg(one), T), T);
+      const VF before = hn::NegMulAdd(hn::Add(until, one), hn::Set(df, 0x1p-20f), until);
+      const VF seen = hn::IfThenElse(hn::Lt(T, never), hn::Max(before, zero), never);
+      const VF doubtful = hn::IfThenElse(hn::And(open, hn::Gt(before, zero)), hn::Neg(before), unknown);
+      hn::Store(hn::IfThenElse(hit, seen, doubtful), df, clear);
+      hn::Store(hn::LoadU(di, cell_.data() + static_cast<std::size_t>(i) * N), di, cells);
+      FanSight* to = sights_ + begin_ + i * step_;
+      for (int l = 0; l < width_; ++l) to[l] = {clear[l], static_cast<std::uint32_t>(cells[l])};
+    }
+  }
   // Times of hits that the range excludes, or may exclude.
   HWY_NOINLINE VF limit(VF T, VF per_major) const {
     const VF never = hn::Set(df, kNoTime), zero = hn::Zero(df);
@@ -605,8 +631,10 @@ class FanWalk {
 
   const HeightField& field_;
   const MaxPyramid& pyramid_;
+  const SampleGrid<Sample> grid_;
   const Fan& fan_;
-  const FanHits& hits_;
+  const FanHits hits_;
+  FanSight* sights_;  // null: hits
   const FanOptions& options_;
   std::vector<max_mip::FanRest>& rest_;
   FanStats& stats_;
@@ -615,7 +643,7 @@ class FanWalk {
   FanPlanes planes_;
   float per_x_, per_y_, per_z_;
   bool triangles_;
-  float highest_, steepest_ray_, doubt_, rounding_, cell_relief_;
+  float highest_, lowest_, steepest_ray_, doubt_, rounding_, cell_relief_;
   Cell origin_cell_;
   float in_cell_x_, in_cell_y_;
 
@@ -624,15 +652,23 @@ class FanWalk {
   int width_ = 0;
   const std::int32_t* rows_ = nullptr;  // rows of the entries of the tables; null: the same
   alignas(64) float window0_[kWindow], window1_[kWindow];
-  std::vector<float> m_, s_, T_, copies_;
-  std::vector<std::int32_t> cell_, row_of_;
+  KeptVector<float> m_, s_, T_, copies_;
+  KeptVector<std::int32_t> cell_, row_of_;
 };
 
 void walk(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
           const FanOptions& options, std::vector<max_mip::FanRest>& rest, FanStats& stats) {
   target.field->visit([&](const auto& grid) {
     using Sample = std::remove_cvref_t<decltype(grid.data[0])>;
-    FanWalk<Sample>(target, grid, fan, hits, options, rest, stats).run(begin, end);
+    FanWalk<Sample>(target, grid, fan, hits, nullptr, options, rest, stats).run(begin, end);
+  });
+}
+void look(const HeightTarget& target, const Fan& fan, FanSight* sights, int begin, int end, const FanOptions& options,
+          FanStats& stats) {
+  std::vector<max_mip::FanRest> none;
+  target.field->visit([&](const auto& grid) {
+    using Sample = std::remove_cvref_t<decltype(grid.data[0])>;
+    FanWalk<Sample>(target, grid, fan, {}, sights, options, none, stats).run(begin, end);
   });
 }
 
@@ -646,42 +682,18 @@ namespace scarp {
 namespace {
 
 HWY_EXPORT(walk);
-
-// Sides that a cell's 16-bit numbers reach, and from how far away a walk over the field makes sense.
-constexpr int kMostCells = 1 << 16;
-constexpr double kFarthest = 0x1p16;
-// In cells; in heights of the field.
-constexpr double kOnBorder = 0x1p-20, kAboveBorder = 0x1p-12;
+HWY_EXPORT(look);
 
 }  // namespace
-
-bool max_mip::walks_fan(const HeightTarget& target, const Fan& fan) {
-  const HeightField& field = *target.field;
-  if (field.nodata_count() > 0 || field.wraps() || !field.has_cells()) return false;
-  if (field.cell_cols() > kMostCells || field.cell_rows() > kMostCells) return false;
-  if (!(fan.t_min >= 0) || !std::isfinite(fan.t_min) || !(fan.t_max >= fan.t_min)) return false;
-  Ray ray;
-  ray.origin = fan.origin;
-  const dvec3 at = field.grid_from_world(ray).origin;
-  const auto near = [](double place, int cells) { return place > -kFarthest && place < cells + kFarthest; };
-  if (!near(at.x, field.cell_cols()) || !near(at.y, field.cell_rows()) || !std::isfinite(at.z)) return false;
-  const double relief = field.max_sample() - field.min_sample();
-  const double tallest = std::max({std::abs(at.z), std::abs(field.min_sample()), std::abs(field.max_sample())});
-  if (!(tallest < 0x1p60) || !(relief < 0x1p60)) return false;
-  const auto ground = field.height(fan.origin.x, fan.origin.y);
-  if (ground && !(fan.origin.z > *ground)) return false;
-  // On the border rays may touch a rim before or behind the field, unless they are well above it.
-  const auto on_border = [](double place, int cells) {
-    return std::min(std::abs(place), std::abs(place - cells)) < kOnBorder;
-  };
-  const bool beside = on_border(at.x, field.cell_cols()) || on_border(at.y, field.cell_rows());
-  const double rim = ground.value_or(field.max_height()), tall = field.max_height() - field.min_height();
-  return !beside || fan.origin.z - rim > kAboveBorder * tall;
-}
 
 void max_mip::walk_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
                        const FanOptions& options, std::vector<FanRest>& rest, FanStats& stats) {
   HWY_DYNAMIC_DISPATCH(walk)(target, fan, hits, begin, end, options, rest, stats);
+}
+
+void max_mip::look_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int begin, int end,
+                       const FanOptions& options, FanStats& stats) {
+  HWY_DYNAMIC_DISPATCH(look)(target, fan, sights, begin, end, options, stats);
 }
 
 }  // namespace scarp

@@ -2,7 +2,10 @@
 // Between max_mip_fan.cpp and the vector code of max_mip_fan_simd.cpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "scarp/march/height/max_mip_fan.h"
@@ -21,5 +24,20 @@ bool walks_fan(const HeightTarget& target, const Fan& fan);
 /// Answers the rays of columns [begin, end) but for those that it appends to `rest`.
 void walk_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
               const FanOptions& options, std::vector<FanRest>& rest, FanStats& stats);
+
+/// Time up to which a ray is above the ground.
+inline double clear_time(const HeightField& field, const Ray& ray, const FanSight& sight) {
+  const HeightField::GridScales scales = field.grid_scales();
+  return std::abs(static_cast<double>(sight.clear)) /
+         std::max(std::abs(ray.direction.x) * scales.per_cell_x, std::abs(ray.direction.y) * scales.per_cell_y);
+}
+
+/// Sets the hits of the rays whose cells are known.
+void answer_seen(const HeightTarget& target, std::span<const Ray> rays, std::span<const FanSight> sights,
+                 std::span<Hit> hits);
+
+/// Sets the sights of these rays.
+void look_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int begin, int end,
+              const FanOptions& options, FanStats& stats);
 
 }  // namespace scarp::max_mip

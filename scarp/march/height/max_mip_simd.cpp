@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
 
@@ -43,23 +44,6 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     if (a.status[j] == kWalking) a.seen[j] |= r.seen[j];
   }
 }
-
-// Rays that may hit in a cell; -1: none.
-struct Candidates {
-  std::size_t count = 0;
-  std::int32_t ray[N], col[N], row[N], seen[N], copy_x[N], copy_y[N];
-  alignas(64) double t_clear[N];
-
-  HWY_INLINE void put(std::size_t i, const Lanes& a, std::size_t j) {
-    ray[i] = a.ray[j], seen[i] = a.seen[j], copy_x[i] = a.copy_x[j], copy_y[i] = a.copy_y[j];
-    col[i] = a.x[j] ^ a.mirror_x[j], row[i] = a.y[j] ^ a.mirror_y[j];
-    t_clear[i] = a.t_begin[j] + static_cast<double>(a.T[j]) * a.t_per_cell[j];
-  }
-  HWY_INLINE void copy(std::size_t i, std::size_t j) {
-    ray[i] = ray[j], seen[i] = seen[j], copy_x[i] = copy_x[j], copy_y[i] = copy_y[j];
-    col[i] = col[j], row[i] = row[j], t_clear[i] = t_clear[j];
-  }
-};
 
 // A ray that has to cross a copy of a wrapped ground.
 struct CopyRay {
@@ -119,13 +103,28 @@ class VectorWalk {
     if constexpr (!any) {
       if (candidates_.count > 0) find_hits();
     }
+    add_to(stats);
+  }
+
+  // Hits of rays whose cells are known.
+  void answer_seen(std::span<const FanSight> sights, VectorStats& stats) {
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      if (!(sights[i].clear >= 0 && sights[i].clear < std::numeric_limits<float>::infinity())) continue;
+      candidates_.put(candidates_.count++, i, sights[i], max_mip::clear_time(field_, rays_[i], sights[i]));
+      if (candidates_.count == N) find_hits();
+    }
+    if (candidates_.count > 0) find_hits();
+    add_to(stats);
+  }
+
+ private:
+  void add_to(VectorStats& stats) const {
     stats.block_lanes += stats_.block_lanes, stats.block_steps += stats_.block_steps;
     stats.cell_lanes += stats_.cell_lanes, stats.cell_steps += stats_.cell_steps;
     stats.handed_over += stats_.handed_over, stats.beam_rays += stats_.beam_rays;
     stats.together_rays += stats_.together_rays;
   }
 
- private:
   // Processes cells and new rays when enough lanes wait for them. Returns false if no lane has a ray and none are left.
   HWY_INLINE bool follow_up(Packet& p, Lanes& lanes) {
     const VI zero = hn::Zero(di);
@@ -598,6 +597,13 @@ void walk_closest(const HeightTarget& target, std::span<const Ray> rays, Hit* hi
                   VectorStats& stats) {
   walk<false>(target, rays, hits, options, stats);
 }
+void answer_seen(const HeightTarget& target, std::span<const Ray> rays, std::span<const FanSight> sights, Hit* hits,
+                 VectorStats& stats) {
+  target.field->visit([&](const auto& grid) {
+    using T = std::remove_cvref_t<decltype(grid.data[0])>;
+    VectorWalk<false, T>(target, grid, rays, hits, {}).answer_seen(sights, stats);
+  });
+}
 void walk_any(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked,
               const VectorOptions& options, VectorStats& stats) {
   walk<true>(target, rays, blocked, options, stats);
@@ -614,6 +620,7 @@ namespace {
 
 HWY_EXPORT(walk_closest);
 HWY_EXPORT(walk_any);
+HWY_EXPORT(answer_seen);
 
 thread_local VectorStats t_stats;
 
@@ -657,6 +664,18 @@ void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> 
 
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
   occluded_max_mip_simd(target, rays, blocked, {});
+}
+
+void max_mip::answer_seen(const HeightTarget& target, std::span<const Ray> rays, std::span<const FanSight> sights,
+                          std::span<Hit> hits) {
+  if (walks_over(target)) {
+    HWY_DYNAMIC_DISPATCH(answer_seen)(target, rays, sights, hits.data(), t_stats);
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (sights[i].clear >= 0 && sights[i].clear < std::numeric_limits<float>::infinity())
+        hits[i] = resume_max_mip(target, rays[i], max_mip::clear_time(*target.field, rays[i], sights[i]));
+    }
+  }
 }
 
 VectorStats take_vector_stats() { return std::exchange(t_stats, {}); }

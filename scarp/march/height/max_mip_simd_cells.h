@@ -8,8 +8,11 @@
 #define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
 #endif
 
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
+#include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/height/max_mip_simd_lanes.h"
 #include "scarp/march/height/max_mip_simd_rays.h"
 
@@ -36,6 +39,28 @@ struct Cells {
     col[j] = first_col + to_col, row[j] = first_row + to_row;
     h00[j] = static_cast<double>(north[0]), h10[j] = static_cast<double>(north[east]);
     h01[j] = static_cast<double>(south[0]), h11[j] = static_cast<double>(south[east]);
+  }
+};
+
+// Rays that may hit in a cell; -1: none.
+struct Candidates {
+  std::size_t count = 0;
+  std::int32_t ray[N], col[N], row[N], seen[N], copy_x[N], copy_y[N];
+  alignas(64) double t_clear[N];
+
+  HWY_INLINE void put(std::size_t i, const Lanes& a, std::size_t j) {
+    ray[i] = a.ray[j], seen[i] = a.seen[j], copy_x[i] = a.copy_x[j], copy_y[i] = a.copy_y[j];
+    col[i] = a.x[j] ^ a.mirror_x[j], row[i] = a.y[j] ^ a.mirror_y[j];
+    t_clear[i] = a.t_begin[j] + static_cast<double>(a.T[j]) * a.t_per_cell[j];
+  }
+  HWY_INLINE void put(std::size_t i, std::size_t index, const FanSight& sight, double clear) {
+    ray[i] = static_cast<std::int32_t>(index), seen[i] = 1, copy_x[i] = copy_y[i] = 0;
+    col[i] = static_cast<std::int32_t>(sight.cell & 0xffff), row[i] = static_cast<std::int32_t>(sight.cell >> 16);
+    t_clear[i] = clear;
+  }
+  HWY_INLINE void copy(std::size_t i, std::size_t j) {
+    ray[i] = ray[j], seen[i] = seen[j], copy_x[i] = copy_x[j], copy_y[i] = copy_y[j];
+    col[i] = col[j], row[i] = row[j], t_clear[i] = t_clear[j];
   }
 };
 

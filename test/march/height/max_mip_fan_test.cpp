@@ -130,6 +130,40 @@ testing::AssertionResult same(const HeightTarget& target, const Ray& ray, const 
   return testing::AssertionSuccess();
 }
 
+// Hits from sights are those of march_max_mip(), for rays in double whose directions round to those of the fan.
+void check_sights(const HeightTarget& target, const Rays& rays, const std::string& what, const FanOptions& options) {
+  const Fan fan = rays.fan();
+  std::vector<FanSight> sights(rays.dx.size(), {7, 7}), seen;
+  const int middle = (rays.columns / 2 + 15) / 16 * 16;
+  look_max_mip_fan(target, fan, sights.data(), 0, std::min(middle, rays.columns), options);
+  look_max_mip_fan(target, fan, sights.data(), middle, rays.columns, options);
+  Random random(static_cast<unsigned>(rays.columns * 64 + rays.rows));
+  std::vector<Ray> precise;
+  for (int c = 0; c < rays.columns; ++c) {
+    for (int r = 0; r < rays.rows; ++r) {
+      Ray ray = rays.ray(rays.at(c, r));
+      if (!is_followable(ray)) continue;
+      const double multiple = std::exp2(uniform(random, -3, 3));
+      for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        const bool subnormal = std::abs(d) < static_cast<double>(std::numeric_limits<float>::min());
+        ray.direction[axis] = multiple * d * (subnormal ? 1 : 1 + uniform(random, -0.99, 0.99) * 0x1p-25);
+      }
+      if (whole(random, 0, 2) == 0) ray.t_max = uniform(random, 0, 2) * target.field->width() / multiple;
+      precise.push_back(ray), seen.push_back(sights[rays.at(c, r)]);
+    }
+  }
+  std::vector<Hit> hits(precise.size());
+  closest_hits_max_mip_seen(target, precise, seen, hits);
+  for (std::size_t i = 0; i < precise.size(); ++i) {
+    const Hit truth = march_max_mip(target, precise[i]);
+    ASSERT_TRUE(hits[i] == truth) << what << ", sight " << seen[i].clear << " " << seen[i].cell << std::hexfloat
+                                  << ", t " << hits[i].t << " for " << truth.t << ", direction "
+                                  << precise[i].direction.x << " " << precise[i].direction.y << " "
+                                  << precise[i].direction.z;
+  }
+}
+
 void check(const HeightTarget& target, const Rays& rays, const std::string& what, const FanOptions& options = {}) {
   const Fan fan = rays.fan();
   const std::size_t count = rays.dx.size();
@@ -138,6 +172,7 @@ void check(const HeightTarget& target, const Rays& rays, const std::string& what
   std::vector<HitStatus> status(count, HitStatus::exhausted);
   FanOptions always = options;
   always.always = true;
+  if (rays.t_min == 0) check_sights(target, rays, what, always);
   const int middle = (rays.columns / 2 + 15) / 16 * 16;
   const FanHits hits{t.data(), col.data(), row.data(), u.data(), v.data(), status.data()};
   closest_hits_max_mip_fan(target, fan, hits, 0, std::min(middle, rays.columns), always);
@@ -398,7 +433,8 @@ TEST(MaxMipFan, UsualFansLeaveFewRays) {
   take_fan_stats();
   check(target, rays, "scanner");
   const FanStats stats = take_fan_stats();
-  EXPECT_EQ(stats.rays, static_cast<std::uint64_t>(rays.columns) * static_cast<std::uint64_t>(rays.rows));
+  // Once for hits, once for sights.
+  EXPECT_EQ(stats.rays, 2 * static_cast<std::uint64_t>(rays.columns) * static_cast<std::uint64_t>(rays.rows));
   EXPECT_LT(stats.resumed + stats.from_start, stats.rays / 100);
 }
 

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench pitches`: cameras that look down by 0 to 90 degrees, their rays by fans, by batches, and by the choice
+// between both, as pictures ask them (render/frame/camera_fan.h).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/commands.h"
+#include "bench/fields.h"
+#include "bench/protocol.h"
+#include "scarp/base/error.h"
+#include "scarp/march/height/max_mip_fan.h"
+#include "scarp/march/height/max_mip_simd.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kSide = 32;  // pixels of a tile; a fan takes a column of tiles
+
+struct View {
+  const char* name;
+  double over;  // eye over the highest ground, in widths of the field; negative: over the ground below it, metres
+  double roll;
+};
+constexpr View kViews[] = {{"high", 0.3, 0}, {"above", 0.05, 0}, {"above, roll", 0.05, 0.3}, {"near", -100, 0}};
+
+// The rays of a picture: columns of tiles, in each all rows, in each 32 pixels.
+std::vector<Ray> camera_rays(const HeightField& field, const View& view, double pitch, int width, int height) {
+  dvec3 eye(0.4 * field.width(), 0.35 * field.depth(), 0);
+  eye.z = view.over > 0 ? field.max_height() + view.over * field.width()
+                        : field.height(eye.x, eye.y).value_or(field.max_height()) - view.over;
+  const double yaw = 0.7;
+  const dvec3 ahead(std::sin(yaw), std::cos(yaw), 0), level(std::cos(yaw), -std::sin(yaw), 0);
+  const dvec3 forward = std::cos(pitch) * ahead - dvec3(0, 0, std::sin(pitch)), over = cross(level, forward);
+  const dvec3 right = std::cos(view.roll) * level + std::sin(view.roll) * over, up = cross(right, forward);
+  const double half = std::tan(45.0 / 2 * kPi / 180), pixel = 2 * half / height;
+  std::vector<Ray> rays;
+  for (int x0 = 0; x0 < width; x0 += kSide) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = x0; x < x0 + kSide; ++x) {
+        Ray ray;
+        ray.origin = eye;
+        ray.direction =
+            normalize(forward + pixel * (x + 0.5 - 0.5 * width) * right + pixel * (0.5 * height - y - 0.5) * up);
+        rays.push_back(ray);
+      }
+    }
+  }
+  return rays;
+}
+
+void by_batch(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits) {
+  for (std::size_t first = 0; first < rays.size(); first += kSide * kSide) {
+    const std::size_t count = std::min<std::size_t>(kSide * kSide, rays.size() - first);
+    closest_hits_max_mip_simd(target, rays.subspan(first, count), hits.subspan(first, count));
+  }
+}
+
+void by_fan(const HeightTarget& target, std::span<const Ray> rays, int height, bool always, std::span<Hit> hits) {
+  const auto rows = static_cast<std::size_t>(height), area = rows * kSide;
+  std::vector<float> dx(area), dy(area), dz(area);
+  std::vector<FanSight> sights(area);
+  FanOptions options;
+  options.always = always;
+  for (std::size_t first = 0; first < rays.size(); first += area) {
+    for (std::size_t i = 0; i < area; ++i) {
+      const dvec3 d = rays[first + i].direction;
+      dx[i] = static_cast<float>(d.x), dy[i] = static_cast<float>(d.y), dz[i] = static_cast<float>(d.z);
+    }
+    Fan fan;
+    fan.origin = rays[first].origin;
+    fan.dx = dx.data(), fan.dy = dy.data(), fan.dz = dz.data();
+    fan.columns = kSide, fan.rows = height, fan.row_stride = kSide;
+    look_max_mip_fan(target, fan, sights.data(), 0, kSide, options);
+    for (std::size_t i = 0; i < area; i += kSide * kSide) {
+      const std::size_t count = std::min<std::size_t>(kSide * kSide, area - i);
+      closest_hits_max_mip_seen(target, rays.subspan(first + i, count), std::span(sights).subspan(i, count),
+                                hits.subspan(first + i, count));
+    }
+  }
+}
+
+}  // namespace
+
+void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
+  const BenchField ground = load_field(options.field);
+  const MaxPyramid pyramid(ground.field);
+  const HeightTarget target{&ground.field, &pyramid};
+  const int width = options.width / kSide * kSide, height = options.height;
+  Json rows = Json::array();
+  std::vector<std::vector<std::string>> lines{
+      {"view", "down", "batch Mrays/s", "fan", "choice", "choice / better", "fan's unknown %", "choice's %"}};
+  for (const View& view : kViews) {
+    for (int down = 0; down <= 90; down += options.step) {
+      const std::vector<Ray> rays = camera_rays(ground.field, view, down * kPi / 180, width, height);
+      std::vector<Hit> truth(rays.size()), hits(rays.size());
+      std::vector<double> seconds[3];
+      double unknown[3] = {0, 0, 0};
+      for (int pass = 0; pass < 3 * options.repeats; ++pass) {
+        const int way = pass % 3;
+        take_vector_stats();
+        const Stopwatch watch;
+        if (way == 0) by_batch(target, rays, truth);
+        if (way > 0) by_fan(target, rays, height, way == 1, hits);
+        seconds[way].push_back(watch.cpu_s());
+        if (way > 0 && hits != truth)
+          throw Error(fmt::format("pitches: {} at {} degrees: hits differ", view.name, down));
+        const FanStats stats = take_fan_stats();
+        unknown[way] = 100 * static_cast<double>(stats.from_start) / static_cast<double>(rays.size());
+      }
+      const auto rate = [&](int way) { return 1e-6 * static_cast<double>(rays.size()) / median(seconds[way]); };
+      Json row;
+      row["view"] = view.name, row["down"] = down;
+      row["batch_mrays"] = rate(0), row["fan_mrays"] = rate(1), row["choice_mrays"] = rate(2);
+      row["choice_of_better"] = rate(2) / std::max(rate(0), rate(1));
+      row["fan_unknown"] = unknown[1], row["choice_unknown"] = unknown[2];
+      lines.push_back({view.name, short_number(row["down"]), short_number(row["batch_mrays"]),
+                       short_number(row["fan_mrays"]), short_number(row["choice_mrays"]),
+                       short_number(row["choice_of_better"]), short_number(row["fan_unknown"]),
+                       short_number(row["choice_unknown"])});
+      rows.push_back(std::move(row));
+    }
+  }
+  print_table(lines, 1);
+  write_json(report, rows);
+}
+
+}  // namespace scarp::bench
