@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/base/kept_memory.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/march/usual_ray.h"
@@ -292,10 +293,11 @@ bool all_free(std::span<const Ray> rays, std::span<const Hit* const> from) {
 
 }  // namespace
 
-void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits, const SceneRules* rules) const {
-  std::vector<Ray> locals;
-  std::vector<const Hit*> on_object(from.size());
-  std::vector<Hit> answers(rays.size());
+void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits, const SceneRules* rules,
+                             std::span<const FanSight> sights) const {
+  KeptVector<Ray> locals;
+  KeptVector<const Hit*> on_object(from.size());
+  KeptVector<Hit> answers(rays.size());
   std::fill(hits.begin(), hits.end(), Hit{});
   bool any_hit = false;
   for (const std::uint32_t object : beside_tree_) {
@@ -311,7 +313,11 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
       }
       asked = locals;
     }
-    field_of(object).closest_hits(asked, answers, on_object);
+    if (!sights.empty() && object == terrain_object_) {
+      closest_hits_max_mip_seen(*field_of(object).fan_target(), asked, sights, answers);
+    } else {
+      field_of(object).closest_hits(asked, answers, on_object);
+    }
     for (std::size_t i = 0; i < rays.size(); ++i) {
       take_hit(answers[i], object, hits[i]);
       any_hit = any_hit || hits[i].status != HitStatus::miss;
@@ -370,6 +376,21 @@ void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::sp
       hits[i] = closest({rays, from, i}, &stats);
       if (!steps.empty()) steps[i] = stats.steps;
     }
+  });
+}
+
+std::optional<HeightTarget> Scene::fan_target() const {
+  return back_end_ || !only_heights() ? std::nullopt : field_of(terrain_object_).fan_target();
+}
+
+void Scene::closest_hits(std::span<const Ray> rays, std::span<const FanSight> sights, std::span<Hit> hits) const {
+  require_same_length(rays.size(), hits.size());
+  require_same_length(rays.size(), sights.size());
+  if (!fan_target() || any_odd(rays)) return closest_hits(rays, hits);
+  require_current();
+  parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+    closest_of_piece(rays.subspan(first, count), {}, hits.subspan(first, count), nullptr, sights.subspan(first, count));
   });
 }
 

@@ -113,6 +113,10 @@ class Scene {
   /// unless `steps` is empty. Uses all threads. Throws Error if spans differ in length.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps = {},
                     std::span<const Hit* const> from = {}) const;
+  /// Returns the target of fans of camera rays, if only_heights() is not null; nullopt if fans do not apply.
+  std::optional<HeightTarget> fan_target() const;
+  /// The same hits for free rays with t_min = 0 that a fan over fan_target() has looked for.
+  void closest_hits(std::span<const Ray> rays, std::span<const FanSight> sights, std::span<Hit> hits) const;
   /// Sets blocked[i] to 1 if occluded(rays[i], from[i]), else to 0. Threads and errors as for closest_hits().
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
@@ -199,8 +203,8 @@ class Scene {
   Hit closest(const StartedRay& ray, MarchStats* stats) const;
   Hit accepted_hit(const StartedRay& ray, std::uint32_t object, const Ray& own, MarchStats* stats) const;
   bool any(const StartedRay& ray) const;
-  void closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits,
-                        const SceneRules* rules = nullptr) const;
+  void closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits, const SceneRules* rules = nullptr,
+                        std::span<const FanSight> sights = {}) const;
   void occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked,
                          const SceneRules* rules = nullptr) const;
 

@@ -21,6 +21,7 @@
 #include "scarp/field/height_function.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/height/height_table.h"
+#include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/shape/shape_table.h"
 #include "scarp/march/turned_box.h"
 #include "scarp/scene/box_tree.h"
@@ -139,6 +140,9 @@ class SceneField {
 
   /// Memory use of voxel models and their accelerators. 0: not counted.
   virtual std::size_t bytes() const { return 0; }
+
+  /// Returns the target of fans (march/height/max_mip_fan.h); nullopt unless the march on the CPU is `max-mip`.
+  virtual std::optional<HeightTarget> fan_target() const { return {}; }
 
   /// Whether batches are faster than single rays.
   virtual bool likes_batches() const { return false; }

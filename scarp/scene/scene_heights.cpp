@@ -129,6 +129,9 @@ class Heights final : public SceneField {
                         .material = material_of(cell)};
   }
 
+  std::optional<HeightTarget> fan_target() const override {
+    return march_.name == "max-mip" && pyramid_ ? std::optional(target()) : std::nullopt;
+  }
   bool likes_batches() const override { return march_.simd; }
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
     if (!march_.simd) return SceneField::closest_hits(rays, hits, from);

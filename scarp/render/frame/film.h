@@ -51,6 +51,10 @@ class PixelTiles {
   PixelTiles(int width, int height, int aa);
 
   std::int64_t count() const { return across_ * down_; }
+  std::int64_t columns() const { return across_; }
+  std::int64_t rows() const { return down_; }
+  /// Pixels along the side of a tile that the picture does not cut off.
+  int side() const { return side_; }
   PixelTile operator[](std::int64_t i) const;
 
  private:

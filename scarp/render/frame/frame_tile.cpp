@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "scarp/base/kept_memory.h"
 #include "scarp/render/surface/water.glsl.h"
 
 namespace scarp {
@@ -31,12 +32,20 @@ std::size_t most_rays_of(const FrameView& view) {
   return std::min(kMostRaysOfRound, kMostPointsOfTile * per_point);
 }
 
-FrameTile::FrameTile(const FrameView& view, const PixelTile& tile, int aa)
-    : view_(view), aa_(aa), points_(points_of(tile, aa)) {
+bool counts_steps(const FrameView& view) {
+  const PictureSettings& settings = view.settings();
+  return (settings.look == Look::comanche && settings.comanche.iterations) || view.fog().kind() == FogKind::iterations;
+}
+
+FrameTile::FrameTile(const FrameView& view, const PixelTile& tile, int aa, const CameraSights* sights)
+    : view_(view), tile_(tile), aa_(aa), sights_(sights), points_(points_of(tile, aa)) {
+  borrow(seen_), borrow(sent_), borrow(open_);
   seen_.reserve(points_.size());
   for (const PicturePoint& point : points_) add(seen_, seen_.size(), view.camera().ray(point.x, point.y));
   if (view.water()) meetings_.resize(points_.size());
 }
+
+FrameTile::~FrameTile() { keep(seen_), keep(sent_), keep(open_); }
 
 void FrameTile::add(std::vector<Seen>& all, std::size_t point, const Ray& ray) {
   Seen& seen = all.emplace_back();
@@ -76,8 +85,9 @@ bool FrameTile::look(RayRound& round) {
     }
     return false;
   }
-  const bool count = shows_steps() || view_.fog().kind() == FogKind::iterations;
+  const bool count = counts_steps(view_);
   round.question = count ? RayRound::Question::closest_cost : RayRound::Question::closest;
+  if (sights_ && !count) sights_->of(tile_, round.sights);
   round.rays.clear();
   round.from.clear();
   round.rays.reserve(seen_.size());

@@ -16,10 +16,17 @@ namespace scarp {
 /// Maximum number of rays of a tile in one round.
 std::size_t most_rays_of(const FrameView& view);
 
+/// Whether a picture counts the steps of its camera rays.
+bool counts_steps(const FrameView& view);
+
 class FrameTile {
  public:
-  /// aa x aa points per pixel. `view` must outlive the tile.
-  FrameTile(const FrameView& view, const PixelTile& tile, int aa);
+  /// aa x aa points per pixel. `fan`: has looked for the camera rays of the tile, or null. `view` and `fan` must
+  /// outlive the tile.
+  FrameTile(const FrameView& view, const PixelTile& tile, int aa, const CameraSights* sights = nullptr);
+  ~FrameTile();
+  FrameTile(const FrameTile&) = delete;
+  FrameTile& operator=(const FrameTile&) = delete;
 
   /// As TileWork::next.
   bool next(RayRound& round);
@@ -90,7 +97,9 @@ class FrameTile {
   float share_of_steps(std::size_t point, double most) const;
 
   const FrameView& view_;
+  PixelTile tile_;
   int aa_;
+  const CameraSights* sights_;
   std::vector<PicturePoint> points_;
   std::vector<Seen> seen_, sent_;
   std::vector<WaterPoint> water_;

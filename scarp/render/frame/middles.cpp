@@ -10,15 +10,16 @@ namespace {
 
 class MiddlesTile final : public TileWork {
  public:
-  MiddlesTile(const Camera& camera, const PixelTile& tile, int width, bool count, const TakeMiddle& take,
-              const StepMarch* stepped)
-      : camera_(camera), tile_(tile), width_(width), count_(count), take_(take), stepped_(stepped) {}
+  MiddlesTile(const Camera& camera, const PixelTile& tile, const CameraSights* sights, int width, bool count,
+              const TakeMiddle& take, const StepMarch* stepped)
+      : camera_(camera), tile_(tile), sights_(sights), width_(width), count_(count), take_(take), stepped_(stepped) {}
 
   bool next(RayRound& round) override {
     if (!asked_) {
       asked_ = true;
       round.question = count_ ? RayRound::Question::closest_cost : RayRound::Question::closest;
       round.rays = rays_through_middles(camera_, tile_);
+      if (sights_ && !count_) sights_->of(tile_, round.sights);
       round.from.clear();
       if (!stepped_) return true;
       answer_by_steps(round);
@@ -46,6 +47,7 @@ class MiddlesTile final : public TileWork {
 
   const Camera& camera_;
   PixelTile tile_;
+  const CameraSights* sights_;
   int width_;
   bool count_, asked_ = false;
   const TakeMiddle& take_;
@@ -65,13 +67,16 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
 
 void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
                           const Progress& progress, const TakeMiddle& take, const StepMarch* stepped) {
-  const PixelTiles tiles(settings.width, settings.height, 1);
-  work_on_tiles(
-      scene, tiles, tiles[0].pixels(),
-      [&](const PixelTile& tile) {
-        return std::make_unique<MiddlesTile>(camera, tile, settings.width, count, take, stepped);
-      },
-      progress);
+  const std::size_t most_rays = PixelTiles(settings.width, settings.height, 1)[0].pixels();
+  const auto make = [&](const PixelTile& tile, const CameraSights* sights) {
+    return std::make_unique<MiddlesTile>(camera, tile, sights, settings.width, count, take, stepped);
+  };
+  if (count || stepped) {
+    return work_on_tiles(
+        scene, PixelTiles(settings.width, settings.height, 1), most_rays,
+        [&](const PixelTile& tile) { return make(tile, nullptr); }, progress);
+  }
+  work_on_camera_tiles(scene, camera, settings.width, settings.height, 1, most_rays, make, progress);
 }
 
 }  // namespace scarp

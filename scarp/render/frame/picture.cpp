@@ -32,8 +32,11 @@ constexpr int kMaxSamples = 4096;
 
 class ImageTile final : public TileWork {
  public:
-  ImageTile(const FrameView& view, const PixelTile& tile, Image& image)
-      : tile_(tile), frame_(view, tile, view.settings().aa), tones_(uses_tone_curve(view.settings())), image_(image) {}
+  ImageTile(const FrameView& view, const PixelTile& tile, const CameraSights* sights, Image& image)
+      : tile_(tile),
+        frame_(view, tile, view.settings().aa, sights),
+        tones_(uses_tone_curve(view.settings())),
+        image_(image) {}
 
   bool next(RayRound& round) override {
     if (frame_.next(round)) return true;
@@ -90,9 +93,17 @@ Image render_shaded(const Scene& scene, const Camera& camera, const PictureSetti
   const FrameView view(scene, camera, settings);
   Image image(settings.width, settings.height);
   if (settings.alpha) image.make_transparent();
-  work_on_tiles(
-      scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(view),
-      [&](const PixelTile& tile) { return std::make_unique<ImageTile>(view, tile, image); }, progress);
+  const auto make = [&](const PixelTile& tile, const CameraSights* sights) {
+    return std::make_unique<ImageTile>(view, tile, sights, image);
+  };
+  const PixelTiles tiles(settings.width, settings.height, settings.aa);
+  if (counts_steps(view)) {
+    work_on_tiles(
+        scene, tiles, most_rays_of(view), [&](const PixelTile& tile) { return make(tile, nullptr); }, progress);
+  } else {
+    work_on_camera_tiles(scene, camera, settings.width, settings.height, settings.aa, most_rays_of(view), make,
+                         progress);
+  }
   return image;
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "scarp/base/error.h"
+#include "scarp/base/kept_memory.h"
 #include "scarp/base/parallel.h"
 
 namespace scarp {
@@ -13,6 +14,21 @@ namespace {
 using Question = RayRound::Question;
 
 constexpr std::size_t kRaysAtOnce = 1 << 18;  // on a device
+// Areas that fans look at: enough for many threads, and as high as possible. With most tiles: 2^17 points, 1 MiB.
+constexpr std::int64_t kAreas = 128, kMostTilesOfArea = 128;
+
+// A round whose memory the next tile reuses.
+struct KeptRound : RayRound {
+  KeptRound() { borrow(rays), borrow(from), borrow(sights), borrow(hits), borrow(steps), borrow(blocked); }
+  ~KeptRound() { keep(rays), keep(from), keep(sights), keep(hits), keep(steps), keep(blocked); }
+  KeptRound(const KeptRound&) = delete;
+  KeptRound& operator=(const KeptRound&) = delete;
+  // For the next tile.
+  void reset() {
+    question = Question::closest;
+    rays.clear(), from.clear(), sights.clear(), hits.clear(), steps.clear(), blocked.clear();
+  }
+};
 
 void answer(const Scene& scene, RayRound& round) {
   if (round.question == Question::any) {
@@ -20,6 +36,10 @@ void answer(const Scene& scene, RayRound& round) {
     return scene.occluded(round.rays, round.blocked, round.from);
   }
   round.hits.resize(round.rays.size());
+  if (!round.sights.empty()) {
+    scene.closest_hits(round.rays, round.sights, round.hits);
+    return round.sights.clear();
+  }
   round.steps.resize(round.question == Question::closest_cost ? round.rays.size() : 0);
   scene.closest_hits(round.rays, round.hits, round.steps, round.from);
 }
@@ -120,10 +140,42 @@ void work_on_tiles(const Scene& scene, const PixelTiles& tiles, std::size_t most
   parallel_for(
       tiles.count(), 1,
       [&](std::int64_t begin, std::int64_t end) {
+        KeptRound round;
         for (std::int64_t i = begin; i < end; ++i) {
           const std::unique_ptr<TileWork> work = make(tiles[i]);
-          RayRound round;
+          round.reset();
           while (work->next(round)) answer(scene, round);
+        }
+      },
+      progress);
+}
+
+void work_on_camera_tiles(const Scene& scene, const Camera& camera, int width, int height, int aa,
+                          std::size_t most_rays, const MakeCameraWork& make, const Progress& progress) {
+  const PixelTiles tiles(width, height, aa);
+  const std::int64_t most = std::max<std::int64_t>(1, (tiles.columns() * tiles.rows() + kAreas - 1) / kAreas);
+  const std::int64_t height_of_area = std::min({most, tiles.rows(), kMostTilesOfArea});
+  const CameraFan fan(scene, camera, static_cast<int>(height_of_area) * tiles.side(), aa);
+  if (!fan.pays()) {
+    return work_on_tiles(
+        scene, tiles, most_rays, [&](const PixelTile& tile) { return make(tile, nullptr); }, progress);
+  }
+  const std::int64_t down = (tiles.rows() + height_of_area - 1) / height_of_area;
+  parallel_for(
+      tiles.columns() * down, 1,
+      [&](std::int64_t begin, std::int64_t end) {
+        KeptRound round;
+        for (std::int64_t area = begin; area < end; ++area) {
+          const std::int64_t column = area % tiles.columns(), first = area / tiles.columns() * height_of_area;
+          const std::int64_t last = std::min(first + height_of_area, tiles.rows());
+          const PixelTile top = tiles[first * tiles.columns() + column];
+          CameraSights sights;
+          fan.look({top.x0, top.y0, top.x1, tiles[(last - 1) * tiles.columns() + column].y1}, sights);
+          for (std::int64_t row = first; row < last; ++row) {
+            const std::unique_ptr<TileWork> work = make(tiles[row * tiles.columns() + column], &sights);
+            round.reset();
+            while (work->next(round)) answer(scene, round);
+          }
         }
       },
       progress);

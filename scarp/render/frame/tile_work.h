@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scarp/base/progress.h"
+#include "scarp/render/frame/camera_fan.h"
 #include "scarp/render/frame/film.h"
 #include "scarp/scene/scene.h"
 
@@ -28,6 +29,8 @@ struct RayRound {
   std::vector<Ray> rays;
   /// Hits on whose surfaces the rays start, as in Scene::closest_hits(); empty: by Ray::start.
   std::vector<const Hit*> from;
+  /// Question::closest: what a fan has found of the rays, for the next query alone; empty: nothing.
+  std::vector<FanSight> sights;
   std::vector<Hit> hits;
   std::vector<std::uint32_t> steps;
   std::vector<std::uint8_t> blocked;
@@ -51,5 +54,11 @@ using MakeTileWork = std::function<std::unique_ptr<TileWork>(const PixelTile&)>;
 /// kMostRaysOfRound. Throws Interrupted if `progress` returns false.
 void work_on_tiles(const Scene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
                    const Progress& progress);
+
+/// The same for a picture of width x height pixels with aa x aa points each. Camera rays are looked for by a fan, which
+/// the work receives, if that pays; otherwise it receives null.
+using MakeCameraWork = std::function<std::unique_ptr<TileWork>(const PixelTile&, const CameraSights*)>;
+void work_on_camera_tiles(const Scene& scene, const Camera& camera, int width, int height, int aa,
+                          std::size_t most_rays, const MakeCameraWork& make, const Progress& progress);
 
 }  // namespace scarp
