@@ -7,15 +7,20 @@
 // oracle. Techniques do not include the tables.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "scarp/march/guarantee.h"
 
 namespace scarp {
 
+/// How a technique steps along the ray; `none`: it walks cells, voxels or pieces of the ray.
+enum class Sampling : std::uint8_t { none, naive, fixed_step, relaxed, lipschitz };
+
 struct MarchEntry {
   std::string_view name{};  ///< as typed: "max-mip"
   Guarantee guarantee = Guarantee::approximate;
+  Sampling sampling = Sampling::none;
   bool simd = false;               ///< answers batches in vectors
   bool gpu = false;                ///< runs on Vulkan devices
   std::string_view parameters{};   ///< its settings with their defaults, for people

@@ -57,6 +57,7 @@ class Heights final : public SceneField {
 
   std::string_view kind() const override { return "heights"; }
   std::string_view march() const override { return march_.name; }
+  Sampling sampling() const override { return march_.sampling; }
   std::string caveat() const override {
     if (march_.name != "lipschitz" || settings_.lipschitz.shrink == 0) return {};
     return lipschitz_caveat(settings_.lipschitz, std::isnan(slope_) ? slope_bound(field_) : slope_);

@@ -80,7 +80,7 @@ class HeightRuns : public RaySlices<HeightRays> {
   std::vector<glsl::HitBlock> answered_;
 };
 
-glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
+glsl::ScarpSampling sampling_of(Sampling march, const MarchSettings& settings, const DeviceTarget& target) {
   const HeightFieldSettings& field = target.field->settings();
   return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
 }
@@ -106,6 +106,7 @@ struct DeviceQueries::Impl {
   Impl(const Device& device, const HeightMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
       : name(entry.name),
+        sampling(entry.sampling),
         march_settings(march_settings_),
         runs(device, settings.rays_at_once),
         statistics(settings.statistics),
@@ -126,12 +127,12 @@ struct DeviceQueries::Impl {
   template <class Answer>
   void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
            const Answer& answer) {
-    const bool exact = name == "max-mip";
+    const bool exact = sampling == Sampling::none;  // max-mip
     const bool starts =
         std::any_of(asked.begin(), asked.end(), [](const Ray& ray) { return ray.start == RayStart::on_surface; });
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
     query.exact_only = exact_only || leaves_first_pass(*target.field);
-    if (!exact) query.sampling = sampling_of(name, march_settings, target);
+    if (!exact) query.sampling = sampling_of(sampling, march_settings, target);
     last_ground = target.ground->address();
     last_query = query;
     runs.ask(
@@ -151,6 +152,7 @@ struct DeviceQueries::Impl {
   }
 
   std::string_view name;
+  Sampling sampling;
   MarchSettings march_settings;
   HeightRuns runs;
   bool statistics, exact_only, clip_at_top;
