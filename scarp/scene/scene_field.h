@@ -52,6 +52,7 @@ struct SceneFieldParts {
     const Field* field;
     const Entry* march;
     const MarchSettings* settings;
+    double seam = 0;  ///< of heights: as HeightTarget::seam
   };
   using Heights = Marched<HeightField, HeightMarchEntry>;
   using Function = Marched<HeightFunction, FunctionMarchEntry>;

@@ -154,7 +154,7 @@ class Heights final : public SceneField {
     if (from.empty()) return scarp::occluded(target(), rays, blocked, march_, settings_);
     scarp::occluded(target(), begun_on_all_threads(rays, from), blocked, march_, settings_);
   }
-  SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_}}; }
+  SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_, kSeam}}; }
   // A ray from a wall starts free: the wall is behind it.
   Ray started(const Ray& ray, const Hit* from) const override {
     Ray r = ray;

@@ -85,6 +85,11 @@ glsl::ScarpSampling sampling_of(Sampling march, const MarchSettings& settings, c
   return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
 }
 
+// For rays that DeviceRay::lingers keeps from the device.
+Hit on_host(const DeviceTarget& target, const Ray& ray) {
+  return march_exhaustive({.field = target.field, .seam = target.seam}, ray);
+}
+
 // The kind of ground that a shader for the target is specialised for.
 std::uint32_t ground_kind(const DeviceTarget& target, bool starts) {
   return glsl::batch_ground_kind(device_field(*target.field, nullptr).flags | (starts ? glsl::kScarpStarts : 0),
@@ -138,7 +143,8 @@ struct DeviceQueries::Impl {
     runs.ask(
         begin(target.ground->address(), query), [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
         [&](std::size_t i) {
-          return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i], clip_at_top);
+          return exact ? device_ray(*target.field, asked[i], target.seam)
+                       : sampled_device_ray(*target.field, asked[i], clip_at_top);
         },
         [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& hit) {
           answer(i, prepared, hit);
@@ -179,7 +185,7 @@ void DeviceQueries::closest_hits(const DeviceTarget& target, std::span<const Ray
                                  std::span<DeviceRayCost> costs) {
   require_room(rays.size(), hits.size(), costs.size());
   impl_->ask(target, false, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
-    hits[i] = prepared.lingers ? march_exhaustive({target.field}, rays[i]) : hit_from_device(rays[i], prepared, answer);
+    hits[i] = prepared.lingers ? on_host(target, rays[i]) : hit_from_device(rays[i], prepared, answer);
   });
 }
 
@@ -188,7 +194,7 @@ void DeviceQueries::occluded(const DeviceTarget& target, std::span<const Ray> ra
   require_room(rays.size(), blocked.size(), costs.size());
   impl_->ask(target, true, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
     blocked[i] = prepared.lingers
-                     ? static_cast<bool>(march_exhaustive({target.field}, rays[i]))
+                     ? static_cast<bool>(on_host(target, rays[i]))
                      : prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
   });
 }
