@@ -67,15 +67,9 @@ Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row
 the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For inputs other than terrain also
 object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.
 
-Scanner (--scanner), JSON; angles in degrees, lengths in metres:
-  elevations            of the channels: [2, 0, -2] or {"from": 2, "to": -24.8, "count": 64}
-  azimuths              columns of a turn: {"count": 1800}, with "from" and "step" for a part of it
-  rate, turns           turns per second, and how many from a pose (1)
-  pose                  {"at": [x, y, z], "heading": 90, "pitch": 0, "roll": 0}; [x, y] with "above"
-  path                  instead of a pose: a list of these with "time", or the name of a .csv
-  optional              range, noise, mounting, time_offsets, azimuth_offsets
-Points: time, column, channel, azimuth, elevation, range, x,y,z, object. Rays without a hit are left
-out. LAS is version 1.4, point format 6.)";
+Scanner (--scanner), JSON: elevations, azimuths, rate, and a pose or a path of poses; optional:
+turns, range, noise, mounting, time_offsets, azimuth_offsets (doc/user/scanners.md). Points: time,
+column, channel, azimuth, elevation, range, x,y,z, object. LAS is version 1.4, point format 6.)";
 
 struct CastOptions : InputOptions {
   std::string rays, output, coordinates;

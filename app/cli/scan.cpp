@@ -28,12 +28,16 @@ constexpr std::int64_t kColumnsPerStrip = 16;
 constexpr float kScanDegrees = static_cast<float>(180 / std::numbers::pi);
 
 // Replaces coordinates of the file by metres.
-void place_scanner(ScannerFile& file, const ScanOptions& options, const Places& places) {
+void place_scanner(ScannerFile& file, const ScanOptions& options, const ScannedScene& scanned) {
+  const Places& places = scanned.places;
   if (file.lonlat && places.frame().coordinates() != Coordinates::lonlat)
     throw Error(fmt::format("{}: its path has columns lon and lat (give --crs lonlat)", options.scanner));
   for (std::size_t i = 0; i < file.lidar.path.size(); ++i) {
     dvec3& at = file.lidar.path[i].position;
     at = places.world(at, file.places[i]);
+    if (!file.lidar.above_ground || scanned.scene.height(at.x, at.y)) continue;
+    places.on_surface(at, scanned.scene, file.places[i]);
+    throw Error(fmt::format("{}: has no terrain below it (give z, not above)", file.places[i]));
   }
   const dvec3 north = places.frame().direction_to_local({0, 1, 0});
   file.lidar.north = std::atan2(north.x, north.y);
@@ -116,16 +120,25 @@ void take_returns(std::span<const LidarReturn> returns, const CoordinateFrame& f
 std::string scan_finding(const ScanCounts& counts, const ScannedScene& scanned, const LidarScan& scan) {
   if (counts.rays == 0) return "the path is shorter than a column of the scanner: 0 rays, and no points in the output";
   if (counts.hits > 0) return {};
-  if (counts.below > 0)
-    return fmt::format(
-        "nothing was hit: {} of {} rays start below ground and never emerge; check the height of the "
-        "scanner",
-        counts.below, counts.rays);
+  const dvec3 start = scan.lidar().path.front().position;
+  const WorldBox box = ground_box(scanned.scene);
+  const bool over = scanned.scene.endless() ||
+                    (start.x >= box.low.x && start.x <= box.high.x && start.y >= box.low.y && start.y <= box.high.y);
   const std::string bounds = scanned.places.bounds_text(scanned.scene);
-  std::array eye{scan.lidar().path.front().position};
-  if (bounds.empty() || scanned.places.frame().from_local(eye)) return "nothing was hit";
-  return fmt::format("nothing was hit: the scanner is at x {:.8g}, y {:.8g}, the scene in {} coordinates {} (--crs)",
-                     eye[0].x, eye[0].y, name_of(scanned.places.frame().coordinates()), bounds);
+  std::array shown{start};
+  if (!over && !bounds.empty() && !scanned.places.frame().from_local(shown)) {
+    return fmt::format(
+        "nothing was hit: the scanner starts at x {:.8g}, y {:.8g}; the scene is in {} coordinates {} "
+        "(--crs)",
+        shown[0].x, shown[0].y, name_of(scanned.places.frame().coordinates()), bounds);
+  }
+  if (counts.below > 0) {
+    return fmt::format(
+        "nothing was hit: {} of {} rays start below ground, or enter it through its border, and never emerge; check "
+        "the height of the scanner",
+        counts.below, counts.rays);
+  }
+  return fmt::format("nothing was hit: all {} rays end above the ground, or beyond the range", counts.rays);
 }
 
 }  // namespace
@@ -140,7 +153,6 @@ void add_scan_options(Command& command, ScanOptions& o) {
                            .excludes = {"--rays"}});
   command.add(&o.misses, {.names = "--misses",
                           .help = "also rays without a hit, in .csv and .npy",
-                          .common = true,
                           .rules = {needs("--scanner FILE", [&o] { return !o.scanner.empty(); })}});
 }
 
@@ -152,7 +164,7 @@ void check_scan_output(const ScanOptions& options, const std::string& output) {
 
 void run_scan(const ScanOptions& options, ScannerFile file, const ScannedScene& scanned, const std::string& output,
               const std::vector<std::string>& notes, const std::string& device) {
-  place_scanner(file, options, scanned.places);
+  place_scanner(file, options, scanned);
   std::vector<std::string> all_notes = notes;
   std::optional<LidarScan> made;
   try {

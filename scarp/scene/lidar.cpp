@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
 constexpr std::int64_t kMostRays = std::int64_t{1} << 40;
-constexpr std::int64_t kLidarStrip = 16;  // columns of a fan that are walked together
+constexpr std::int64_t kMostColumnsPerCall = std::int64_t{1} << 30;  // fans count them in 32 bits
+constexpr std::int64_t kLidarStrip = 16;                             // columns of a fan that are walked together
 constexpr std::int64_t kLidarGrain = 4096;
 
 bool all_finite(const dvec3& v) { return std::isfinite(v.x + v.y + v.z); }
@@ -227,7 +228,8 @@ void LidarScan::set_range(const dvec3& eye, const dvec3& d, double t, LidarRetur
 
 void LidarScan::cast(std::int64_t first, std::int64_t count, std::vector<LidarReturn>& returns) const {
   if (first < 0 || count < 0 || first > columns_ - count)
-    throw Error(fmt::format("scanner: columns {} to {} of {}", first, first + count, columns_));
+    throw Error(fmt::format("scanner: {} columns from {} on, of {}", count, first, columns_));
+  if (count > kMostColumnsPerCall) throw Error(fmt::format("scanner: {} columns at once (cast fewer)", count));
   returns.resize(static_cast<std::size_t>(count) * lidar_.channels());
   if (terrain_) {
     cast_fan(first, count, returns);

@@ -256,8 +256,8 @@ ScannerFile parse_scanner(std::string_view text, const std::string& folder) {
 ScannerFile read_scanner(const std::string& path) {
   try {
     ScannerFile file = parse_scanner(json_text_of(path, "a scanner"), fs::path(path).parent_path().string());
-    for (std::string& place : file.places) {
-      if (place.starts_with('/')) place = fmt::format("{}: {}", path, place);
+    if (file.files.empty()) {
+      for (std::string& place : file.places) place = fmt::format("{}: {}", path, place);
     }
     return file;
   } catch (const Error& error) {
