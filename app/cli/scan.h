@@ -21,10 +21,10 @@ struct ScanOptions {
 
 void add_scan_options(Command& command, ScanOptions& options);
 
-/// Throws Error for an output that is no kind of point file, or cannot hold misses.
+/// Throws Error if the extension of the output is not that of a point file, or the file cannot hold misses.
 void check_scan_output(const ScanOptions& options, const std::string& output);
 
-/// What a scan needs to know of the input.
+/// The input of a scan.
 struct ScannedScene {
   const Scene& scene;
   const Places& places;

@@ -259,7 +259,7 @@ TEST(LidarScan, TurnsTheShorterWayAtConstantSpeed) {
     const double expected = (350 + 40 * answer.time) * kDegree;
     EXPECT_NEAR(std::remainder(static_cast<double>(answer.azimuth) - expected, 2 * kPi), 0, 1e-5) << answer.time;
   }
-  // Of two orientations about the same axis, the one between turns about it, too.
+  // Orientations between two about the same axis turn about it, too.
   lidar.path[0].heading = lidar.path[1].heading = 0;
   lidar.path[0].pitch = -30 * kDegree, lidar.path[1].pitch = 20 * kDegree;
   for (const LidarReturn& answer : all_of(LidarScan(ground, lidar)))
