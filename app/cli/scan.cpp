@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <glm/common.hpp>
 #include <numbers>
 #include <optional>
 #include <utility>
