@@ -161,9 +161,7 @@ LidarScan::Station LidarScan::placed(const dvec3& position, const glm::dmat3& bo
   station.eye = position;
   if (lidar_.above_ground) {
     const auto ground = scene_.height(position.x, position.y);
-    if (!ground)
-      throw Error(fmt::format("scanner: no ground below its path at ({:.10g}, {:.10g}), in local metres", position.x,
-                              position.y));
+    if (!ground) throw Error("scanner: no ground below its path");
     station.eye.z += *ground;
   }
   station.eye += body * dvec3(m.right, m.forward, m.up);
@@ -185,7 +183,11 @@ LidarScan::Station LidarScan::station_at(double time) const {
   const LidarPose &a = *(later - 1), &b = *later;
   const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
   const glm::dquat body = glm::normalize(glm::slerp(turned(a), turned(b), share));
-  return placed(a.position + share * (b.position - a.position), glm::mat3_cast(body));
+  try {
+    return placed(a.position + share * (b.position - a.position), glm::mat3_cast(body));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} at {:.6g} s", error.what(), time));
+  }
 }
 
 // Rounded to floats: fans trace such directions, and others must not differ from them.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/combine.h"
 
@@ -296,9 +297,17 @@ TEST(LidarScan, HeightsAboveGroundFollowIt) {
   }
   lidar.path[1].position.x = 5000;
   EXPECT_THROW(LidarScan(ground, lidar), Error);
-  // Outside between two poses only.
+  // A hole between two poses.
+  std::vector<float> with_hole(16, 0.0f);
+  with_hole[5] = std::numeric_limits<float>::quiet_NaN();
   lidar.path = {{0, {300, 300, 2.5}, 0, 0, 0}, {1, {-300, 300, 2.5}, 0, 0, 0}, {2, {300, 320, 2.5}, 0, 0, 0}};
-  EXPECT_THROW(all_of(LidarScan(ground, lidar)), Error);
+  EXPECT_THROW(LidarScan(ground, lidar), Error);
+  lidar.path[1].position.x = 100;
+  EXPECT_NO_THROW(all_of(LidarScan(ground, lidar)));
+  const Terrain holed = Terrain::own(with_hole, 4, 4, {.cell_x = 100, .cell_y = 100});
+  lidar.path = {{3, {10, 10, 1}, 0, 0, 0}, {5, {290, 290, 1}, 0, 0, 0}};
+  EXPECT_EQ(test::refusal([&] { all_of(LidarScan(holed, lidar)); }).find("scanner: no ground below its path at 3."),
+            0u);
 }
 
 TEST(LidarScan, NearSurfacesBlockAndFarOnesAreNotSeen) {
