@@ -452,7 +452,6 @@ TEST(ScarpBench, ReportsErrorsInOneLine) {
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
 }
 
-// What scarp-bench says when it is used wrongly, on one line.
 TEST(ScarpBench, ReportsUsageErrorsInOneLine) {
   for (const auto& [arguments, error] : std::map<std::string, std::string>{
            {"heights --sizes 5", "--sizes '5': expected a whole number from 33 to 32767"},

@@ -2,8 +2,8 @@
 // Private to the station: the settings of naive, fixed-step, relaxed and lipschitz in the layout of shaders.
 #pragma once
 
-#include "scarp/march/march_entry.h"
 #include "scarp/march/march_settings.h"
+#include "scarp/march/sampling_kind.h"
 #include "scarp/march/sampling_marches.glsl.h"
 #include "scarp/march/shrink_factor.h"
 

@@ -7,15 +7,12 @@
 // oracle. Techniques do not include the tables.
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 #include "scarp/march/guarantee.h"
+#include "scarp/march/sampling_kind.h"
 
 namespace scarp {
-
-/// How a technique steps along the ray; `none`: it walks cells, voxels or pieces of the ray.
-enum class Sampling : std::uint8_t { none, naive, fixed_step, relaxed, lipschitz };
 
 struct MarchEntry {
   std::string_view name{};  ///< as typed: "max-mip"

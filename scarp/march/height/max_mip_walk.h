@@ -518,8 +518,7 @@ class Walk {
   }
   // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
   bool follow_border_on_entry() {
-    // Wherever the range ends.
-    const bool goes_in = t_in_ <= std::min(x_.exit_time(), y_.exit_time());
+    const bool goes_in = t_in_ <= std::min(x_.exit_time(), y_.exit_time());  // wherever the range ends
     return follow_border(rim(grid_ray()).first_time(), goes_in ? t_in_ : rim(grid_ray()).last_time(), goes_in);
   }
   void follow_border_on_exit() {
