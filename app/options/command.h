@@ -78,7 +78,7 @@ class Command {
 /// Whether `option` is in given().
 bool is_given(const std::vector<std::string>& given, std::string_view option);
 
-/// What a program says of itself.
+/// The name and texts of a program.
 struct ProgramAbout {
   std::string name{};     ///< "scarp"
   std::string version{};  //
