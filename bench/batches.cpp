@@ -10,14 +10,26 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/fields.h"
 #include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
+#include "bench/trace_options.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
 
 namespace scarp::bench {
 namespace {
+
+// `batches`: the library's batch calls with batches of several sizes.
+struct BatchesOptions {
+  TraceOptions trace;
+  std::vector<std::string> classes{"primary", "ao"};
+  std::vector<double> batches{10, 100, 1e3, 1e4, 1e6, 1e7};  // rays
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -53,8 +65,6 @@ std::vector<Ray> repeated(const std::vector<Ray>& rays, std::size_t count) {
   }
   return more;
 }
-
-}  // namespace
 
 void run_batches(const BatchesOptions& options, const ReportOptions& report) {
   std::vector<RayClass> classes;
@@ -93,6 +103,17 @@ void run_batches(const BatchesOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 2);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_batches(cli::Program& program) {
+  auto [command, o] = add_command<BatchesOptions>(
+      program, "batches", "The library's batch calls, from ten rays to ten million", run_batches);
+  add_size_option(command, o.trace.field.size);
+  add_classes_option(command, o.classes, {"primary", "shadow", "grazing", "ao"});
+  command.add(cli::List<double>{&o.batches}, {.names = "--batches", .help = "rays per batch", .range = {1, 1e8}});
+  add_trace_options(command, o.trace);
 }
 
 }  // namespace scarp::bench

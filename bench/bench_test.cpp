@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,7 +23,7 @@
 namespace {
 
 using nlohmann::json;
-using scarp::bench::expect_fields, scarp::bench::expect_head, scarp::bench::output_of;
+using scarp::bench::expect_documented, scarp::bench::output_of;
 
 // The output of a command that must succeed, or fail.
 std::string text_of(const std::string& arguments, bool succeeds) {
@@ -38,36 +39,8 @@ std::string text_of(const std::string& arguments, bool succeeds) {
 TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
   const json all =
       output_of("naive --size 129 --exaggerations 1,4 --rays small --repeats 1 --judged 2000 --pass-limit 0.02");
-  expect_head(all);
+  expect_documented(all, "naive");
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"size",
-                        "class",
-                        "engine",
-                        "mode",
-                        "threads",
-                        "exaggeration",
-                        "mrays_per_s",
-                        "mrays_per_cpu_s",
-                        "max_mip_ratio",
-                        "article_ratio",
-                        "step_factor",
-                        "min_step",
-                        "max_mip_simd_ratio",
-                        "tolerance",
-                        "miss_rate",
-                        "late_rate",
-                        "early_rate",
-                        "false_rate",
-                        "error_p99",
-                        "exhausted",
-                        "steps_per_ray",
-                        "judged",
-                        "rays",
-                        "spread",
-                        "busy",
-                        "field",
-                        "relief",
-                        "mean_slope_deg"});
     if (row["mode"] == "naive-fair") {
       EXPECT_LT(row["miss_rate"], 0.001);
       EXPECT_EQ(row["exhausted"], 0.0);
@@ -80,20 +53,17 @@ TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
 
 TEST(ScarpBench, BatchesRunsAllSizes) {
   const json all = output_of("batches --size 129 --rays small --repeats 1 --batches 10,5000");
-  expect_head(all);
+  expect_documented(all, "batches");
   EXPECT_EQ(all["rows"].size(), 2u * 2u * 2u);  // classes, orders, sizes
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"class", "order", "threads", "batch", "mrays_per_s", "us_per_batch", "field", "size"});
     EXPECT_NEAR(row["mrays_per_s"].get<double>() * row["us_per_batch"].get<double>(), row["batch"].get<double>(), 1e-6);
   }
 }
 
 TEST(ScarpBench, ExtentsMatchWindows) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
-  expect_head(all);
+  expect_documented(all, "extents");
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"cols", "rows", "sample_type", "bytes_per_sample", "fill_s", "build_s", "gsamples_per_s",
-                        "rays", "ns_per_ray", "primary_ns", "shadow_ns", "grazing_ns", "ao_ns", "lost", "different"});
     EXPECT_EQ(row["lost"], 0);
     EXPECT_EQ(row["different"], 0);
   }
@@ -101,18 +71,13 @@ TEST(ScarpBench, ExtentsMatchWindows) {
 
 TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
   const json all = output_of("pyramid --sizes 2,129 --repeats 1");
-  expect_head(all);
-  for (const json& row : all["rows"]) {
-    expect_fields(row, {"size", "sample_type", "threads", "build_s", "gsamples_per_s", "bytes_per_sample", "busy"});
-  }
+  expect_documented(all, "pyramid");
 }
 
 TEST(ScarpBench, MapsWritesTheDocumentedFields) {
   const json all = output_of("maps --sizes 65 --repeats 1 --judged 100 --programs none");
-  expect_head(all);
+  expect_documented(all, "maps");
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"size", "map", "threads", "seconds", "ns_per_node", "cpu_ns_per_node", "skipped", "careful",
-                        "walked", "positive", "judged", "wrong"});
     EXPECT_EQ(row["wrong"], 0);
   }
 }
@@ -121,7 +86,6 @@ TEST(ScarpBench, MapsMeasuresLinesOfSight) {
   const json all = output_of("maps --sizes 1024 --repeats 1 --judged 1000 --lines 1000 --programs none");
   for (const json& row : all["rows"]) {
     if (row["map"] != "lines of sight") continue;
-    expect_fields(row, {"size", "threads", "lines", "height", "seconds", "ns_per_line", "positive", "judged", "wrong"});
     EXPECT_EQ(row["judged"], 1000);
     EXPECT_EQ(row["wrong"], 0);
   }
@@ -135,7 +99,6 @@ TEST(ScarpBench, MapsMeasuresPrograms) {
   std::set<std::string> maps;
   for (const json& row : all["rows"]) {
     if (!row.contains("program")) continue;
-    expect_fields(row, {"size", "map", "program", "seconds", "cpu_s", "peak_mb", "scarp_ratio", "judged", "wrong"});
     EXPECT_GT(row["seconds"], 0);
     EXPECT_EQ(row["judged"], row["map"] == "cumulative" ? 33 : 65 * 65);
     EXPECT_EQ(row["wrong"], 0);
@@ -147,18 +110,14 @@ TEST(ScarpBench, MapsMeasuresPrograms) {
 
 TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
   const json all = output_of("volumes --side 64 --repeats 1");
-  expect_head(all);
+  expect_documented(all, "volumes");
   EXPECT_EQ(all["rows"].size(), 4u);
-  for (const json& row : all["rows"])
-    expect_fields(row, {"side", "type", "colours", "build_s", "plain_read_s", "ratio"});
 }
 
 TEST(ScarpBench, LeaksFindsNoneAndIsReproducible) {
   const json all = output_of("leaks --rays 200000 --large 129 --seed 5 --judge-every 64 --dump /nowhere/none");
-  expect_head(all);
+  expect_documented(all, "leaks");
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"class", "rays", "hit_share", "must_hit", "lost", "false", "contradictions", "judged", "ties",
-                        "embree_rays", "embree_lost", "embree_lost_share", "seed"});
     SCOPED_TRACE(row.dump());
     EXPECT_GT(row["rays"], 0);
     EXPECT_EQ(row["lost"], 0);
@@ -176,30 +135,21 @@ TEST(ScarpBench, LeaksFindsNoneAndIsReproducible) {
 
 TEST(ScarpBench, EditsWritesTheDocumentedFields) {
   const json all = output_of("edits --size 129 --rect 16 --edits 5");
-  expect_head(all);
+  expect_documented(all, "edits");
   EXPECT_EQ(all["rows"].size(), 2u);
-  for (const json& row : all["rows"]) {
-    expect_fields(row, {"size", "rect", "sample_type", "edits", "median_us", "p99_us", "rebuild_us"});
-  }
 }
 
 TEST(ScarpBench, VoxelEditsWritesTheDocumentedFields) {
   const json all = output_of("voxel-edits --side 40 --radius 4 --edits 3");
-  expect_head(all);
+  expect_documented(all, "voxel-edits");
   EXPECT_EQ(all["rows"].size(), 9u);
-  for (const json& row : all["rows"]) {
-    expect_fields(row, {"scene", "accelerator", "side", "radius", "add_ms", "add_worst_ms", "remove_ms",
-                        "remove_worst_ms", "rebuild_ms"});
-  }
 }
 
 TEST(ScarpBench, VoxelWorldsWritesTheDocumentedFieldsAndMarchesAgree) {
   const json all = output_of("voxel-worlds --side 600 --width 16 --repeats 1 --planes");
-  expect_head(all);
+  expect_documented(all, "voxel-worlds");
   EXPECT_GE(all["rows"].size(), 4u);
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"side", "solid", "engine", "mode", "mrays_per_cpu_s", "hit_share", "other_ppm", "mib",
-                        "grid_mib", "build_s", "build_peak_mib"});
     if (row["engine"] != "nanovdb-hdda") {
       EXPECT_EQ(row["other_ppm"], 0);
       EXPECT_GT(row["hit_share"], 0.5);
@@ -209,41 +159,30 @@ TEST(ScarpBench, VoxelWorldsWritesTheDocumentedFieldsAndMarchesAgree) {
 
 TEST(ScarpBench, ScenesWritesTheDocumentedFields) {
   const json all = output_of("scenes --objects 100,1000 --rays 1000 --repeats 1");
-  expect_head(all);
+  expect_documented(all, "scenes");
   EXPECT_EQ(all["rows"].size(), 2u);
-  for (const json& row : all["rows"]) {
-    expect_fields(
-        row, {"objects", "build_s", "bytes_per_object", "rays", "hits", "boxes_per_ray", "steps_per_ray",
-              "mrays_per_cpu_s", "move_us", "move_p99_us", "far_move_us", "worst_move_us", "edited_mrays_per_cpu_s"});
-  }
 }
 
 TEST(ScarpBench, VoxelsWritesTheDocumentedFieldsAndMarchesAgree) {
   const json all =
       output_of("voxels --sets standard,degenerate --thousands 1 --stride 16 --width 16 --block 2 --repeats 1");
-  expect_head(all);
+  expect_documented(all, "voxels");
   std::map<std::string, int> rows;
   for (const json& row : all["rows"]) {
     const std::string table = row["table"];
     ++rows[table];
     if (table == "build") {
-      expect_fields(row, {"set", "builder", "us", "bytes"});
       continue;
     }
     if (table == "colours") {
-      expect_fields(row, {"of", "way", "bytes", "ns", "us"});
       continue;
     }
-    expect_fields(row, {"set", "engine", "mode", "mrays_per_cpu_s", "hit_share", "lost_ppm", "other_ppm", "main_mib"});
-    if (table == "frame") expect_fields(row, {"objects", "box", "ms_per_frame"});
     // NanoVDB's answers are its own.
     const std::string engine = row["engine"];
     if (!engine.starts_with("voxel-") && engine != "embree-user") continue;
     EXPECT_EQ(row["lost_ppm"], 0) << row;
     EXPECT_EQ(row["other_ppm"], 0) << row;
     if (table == "grid" || engine == "embree-user") continue;
-    expect_fields(row, {"steps_per_ray", "boxes_per_ray", "bytes_per_object", "bytes_per_object_lossless",
-                        "mib_per_1k_distinct", "mib_per_1k_lossless", "mib_per_1k_instanced", "scene_build_s"});
   }
   EXPECT_EQ(rows["colours"], 4);
   EXPECT_EQ(rows["frame"], 2 * (24 + 4));
@@ -252,9 +191,8 @@ TEST(ScarpBench, VoxelsWritesTheDocumentedFieldsAndMarchesAgree) {
 
 TEST(ScarpBench, VoxelLeaksFindsNone) {
   const json all = output_of("voxel-leaks --rays 50000 --judge-every 8");
-  expect_head(all);
+  expect_documented(all, "voxel-leaks");
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"kind", "rays", "hits", "judged", "wrong"});
     EXPECT_EQ(row["wrong"], 0);
     EXPECT_GT(row["hits"], 1000);
   }
@@ -264,11 +202,9 @@ TEST(ScarpBench, PixelMatchFindsNoDifference) {
   const json all = output_of(
       "pixel-match --sets degenerate --thousands 1 --width 96 --height 54 --cameras post "
       "--marches voxel-planes,voxel-octants");
-  expect_head(all);
+  expect_documented(all, "pixel-match");
   EXPECT_EQ(all["rows"].size(), 2U);
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"set", "objects", "camera", "march", "way", "width", "height", "hits", "near_edges", "differ",
-                        "near_edge_wrong", "triangles_differ", "triangles_beside", "ray_pixels", "t_error"});
     EXPECT_EQ(row["way"], "cpu");
     EXPECT_EQ(row["differ"], 0);
     EXPECT_EQ(row["near_edge_wrong"], 0);
@@ -279,12 +215,9 @@ TEST(ScarpBench, PixelMatchFindsNoDifference) {
 
 TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
   const json all = output_of("render --period 64 --width 40 --height 30 --cameras 2 --repeats 1 --judge-every 3");
-  expect_head(all);
+  expect_documented(all, "render");
   double stepped = 0;
   for (const json& row : all["rows"]) {
-    expect_fields(row,
-                  {"engine", "way", "air", "threads", "ms_per_frame", "cpu_ms_per_frame", "device_ms_per_frame",
-                   "frames_per_s", "dry_ratio", "fixed_step_ratio", "judged_pixels", "wrong_percent", "water_percent"});
     EXPECT_EQ(row["engine"], "cpu");
     EXPECT_EQ(row["judged_pixels"], 2 * 400);
     if (row["way"] == "max-mip") {
@@ -319,7 +252,7 @@ TEST(ScarpBench, VoxelsOnDeviceMatchCpu) {
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
   const json all = output_of("voxels --device auto --sets degenerate --thousands 1 --height 36 --repeats 1");
-  expect_head(all);
+  expect_documented(all, "voxels");
   std::map<std::string, int> ways;
   for (const json& row : all["rows"]) {
     SCOPED_TRACE(row.dump());
@@ -327,9 +260,6 @@ TEST(ScarpBench, VoxelsOnDeviceMatchCpu) {
     EXPECT_GT(row["ms"], 0.0);
     EXPECT_LT(row["device_mib"], 2.0);
     if (row["engine"] == "triangles") continue;
-    expect_fields(row, {"table", "set", "objects", "height", "engine", "way", "box", "ms", "steps_per_ray",
-                        "boxes_per_ray", "again_per_million", "hit_share", "wrong", "device_mib", "mib_per_1k_distinct",
-                        "picture_mib", "device", "driver"});
     EXPECT_EQ(row["wrong"], 0);
   }
   // Five marches in grids and in bounds.
@@ -342,25 +272,9 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
   const json all = output_of("gpu --sizes 129 --rays small --judged 2000 --repeats 1");
-  expect_head(all);
+  expect_documented(all, "gpu");
   std::set<std::string> classes, modes;
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"size",           "class",
-                        "mode",           "mrays_per_s",
-                        "max_mip_ratio",  "fetches_per_ray",
-                        "fetch_ratio",    "steps_per_ray",
-                        "step_ratio",     "article_ratio",
-                        "step_factor",    "min_step",
-                        "tolerance",      "wrong_rate",
-                        "miss_rate",      "false_rate",
-                        "late_rate",      "early_rate",
-                        "error_p99",      "judged",
-                        "rays",           "hit_share",
-                        "spread",         "build_ms",
-                        "gsamples_per_s", "bytes_per_sample",
-                        "device",         "driver",
-                        "field",          "relief",
-                        "mean_slope_deg", "exaggeration"});
     SCOPED_TRACE(row.dump());
     const std::string ray_class = row["class"], mode = row["mode"];
     classes.insert(ray_class);
@@ -442,12 +356,10 @@ TEST(ScarpBench, DrawnGridDepthsMatchRays) {
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
   const json all = output_of("gpu --raster --sizes 129,200 --rays small --repeats 1");
-  expect_head(all);
+  expect_documented(all, "gpu --raster");
   std::multiset<std::string> modes;
   for (const json& row : all["rows"]) {
     SCOPED_TRACE(row.dump());
-    expect_fields(row, {"size", "mode", "ms", "spread", "mesh_ratio", "pixels", "triangles_per_pixel", "hit_share",
-                        "differing_rate", "one_alone_rate", "unexplained_rate", "device", "driver", "field"});
     modes.insert(row["mode"].get<std::string>());
     EXPECT_GT(row["ms"], 0.0);
     EXPECT_GT(row["hit_share"], 0.4);
@@ -462,37 +374,10 @@ TEST(ScarpBench, DrawnGridDepthsMatchRays) {
 TEST(ScarpBench, SimtComparesBundlesAtEqualError) {
   const std::string command = "simt --sizes 129 --rays small --groups 8 --classes chunk,primary --wrong-limit 0.01";
   const json all = output_of(command);
-  expect_head(all);
+  expect_documented(all, "simt");
   std::multiset<std::string> modes;
   std::map<std::string, double> turns_of_32;
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"size",
-                        "class",
-                        "mode",
-                        "bundle",
-                        "turns",
-                        "turns_per_ray",
-                        "walk_runs",
-                        "walk_instructions",
-                        "instructions",
-                        "vector_instructions",
-                        "memory_instructions",
-                        "fetches",
-                        "lines_128",
-                        "lines_64",
-                        "max_mip_instructions",
-                        "max_mip_memory",
-                        "max_mip_lines_128",
-                        "max_mip_lines_64",
-                        "wrong_rate",
-                        "judged",
-                        "second_pass_rate",
-                        "step_factor",
-                        "min_step",
-                        "field",
-                        "relief",
-                        "mean_slope_deg",
-                        "compilers"});
     SCOPED_TRACE(row.dump());
     const std::string mode = row["mode"];
     modes.insert(mode);
@@ -525,9 +410,8 @@ TEST(ScarpBench, SimtComparesBundlesAtEqualError) {
 
 TEST(ScarpBench, SeamsLoseNoRay) {
   const json all = output_of("seams --rays 200000");
-  expect_head(all);
+  expect_documented(all, "seams");
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"terrain", "aim", "rays", "lost", "any_hit_lost", "seed"});
     EXPECT_EQ(row["lost"], 0) << row;
     EXPECT_EQ(row["any_hit_lost"], 0) << row;
   }
@@ -535,17 +419,15 @@ TEST(ScarpBench, SeamsLoseNoRay) {
 
 TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
   const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
-  expect_head(all);
+  expect_documented(all, "sweeps");
   int judged = 0;
   for (const json& row : all["rows"]) {
     if (row.contains("tunnelled")) {
       ++judged;
-      expect_fields(row, {"class", "sweeps", "contacts", "tunnelled", "untouched", "seed"});
       EXPECT_EQ(row["tunnelled"], 0) << row;
       EXPECT_EQ(row["untouched"], 0) << row;
       continue;
     }
-    expect_fields(row, {"class", "sweeps", "scarp_us", "bullet_us", "ratio", "contacts", "bullet_contacts", "differ"});
     // Bullet computes in float: it may decide grazing rays differently.
     EXPECT_LE(row["differ"].get<int>(), row["sweeps"].get<int>() / 50 + 1) << row;
   }
@@ -571,58 +453,46 @@ TEST(ScarpBench, ReportsErrorsInOneLine) {
 }
 
 TEST(ScarpBench, ReportsUsageErrorsInOneLine) {
-  for (const char* arguments : {"", "heights --sizes 5", "heights --sizes much", "heights --size 129", "hights"}) {
-    const std::string file =
-        (std::filesystem::temp_directory_path() / fmt::format("scarp-bench-{}.err", getpid())).string();
-    const int status = std::system(fmt::format("'{}' {} 2> '{}'", SCARP_BENCH_PROGRAM, arguments, file).c_str());
-    std::ifstream stream(file);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    std::filesystem::remove(file);
-    EXPECT_EQ(WEXITSTATUS(status), 2) << arguments;
-    EXPECT_EQ(text.find("scarp-bench: "), 0u) << text;
+  for (const auto& [arguments, error] : std::map<std::string, std::string>{
+           {"heights --sizes 5", "--sizes '5': expected a whole number from 33 to 32767"},
+           {"heights --sizes 129,much", "--sizes 'much': expected a whole number from 33 to 32767"},
+           {"heights --size 129", "unknown option '--size' (did you mean '--sizes'? see 'scarp-bench heights --help')"},
+           {"heights --classes primary,sideways", "--classes 'sideways': expected primary, shadow, "},
+           {"heights --csv /nowhere/rows.csv", "/nowhere/rows.csv"},
+           {"leaks --fan-margin 2", "--fan-margin has no effect without --fans"},
+           {"leaks --rays 1.5", "--rays '1.5': expected a whole number"},
+           {"extents --sizes 65536x512,12", "--sizes '12': expected COLSxROWS"},
+           {"voxel-models", "FILE is required"},
+           {"hights", "unknown subcommand 'hights' (did you mean 'heights'? available: heights, "}}) {
+    const std::string text = text_of(arguments + " 2>&1 > /dev/null", false);
+    EXPECT_EQ(text.find("scarp-bench: error: "), 0u) << text;
+    EXPECT_NE(text.find(error), std::string::npos) << text;
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-    EXPECT_NE(text.find("--help' tells what there is"), std::string::npos) << text;
   }
+  EXPECT_NE(text_of("2>&1", false).find("Usage: scarp-bench SUBCOMMAND"), std::string::npos);
 }
 
-// NaN is neither too small nor too large; a run over NaN rays would trace none and find nothing wrong.
-TEST(ScarpBench, NumbersAreFinite) {
-  std::map<std::string, std::vector<std::string>> options = {
-      {"--rays", {"leaks", "voxel-leaks", "function-leaks"}},
-      {"--embree-rays", {"leaks"}},
-      {"--fan-margin", {"leaks"}},
-      {"--pass-limit", {"heights", "survey", "naive", "batches", "simd", "voxels"}},
-      {"--exaggerations", {"heights", "naive", "batches", "simd"}},
-      {"--miss-limit", {"naive"}},
-      {"--batches", {"batches"}},
-  };
-#ifdef SCARP_BENCH_VULKAN
-  for (const char* option : {"--pass-limit", "--exaggerations", "--miss-limit"}) options[option].push_back("gpu");
-#endif
-  for (const auto& [option, commands] : options) {
-    for (const std::string& command : commands) {
-      for (const std::string value : {"nan", "inf", "-1"}) {
-        const std::string text = text_of(fmt::format("{} {}={} 2>&1 > /dev/null", command, option, value), false);
-        EXPECT_NE(text.find(fmt::format("{} '{}': expected a ", option, value)), std::string::npos)
-            << command << ": " << text;
+// Every declared number refuses what is none, or out of its range.
+TEST(ScarpBench, RefusesNumbersThatAreNotFinite) {
+  const std::regex option("\n  (--[a-z-]+) (F|N)(,\\.\\.\\.)? ");
+  const std::string program = text_of("--help", true);
+  const std::regex command("\n  ([a-z-]+)  ");
+  std::set<std::string> found;
+  for (std::sregex_iterator it(program.begin(), program.end(), command), end; it != end; ++it) {
+    const std::string name = (*it)[1], help = text_of(name + " --help all", true);
+    for (std::sregex_iterator number(help.begin(), help.end(), option); number != end; ++number) {
+      const std::string to = (*number)[1];
+      found.insert(name + " " + to);
+      if (name == "voxel-models") continue;  // needs files
+      for (const std::string value : {"nan", "1e999"}) {
+        const std::string text = text_of(fmt::format("{} {}={} 2>&1 > /dev/null", name, to, value), false);
+        EXPECT_NE(text.find(fmt::format("{} '{}': expected a ", to, value)), std::string::npos) << name << ": " << text;
         EXPECT_LT(text.size(), 200u) << text;
       }
     }
   }
-  const auto count = [&](const std::string& command) {
-    const std::string text = text_of(command + " --help", true);
-    int found = 0;
-    for (auto at = text.find(" FLOAT"); at != std::string::npos; at = text.find(" FLOAT", at + 1)) ++found;
-    return found;
-  };
-  for (const std::string command :
-       {"heights", "survey", "naive", "batches", "simd", "voxels", "leaks", "voxel-leaks", "function-leaks", "scenes",
-        "render", "functions", "shapes", "pixel-match", "pyramid", "edits", "extents"}) {
-    int listed = 0;
-    for (const auto& [option, commands] : options)
-      listed += static_cast<int>(std::count(commands.begin(), commands.end(), command));
-    EXPECT_EQ(count(command), listed) << command << ": an option with a number is not in the list above";
-  }
+  EXPECT_GT(found.size(), 100u);
+  EXPECT_TRUE(found.contains("leaks --fan-margin"));
 }
 
 }  // namespace

@@ -4,12 +4,24 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/report.h"
 #include "scarp/base/error.h"
 
 namespace scarp::bench {
+namespace {
 
+// `devices`: the Vulkan devices of this machine; with SCARP_VULKAN, as `gpu` and `shaders`.
+struct DevicesOptions {
+  std::string device = "auto";  // DeviceSettings::choice
+};
+
+// Throws Error if there is no device, or none matches the choice.
 void run_devices(const DevicesOptions& options) {
   const DeviceList list = list_devices();
   if (list.devices.empty()) throw Error(list.why_none);
@@ -23,6 +35,15 @@ void run_devices(const DevicesOptions& options) {
                      device.usable() ? "yes" : "no: it lacks " + device.missing});
   }
   print_table(lines, lines.front().size());
+}
+
+}  // namespace
+
+void add_devices(cli::Program& program) {
+  cli::Command& command = program.add("devices", "The Vulkan devices of this machine; *: the chosen one");
+  const auto options = std::make_shared<DevicesOptions>();
+  command.add(&options->device, {.names = "--device", .value = "NAME", .help = "auto, gpu, cpu or part of a name"});
+  command.runs([options] { run_devices(*options); });
 }
 
 }  // namespace scarp::bench

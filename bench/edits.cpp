@@ -7,13 +7,23 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "scarp/accel/live_field.h"
 #include "scarp/base/error.h"
 
 namespace scarp::bench {
 namespace {
+
+// `edits`: time until an edit of a rectangle is visible to queries.
+struct EditsOptions {
+  int size = 16385;  // samples per side
+  int rect = 256;    // samples per side of the rectangle
+  int edits = 200;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -55,8 +65,6 @@ Json measure(const EditsOptions& options) {
   return row;
 }
 
-}  // namespace
-
 void run_edits(const EditsOptions& options, const ReportOptions& report) {
   if (options.rect > options.size) {
     throw Error(
@@ -73,6 +81,16 @@ void run_edits(const EditsOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 3);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_edits(cli::Program& program) {
+  auto [command, o] = add_command<EditsOptions>(program, "edits", "How soon an edit is visible to queries", run_edits);
+  command.add(&o.size, {.names = "--size", .help = "samples per side", .range = {2, 65536}});
+  command.add(&o.rect,
+              {.names = "--rect", .help = "samples per side of the rectangle that is edited", .range = {1, 65536}});
+  command.add(&o.edits, {.names = "--edits", .help = "counted edits", .range = {1, 100000}});
 }
 
 }  // namespace scarp::bench

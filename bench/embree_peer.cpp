@@ -10,6 +10,7 @@
 #include "bench/embree_modes.h"
 #include "bench/instruction_set.h"
 #include "bench/protocol.h"
+#include "bench/rays.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 

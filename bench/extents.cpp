@@ -6,14 +6,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/fields.h"
 #include "bench/protocol.h"
 #include "bench/random.h"
 #include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -22,6 +28,12 @@
 
 namespace scarp::bench {
 namespace {
+
+// `extents`: the largest fields, int16, compared with windows cut out of them.
+struct ExtentsOptions {
+  std::vector<std::pair<int, int>> sizes{{65536, 512}, {65536, 65536}};  // columns and rows
+  std::int64_t windows = 256;                                            // each with 256 rays
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -156,8 +168,6 @@ Json measure(int cols, int rows, const ExtentsOptions& options) {
   return row;
 }
 
-}  // namespace
-
 void run_extents(const ExtentsOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"samples", "type", "B/sample", "build s", "Gsamples/s", "rays", "ns/ray",
@@ -176,6 +186,39 @@ void run_extents(const ExtentsOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 2);
   write_json(report, rows);
+}
+
+// "65536x512,65536x65536".
+std::vector<std::pair<int, int>> sizes_from(const std::string& text) {
+  constexpr int kMost = 65537;
+  std::vector<std::pair<int, int>> sizes;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string size = text.substr(begin, end - begin);
+    int cols = 0, rows = 0, read = 0;
+    if (std::sscanf(size.c_str(), "%dx%d%n", &cols, &rows, &read) != 2 || size.c_str()[read] != '\0' ||
+        std::max(cols, rows) > kMost || std::min(cols, rows) < 1) {
+      throw cli::WrongUsage(
+          fmt::format("--sizes '{}': expected COLSxROWS, each at most {}, for example 65536x512", size, kMost));
+    }
+    sizes.emplace_back(cols, rows);
+    begin = end + 1;
+  }
+  return sizes;
+}
+
+}  // namespace
+
+void add_extents(cli::Program& program) {
+  auto [command, o] = add_command<ExtentsOptions>(program, "extents",
+                                                  "The largest fields, beside windows cut out of them", run_extents);
+  command.add([&sizes = o.sizes](const std::string& text) { sizes = sizes_from(text); },
+              {.names = "--sizes",
+               .value = "COLSxROWS,...",
+               .help = "samples of the fields",
+               .note = "65536x65536 takes 15 GB",
+               .fallback = "65536x512,65536x65536"});
+  command.add(&o.windows, {.names = "--windows", .help = "windows, of 256 rays each", .range = {1, 1e6}});
 }
 
 }  // namespace scarp::bench

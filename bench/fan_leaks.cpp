@@ -15,10 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/commands.h"
 #include "bench/leak_fields.h"
+#include "bench/leaks_options.h"
 #include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/max_mip.h"

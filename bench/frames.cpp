@@ -9,8 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/protocol.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/frame/picture.h"
@@ -23,6 +26,16 @@
 
 namespace scarp::bench {
 namespace {
+
+// `render`: frames of the look `comanche`.
+struct FramesOptions {
+  int period = 1024;  // samples from repetition to repetition, even, 64..8192
+  int width = 320, height = 240, steps = 256;
+  int threads = 2, cameras = 8, repeats = 9;
+  std::uint64_t seed = 1;
+  int judge_every = 16;  // one pixel in this many is also traced by exhaustive
+  std::string device;    // a Vulkan device besides the CPU, as in `scarp render --device`; empty: none
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -208,8 +221,8 @@ struct FrameTimes {
   std::vector<double> wall_ms, cpu_ms, device_ms;
 };
 
-}  // namespace
-
+// Throws Error, after the report, if the exact march has a wrong pixel, on a device more than one in a thousand: in
+// single precision a ray may pass a crest on its other side.
 void run_frames(const FramesOptions& options, const ReportOptions& report) {
   if (options.period % 2 != 0) throw Error(fmt::format("--period {}: expected an even number", options.period));
   const ThreadLimit limit(options.threads);
@@ -300,6 +313,30 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
     throw Error(fmt::format("render: {:.3g} % of the pixels of max-mip are wrong", 100 * worst_exact));
   if (worst_on_device > kBesideEdges)
     throw Error(fmt::format("render: {:.3g} % of max-mip's pixels on the device are wrong", 100 * worst_on_device));
+}
+
+}  // namespace
+
+void add_frames(cli::Program& program) {
+  auto [command, o] = add_command<FramesOptions>(
+      program, "render", "Frames of the look comanche over endless ground: milliseconds and wrong pixels", run_frames);
+  command.add(
+      &o.period,
+      {.names = "--period", .help = "samples from repetition to repetition, an even number", .range = {64, 8192}});
+  command.add(&o.width, {.names = "--width", .help = "pixels", .range = {1, 16384}});
+  command.add(&o.height, {.names = "--height", .help = "pixels", .range = {1, 16384}});
+  command.add(&o.steps, {.names = "--steps", .help = "steps of fixed-step", .range = {1, 65536}});
+  command.add(&o.threads, {.names = "--threads", .help = "threads", .range = {1, 1024}});
+  command.add(&o.cameras, {.names = "--cameras", .help = "cameras along a flight", .range = {1, 1000}});
+  add_repeats_option(command, o.repeats, "counted passes over the flight");
+  command.add(&o.seed, {.names = "--seed", .help = "seed of the ground"});
+  command.add(
+      &o.judge_every,
+      {.names = "--judge-every", .help = "one pixel in so many is also traced by exhaustive", .range = {1, 1 << 20}});
+  command.add(&o.device, {.names = "--device",
+                          .value = "NAME",
+                          .help = "a Vulkan device beside the CPU",
+                          .note = "cpu, gpu, auto or part of a name"});
 }
 
 }  // namespace scarp::bench

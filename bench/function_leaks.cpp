@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/function/function_exhaustive.h"
@@ -20,6 +22,13 @@
 
 namespace scarp::bench {
 namespace {
+
+// `function-leaks`: the conservative marches over the example functions, every ray judged.
+struct FunctionLeaksOptions {
+  std::int64_t rays = 1'000'000;  // in all
+  std::uint64_t seed = 1;
+  bool all = false;  // the approximate marches as well
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -67,8 +76,7 @@ struct Row {
   std::vector<Counts> marches;
 };
 
-}  // namespace
-
+// Throws Error, after the report, if a conservative march was wrong.
 void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions& report) {
   std::vector<const FunctionMarchEntry*> marches;
   for (const FunctionMarchEntry& march : function_marches()) {
@@ -133,6 +141,16 @@ void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions
   print_table(lines, 2);
   write_json(report, rows);
   if (wrong > 0) throw Error("function-leaks: a conservative march was wrong; see lost, false and below in the table");
+}
+
+}  // namespace
+
+void add_function_leaks(cli::Program& program) {
+  auto [command, o] = add_command<FunctionLeaksOptions>(
+      program, "function-leaks", "Very many rays at terrain functions; fails if Scarp loses one", run_function_leaks);
+  command.add(&o.rays, {.names = "--rays", .help = "rays in all", .range = {1, 1e15}});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of the rays"});
+  command.add(&o.all, {.names = "--all", .help = "the approximate marches as well"});
 }
 
 }  // namespace scarp::bench

@@ -15,7 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/height_function.h"
@@ -28,6 +31,17 @@
 
 namespace scarp::bench {
 namespace {
+
+// `functions`: the marches over terrain functions, checked by proofs.
+struct FunctionsOptions {
+  int width = 480, height = 270;  // pixels
+  int octaves = 9;                // of the fractals
+  std::uint64_t seed = 1;
+  int repeats = 3;
+  std::int64_t judged = 4000;  // about this many rays per function are judged
+  bool presets = false;        // instead of the marches: the presets of known shaders and lipschitz-local
+  std::string device;          // a Vulkan device, as in `scarp render --device`; empty: none
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -134,8 +148,7 @@ std::vector<March> marches_over_functions(const FunctionsOptions& options) {
   return all;
 }
 
-}  // namespace
-
+// Throws Error, after the report, if a conservative march lost a crossing.
 void run_functions(const FunctionsOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"function", "march", "heights/ray", "bounds/ray", "ms/megapixel",
@@ -226,6 +239,26 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
   print_table(lines, 2);
   write_json(report, rows);
   if (lost) throw Error("functions: a conservative march lost a crossing that the judge proves; see the table");
+}
+
+}  // namespace
+
+void add_functions(cli::Program& program) {
+  auto [command, o] = add_command<FunctionsOptions>(program, "functions",
+                                                    "The marches over terrain functions, beside proofs", run_functions);
+  command.add(&o.width, {.names = "--width", .help = "pixels", .range = {1, 16384}});
+  command.add(&o.height, {.names = "--height", .help = "pixels", .range = {1, 16384}});
+  command.add(&o.octaves, {.names = "--octaves", .help = "octaves of the fractals", .range = {1, 20}});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of the noise"});
+  add_repeats_option(command, o.repeats);
+  command.add(&o.judged,
+              {.names = "--judged", .help = "rays per function that are judged, about", .range = {1, 0x1p40}});
+  command.add(&o.presets, {.names = "--presets",
+                           .help = "the presets of known shaders beside lipschitz-local, instead of the marches"});
+  command.add(&o.device, {.names = "--device",
+                          .value = "NAME",
+                          .help = "the marches on a Vulkan device, too",
+                          .note = "cpu, gpu, auto or part of a name"});
 }
 
 }  // namespace scarp::bench

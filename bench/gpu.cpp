@@ -17,11 +17,18 @@
 #include <tuple>
 #include <utility>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/device_seconds.h"
+#include "bench/fields.h"
+#include "bench/gpu_options.h"
 #include "bench/judge.h"
 #include "bench/naive_search.h"
+#include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/queries_vk.h"
 
@@ -424,8 +431,6 @@ class Comparison {
   Json rows_ = Json::array();
 };
 
-}  // namespace
-
 void run_gpu(const GpuOptions& options, const ReportOptions& report) {
   const Device device({.choice = options.device});
   const DeviceDescription& description = device.description();
@@ -447,6 +452,43 @@ void run_gpu(const GpuOptions& options, const ReportOptions& report) {
   comparison.print();
   fmt::print("the article: 55.066 ms without, 9.074 ms with the pyramid: {:.2f} x\n", kArticleRatio);
   write_json(report, comparison.rows());
+}
+
+}  // namespace
+
+void add_gpu(cli::Program& program) {
+  auto [command, o] =
+      add_command<GpuOptions>(program, "gpu", "The marches on a Vulkan device, and the article's comparison there",
+                              [](const GpuOptions& options, const ReportOptions& report) {
+                                (options.raster ? run_gpu_raster : run_gpu)(options, report);
+                              });
+  command.add(&o.device, {.names = "--device", .value = "NAME", .help = "auto, gpu, cpu or part of a name"});
+  command.add(cli::List<int>{&o.sizes}, {.names = "--sizes",
+                                         .help = "samples per side of the procedural DEM",
+                                         .range = {kLeastSize, kMostSize},
+                                         .fallback = "1025,4097, and 16385 except on CPU devices"});
+  add_ground_options(command, o.field);
+  add_classes_option(command, o.classes);
+  command.add(cli::List<double>{&o.exaggerations},
+              {.names = "--exaggerations", .help = "vertical exaggerations", .range = cli::kAboveZero});
+  command.add(&o.ray_seed, {.names = "--ray-seed", .help = "seed of the rays"});
+  add_ray_size_option(
+      command,
+      [&rays = o.rays](const std::string& size) {
+        rays = size == "small" ? RayCounts{160, 88, 4096, 4096, 64} : RayCounts{};
+      },
+      "full: 1920 x 1080 pixels and 2^20 rays for each other class, on CPU devices a sixteenth; small: 160 x 88 and "
+      "2^12, for tests");
+  command.add(&o.judged, {.names = "--judged",
+                          .help = "rays per class that the judge also traces",
+                          .range = {1, 1e8},
+                          .fallback = "20000; on CPU devices 4096"});
+  command.add(&o.miss_limit,
+              {.names = "--miss-limit", .help = "share of the hits that naive-missed may miss", .range = {0, 1}});
+  add_repeats_option(command, o.repeats, "counted passes per march");
+  add_pass_limit_option(command, o.pass_limit_s, "a march");
+  command.add(&o.raster, {.names = "--raster",
+                          .help = "instead: primary rays beside the same grid drawn as two triangles per cell"});
 }
 
 }  // namespace scarp::bench

@@ -24,9 +24,13 @@
 #include <cstdio>
 #include <optional>
 
-#include "bench/commands.h"
 #include "bench/device_seconds.h"
+#include "bench/fields.h"
+#include "bench/gpu_options.h"
 #include "bench/grid_mesh.glsl.h"
+#include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "scarp/accel/device_ground.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/queries_vk.h"

@@ -8,16 +8,33 @@
 #include <optional>
 
 #include "bench/bullet_peer.h"
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/embree_peer.h"
+#include "bench/fields.h"
 #include "bench/instruction_set.h"
 #include "bench/judge.h"
+#include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
 namespace scarp::bench {
 namespace {
+
+// `heights`: all marches beside all modes of Embree in several ray classes.
+struct HeightsOptions {
+  TraceOptions trace;
+  std::vector<int> sizes{2049};
+  std::vector<std::string> classes{"primary", "shadow",       "grazing", "ao",     "nodes",
+                                   "lidar",   "lidar-ground", "near",    "lidar64"};
+  std::vector<std::string> marches;  // modes of scarp, as rows name them; empty: all
+  std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid"};  // and "bullet", which is slow
+  std::string embree_quality = "high";
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -227,8 +244,6 @@ void contest(const BenchField& ground, double exaggeration, const HeightsOptions
   }
 }
 
-}  // namespace
-
 void run_heights(const HeightsOptions& options, const ReportOptions& report) {
   hold_to_instruction_set(options.trace.instruction_set);
   std::vector<RayClass> classes;
@@ -245,6 +260,28 @@ void run_heights(const HeightsOptions& options, const ReportOptions& report) {
     }
   }
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_heights(cli::Program& program) {
+  auto [command, o] =
+      add_command<HeightsOptions>(program, "heights", "All marches beside all modes of Embree", run_heights);
+  add_sizes_option(command, o.sizes);
+  add_classes_option(command, o.classes);
+  command.add(cli::List<std::string>{&o.engines}, {.names = "--engines",
+                                                   .help = "engines to measure",
+                                                   .choices = {"scarp", "embree-tri", "embree-grid", "bullet"},
+                                                   .closed = true});
+  command.add(&o.embree_quality, {.names = "--embree-quality",
+                                  .value = "NAME",
+                                  .help = "quality of Embree's build",
+                                  .choices = {"medium", "high"},
+                                  .closed = true});
+  command.add(cli::List<std::string>{&o.marches},
+              {.names = "--marches", .help = "modes of scarp to measure", .fallback = "all"});
+  add_field_options(command, o.trace);
+  add_trace_options(command, o.trace);
 }
 
 }  // namespace scarp::bench

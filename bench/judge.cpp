@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench/random.h"
+#include "bench/rays.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/exhaustive.h"
 

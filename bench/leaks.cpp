@@ -13,10 +13,15 @@
 #include <mutex>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/leak_judge.h"
 #include "bench/leak_rays.h"
+#include "bench/leaks_options.h"
 #include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/exhaustive.h"
@@ -255,8 +260,7 @@ Json row_of(std::string_view name, const Count& count) {
   return row;
 }
 
-}  // namespace
-
+// Throws Error, after the report, when a ray was lost, false or contradictory.
 void run_leaks(const LeaksOptions& options, const ReportOptions& report) {
   const Stopwatch watch;
   const std::vector<LeakField> fields = make_leak_fields(options.seed, options.large, options.embree_rays > 0);
@@ -294,6 +298,36 @@ void run_leaks(const LeaksOptions& options, const ReportOptions& report) {
   write_ray_dumps(dump, failures);
   throw Error(fmt::format("leaks: {} lost, {} false, {} contradictions; the first {} are in '{}', for scarp replay",
                           total.lost, total.wrong, total.contradictions, failures.size(), dump));
+}
+
+}  // namespace
+
+void add_leaks(cli::Program& program) {
+  auto [command, o] =
+      add_command<LeaksOptions>(program, "leaks", "Very many rays at what engines lose; fails if Scarp loses one",
+                                [](const LeaksOptions& options, const ReportOptions& report) {
+                                  (options.fans ? run_fan_leaks : run_leaks)(options, report);
+                                });
+  command.add(&o.rays, {.names = "--rays", .help = "rays in all", .range = {1, 1e15}});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of fields and rays"});
+  command.add(&o.large,
+              {.names = "--large", .help = "samples per side of the large field", .range = {kLeastSize, kMostSize}});
+  command.add(&o.judge_every,
+              {.names = "--judge-every", .help = "one in so many is also traced by exhaustive", .range = {1, 0x1p40}});
+  command.add(
+      &o.embree_rays,
+      {.names = "--embree-rays", .help = "largest number of rays that Embree also traces, about", .range = {0, 1e15}});
+  command.add(&o.dump, {.names = "--dump",
+                        .value = "FILE",
+                        .help = "file for the first failing rays",
+                        .files = "txt",
+                        .fallback = "leaks-SEED.txt"});
+  command.add(&o.fans, {.names = "--fans", .help = "instead: fans beside the scalar march"});
+  command.add(&o.fan_margin, {.names = "--fan-margin",
+                              .help = "factor of the fans' margin",
+                              .range = {0, 1e6},
+                              .note = "below 1, hits may be lost",
+                              .rules = {cli::needs("--fans", [&o = o] { return o.fans; })}});
 }
 
 }  // namespace scarp::bench

@@ -14,6 +14,7 @@
 
 #include "bench/map_truth.h"
 #include "bench/program_run.h"
+#include "bench/protocol.h"
 #include "scarp/analysis/sight_rays.h"
 #include "scarp/base/error.h"
 #include "scarp/output/raster_map.h"

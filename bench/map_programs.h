@@ -2,11 +2,12 @@
 // Programs that make viewsheds and shadows: `scarp` and its peers, as whole processes from one file to another.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "bench/commands.h"
+#include "bench/maps_options.h"
 
 namespace scarp::bench {
 

@@ -6,16 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <numbers>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/map_truth.h"
+#include "bench/maps_options.h"
 #include "bench/random.h"
+#include "bench/trace_options.h"
 #ifdef SCARP_BENCH_GDAL
 #include "bench/map_programs.h"
+#include "bench/protocol.h"
+#include "bench/report.h"
 #endif
 #include "scarp/analysis/shadow_sweep.h"
 #include "scarp/analysis/sight_rays.h"
@@ -180,8 +187,7 @@ std::vector<Json> measure_programs(const MapsOptions& options) {
 }
 #endif
 
-}  // namespace
-
+// Throws Error, after the report, if a node differs from its ray.
 void run_maps(const MapsOptions& options, const ReportOptions& report) {
   const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<int> threads{1};
@@ -226,6 +232,55 @@ void run_maps(const MapsOptions& options, const ReportOptions& report) {
 #endif
   write_json(report, rows);
   if (wrong > 0) throw Error(fmt::format("maps: {} nodes differ from their rays", wrong));
+}
+
+}  // namespace
+
+void add_maps(cli::Program& program) {
+  auto [command, o] = add_command<MapsOptions>(program, "maps", "Viewsheds and shadows of all nodes", run_maps);
+  command.add(cli::List<int>{&o.sizes}, {.names = "--sizes", .help = "samples per side", .range = {2, 32768}});
+  command.add(
+      &o.kind,
+      {.names = "--kind", .value = "KIND", .help = "procedural DEM", .choices = {"fbm", "ridged"}, .closed = true});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of the DEM"});
+  command.add(&o.observer_height, {.names = "--observer-height",
+                                   .help = "height of the observer above ground",
+                                   .unit = "metres",
+                                   .range = {0, 1e6}});
+  command.add(&o.azimuth_deg,
+              {.names = "--sun-azimuth", .help = "azimuth of the sun", .unit = "degrees", .range = {0, 360}});
+  command.add(&o.altitude_deg,
+              {.names = "--sun-altitude", .help = "altitude of the sun", .unit = "degrees", .range = {1, 90}});
+  add_repeats_option(command, o.repeats);
+  command.add(&o.judged,
+              {.names = "--judged", .help = "nodes per map that are also decided by a ray", .range = {0, 1e6}});
+  command.add(&o.lines,
+              {.names = "--lines", .help = "lines of sight, of 500 cells each", .range = {0, 1e8}, .note = "0: none"});
+#ifdef SCARP_BENCH_GDAL
+  o.scarp = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scarp").string();
+  std::vector<std::string> known = o.programs;
+  known.emplace_back("none");
+  command.add(cli::List<std::string>{&o.programs}, {.names = "--programs",
+                                                    .help = "programs to measure as whole processes, if installed",
+                                                    .choices = std::move(known),
+                                                    .closed = true});
+  command.add(
+      [&path = o.scarp](const std::string& text) {
+        if (!std::filesystem::exists(text)) throw cli::WrongUsage(fmt::format("--scarp '{}': no such file", text));
+        path = text;
+      },
+      {.names = "--scarp",
+       .value = "FILE",
+       .help = "path of scarp, one of the programs",
+       .files = "*",
+       .fallback = "beside scarp-bench"});
+  command.add(
+      &o.observers,
+      {.names = "--observers", .help = "observers of a cumulative viewshed", .range = {0, 65533}, .note = "0: none"});
+  command.add(
+      &o.program_limit_s,
+      {.names = "--program-limit", .help = "longest run of a program", .unit = "seconds", .range = cli::kAboveZero});
+#endif
 }
 
 }  // namespace scarp::bench

@@ -7,13 +7,25 @@
 #include <functional>
 #include <optional>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/fields.h"
 #include "bench/judge.h"
 #include "bench/naive_search.h"
+#include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
+#include "bench/trace_options.h"
 
 namespace scarp::bench {
 namespace {
+
+// `naive`: the comparison of the max-mip article, with naive marching fine enough to be correct.
+struct NaiveOptions {
+  TraceOptions trace;
+  double miss_limit = 0.001;  // fraction of the judge's hits that naive may miss
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -140,8 +152,6 @@ class Comparison {
   Json rows_ = Json::array();
 };
 
-}  // namespace
-
 void run_naive(const NaiveOptions& options, const ReportOptions& report) {
   const BenchField ground = load_field(options.trace.field);
   fmt::print("{} x {} samples, {}: relief {:.1f} cells, mean slope {:.1f} degrees\n", ground.field.cols(),
@@ -153,6 +163,18 @@ void run_naive(const NaiveOptions& options, const ReportOptions& report) {
   comparison.print();
   fmt::print("the article: 55.066 ms without, 9.074 ms with the pyramid: {:.2f} x\n", kArticleRatio);
   write_json(report, comparison.rows());
+}
+
+}  // namespace
+
+void add_naive(cli::Program& program) {
+  auto [command, o] = add_command<NaiveOptions>(
+      program, "naive", "The max-mip article's comparison, naive as fine as it takes", run_naive);
+  o.trace.exaggerations = {1, 4, 16};
+  add_size_option(command, o.trace.field.size);
+  command.add(&o.miss_limit,
+              {.names = "--miss-limit", .help = "share of the hits that naive may miss", .range = {0, 1}});
+  add_trace_options(command, o.trace);
 }
 
 }  // namespace scarp::bench

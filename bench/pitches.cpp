@@ -11,15 +11,26 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/fields.h"
 #include "bench/protocol.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/height/max_mip_simd.h"
 
 namespace scarp::bench {
 namespace {
+
+// `pitches`: cameras that look down by 0 to 90 degrees, by fans, batches and the choice between both.
+struct PitchesOptions {
+  FieldOptions field;
+  int width = 640, height = 480;  // pixels; the width is rounded down to a multiple of 32
+  int step = 10;                  // degrees
+  int repeats = 3;                // timed passes of each; the median counts
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -89,8 +100,6 @@ void by_fan(const HeightTarget& target, std::span<const Ray> rays, int height, b
   }
 }
 
-}  // namespace
-
 void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
   const BenchField ground = load_field(options.field);
   const MaxPyramid pyramid(ground.field);
@@ -132,6 +141,18 @@ void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 1);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_pitches(cli::Program& program) {
+  auto [command, o] = add_command<PitchesOptions>(
+      program, "pitches", "Cameras that look down by 0 to 90 degrees: rays by fans, by batches, and by the choice",
+      run_pitches);
+  command.add(&o.field.size,
+              {.names = "--size", .help = "samples per side of the procedural DEM", .range = {64, 1 << 14}});
+  add_repeats_option(command, o.repeats, "timed passes of each");
+  command.add(&o.step, {.names = "--step", .help = "step of the pitch", .unit = "degrees", .range = {1, 90}});
 }
 
 }  // namespace scarp::bench

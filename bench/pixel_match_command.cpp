@@ -8,16 +8,28 @@
 #include <memory>
 #include <optional>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/voxel_sets.h"
 #include "scarp/base/error.h"
 #ifdef SCARP_BENCH_VULKAN
+#include "bench/report.h"
 #include "bench/voxel_triangles.h"
 #include "scarp/scene/voxel_camera_vk.h"
 #endif
 
 namespace scarp::bench {
 namespace {
+
+// `pixel-match`: pictures of voxels compared with the same drawn as quads.
+struct PixelMatchOptions {
+  std::vector<std::string> sets{"standard", "degenerate"};
+  std::vector<int> thousands{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};  // of objects, the post's camera
+  std::vector<std::string> marches{"voxel-bricks"};
+  std::string cameras = "all";  // or "post"
+  int width = 1920, height = 1080;
+  std::string device;  // both drawing methods of a Vulkan device; empty: the CPU
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -145,8 +157,7 @@ class Matches {
 #endif
 };
 
-}  // namespace
-
+// Throws Error, after the report, when a pixel differs.
 void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report) {
   Matches matches(options);
   const std::vector<NamedFrame> frames = pixel_match_frames(options.width, options.height);
@@ -157,6 +168,30 @@ void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& repo
     }
   }
   matches.report(report);
+}
+
+}  // namespace
+
+void add_pixel_match(cli::Program& program) {
+  auto [command, o] = add_command<PixelMatchOptions>(
+      program, "pixel-match", "Pictures of voxels beside the same drawn as quads; fails if a pixel differs",
+      run_pixel_match);
+  command.add(cli::List<std::string>{&o.sets}, {.names = "--sets",
+                                                .help = "sets of objects",
+                                                .choices = {"standard", "degenerate", "far-wall"},
+                                                .closed = true});
+  command.add(cli::List<int>{&o.thousands}, {.names = "--thousands", .help = "thousands of objects", .range = {1, 16}});
+  command.add(cli::List<std::string>{&o.marches}, {.names = "--marches", .help = "voxel marches"});
+  command.add(&o.cameras,
+              {.names = "--cameras", .value = "WHICH", .help = "cameras", .choices = {"post", "all"}, .closed = true});
+  command.add(&o.width, {.names = "--width", .help = "pixels", .range = {2, 2048}});
+  command.add(&o.height, {.names = "--height", .help = "pixels", .range = {2, 2048}});
+#ifdef SCARP_BENCH_VULKAN
+  command.add(&o.device, {.names = "--device",
+                          .value = "NAME",
+                          .help = "both ways of drawing of a Vulkan device instead of the CPU, and its triangles",
+                          .note = "cpu, gpu, auto or part of a name"});
+#endif
 }
 
 }  // namespace scarp::bench

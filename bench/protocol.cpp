@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench/protocol.h"
+#include "bench/rays.h"
 
 #include <algorithm>
 #include <cmath>

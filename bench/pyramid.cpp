@@ -8,13 +8,23 @@
 #include <utility>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/parallel.h"
 
 namespace scarp::bench {
 namespace {
+
+// `pyramid`: build speed of the pyramid of maxima.
+struct PyramidOptions {
+  std::vector<int> sizes{2049, 8193};
+  int repeats = 5;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -51,8 +61,6 @@ Json measure_build(const HeightField& field, int threads, int repeats) {
   return row;
 }
 
-}  // namespace
-
 void run_pyramid(const PyramidOptions& options, const ReportOptions& report) {
   const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<int> threads{1};
@@ -73,6 +81,15 @@ void run_pyramid(const PyramidOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 2);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_pyramid(cli::Program& program) {
+  auto [command, o] =
+      add_command<PyramidOptions>(program, "pyramid", "How fast the pyramid of maxima is built", run_pyramid);
+  command.add(cli::List<int>{&o.sizes}, {.names = "--sizes", .help = "samples per side", .range = {2, 65536}});
+  add_repeats_option(command, o.repeats, "counted builds");
 }
 
 }  // namespace scarp::bench

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bench/fields.h"
 #include "bench/random.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"

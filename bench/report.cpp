@@ -76,10 +76,7 @@ void write_file(const std::string& name, const std::string& text) {
 
 }  // namespace
 
-std::string writable(const std::string& path) {
-  const ReplaceFile probe(path);
-  return {};
-}
+void require_writable(const std::string& path) { const ReplaceFile probe(path); }
 
 void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows) {
   const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());

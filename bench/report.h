@@ -15,9 +15,8 @@ struct ReportOptions {
   std::string csv{};    ///< likewise
 };
 
-/// A check for the options that name these files, so that a long run does not lose its figures: throws Error if the
-/// file cannot be written; otherwise returns an empty string, as CLI11 expects of checks.
-std::string writable(const std::string& path);
+/// Throws Error if the file cannot be written, so that a long run does not lose its figures.
+void require_writable(const std::string& path);
 
 /// Writes the files of `options`: JSON is {machine, command, date, rows}; CSV has the first three as comments, and the
 /// rows as bench/results keeps them. Throws Error if a file cannot be written; it is then not left or changed.

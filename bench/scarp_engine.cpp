@@ -2,6 +2,7 @@
 #include "bench/scarp_engine.h"
 
 #include "bench/protocol.h"
+#include "bench/rays.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/height/max_mip_fan.h"
 

@@ -9,15 +9,27 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "bench/scene_contacts.h"
+#include "bench/trace_options.h"
 #include "scarp/base/parallel.h"
 #include "scarp/scene/live_scene.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp::bench {
 namespace {
+
+// `scenes`: hierarchies over many objects.
+struct ScenesOptions {
+  std::vector<int> objects{1000, 10000, 100000};
+  int rays = 100000;
+  int contacts = 10000;  // queries of each kind
+  int repeats = 5;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -122,8 +134,6 @@ Json measure_objects(const ScenesOptions& options, int count) {
   return row;
 }
 
-}  // namespace
-
 void run_scenes(const ScenesOptions& options, const ReportOptions& report) {
   const ThreadLimit limit(1);
   Json rows = Json::array();
@@ -146,6 +156,18 @@ void run_scenes(const ScenesOptions& options, const ReportOptions& report) {
   print_table(lines, 0);
   print_table(contacts, 0);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_scenes(cli::Program& program) {
+  auto [command, o] = add_command<ScenesOptions>(program, "scenes",
+                                                 "Hierarchies over many objects: how soon built, how fast", run_scenes);
+  command.add(cli::List<int>{&o.objects}, {.names = "--objects", .help = "objects", .range = {1, 1 << 24}});
+  command.add(&o.rays, {.names = "--rays", .help = "rays per pass", .range = {1, 1 << 28}});
+  command.add(&o.contacts,
+              {.names = "--contacts", .help = "sweeps, overlaps and closest points per pass", .range = {1, 1 << 24}});
+  add_repeats_option(command, o.repeats);
 }
 
 }  // namespace scarp::bench

@@ -13,16 +13,30 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/off_vertical.h"
+#include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/scarp.h"
 #include "scarp/scene/tiled_terrain.h"
+#ifdef SCARP_BENCH_VULKAN
+#include "scarp/scene/scene_vk.h"
+#include "scarp/vk/device.h"
+#endif
 
 namespace scarp::bench {
 namespace {
+
+// `seams`: rays at the lines where height fields meet.
+struct SeamsOptions {
+  std::int64_t rays = 10'000'000;
+  std::uint64_t seed = 1;
+  std::string device;  // a Vulkan device instead of the CPU; empty: the CPU
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -37,6 +51,7 @@ struct SeamTerrain {
   double cell, base;
   Surface surface;
   bool levels;  // of resolution
+  bool tiles;   // of one TiledTerrain
   Placement place{};
   std::optional<Scene> scene{};
 
@@ -82,6 +97,7 @@ SeamTerrain fields_in_a_scene(double cell, int cells, const Placement& place, Su
                    0,
                    surface,
                    false,
+                   false,
                    place};
   std::vector<ScenePart> parts;
   for (int i = 0; i < kTiles * kTiles; ++i) {
@@ -102,6 +118,7 @@ SeamTerrain tiles(double cell, int cells, double base, bool levels, const Placem
                    base,
                    surface,
                    levels,
+                   true,
                    place};
   TiledTerrain terrain({kTiles, kTiles, cells, cells, {.cell_x = cell, .cell_y = cell, .surface = surface}});
   terrain.edit([&](auto& editor) {
@@ -188,17 +205,31 @@ bool is_on_ground(const SeamTerrain& of, const Ray& ray, const Hit& hit, std::ui
          room;
 }
 
-}  // namespace
+// Tiles do not run on devices.
+void move_to_device(std::vector<SeamTerrain>& terrains, const std::string& choice) {
+#ifdef SCARP_BENCH_VULKAN
+  const Device device({.choice = choice});
+  std::erase_if(terrains, [](const SeamTerrain& of) { return of.tiles; });
+  for (SeamTerrain& terrain : terrains) terrain.scene = scene_on(device, *terrain.scene);
+  fmt::print("on {}\n", device.description().name);
+#else
+  (void)terrains;
+  throw Error(fmt::format("--device {}: this program was built without Vulkan", choice));
+#endif
+}
 
+// Throws Error, after the report, if a ray is lost.
 void run_seams(const SeamsOptions& options, const ReportOptions& report) {
   const Stopwatch watch;
-  const std::vector<SeamTerrain> all = terrains(options.seed);
+  std::vector<SeamTerrain> all = terrains(options.seed);
+  if (!options.device.empty()) move_to_device(all, options.device);
   struct Count {
     std::atomic<std::int64_t> rays{0}, lost{0}, any_lost{0}, wrong{0};
   };
   std::vector<Count> counts(all.size() * kAims.size());
   const std::int64_t pieces = (options.rays + kPiece - 1) / kPiece;
-  parallel_for(pieces, 1, [&](std::int64_t begin, std::int64_t end) {
+  const bool alone_too = options.device.empty();  // a device takes as long for one ray as for thousands
+  const auto trace = [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t piece = begin; piece < end; ++piece) {
       const std::size_t which = static_cast<std::size_t>(piece) % counts.size();
       const SeamTerrain& terrain = all[which / kAims.size()];
@@ -214,7 +245,7 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
       terrain.scene->closest_hits(rays, hits);
       terrain.scene->occluded(rays, blocked);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Hit alone = terrain.scene->closest_hit(rays[i]);
+        const Hit alone = alone_too ? terrain.scene->closest_hit(rays[i]) : hits[i];
         counts[which].wrong +=
             !(alone == hits[i]) || (hits[i] && !is_on_ground(terrain, own[i], hits[i], options.seed));
       }
@@ -222,7 +253,12 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
       counts[which].lost += std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit; });
       counts[which].any_lost += std::count(blocked.begin(), blocked.end(), 0);
     }
-  });
+  };
+  if (alone_too) {
+    parallel_for(pieces, 1, trace);
+  } else {
+    trace(0, pieces);  // a scene on a device takes one call at a time
+  }
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"terrain", "rays to", "rays", "lost", "any-hit lost", "wrong"}};
   std::int64_t lost = 0, wrong = 0;
@@ -248,6 +284,19 @@ void run_seams(const SeamsOptions& options, const ReportOptions& report) {
   write_json(report, rows);
   if (lost > 0 || wrong > 0)
     throw Error(fmt::format("seams: {} of {} rays were lost, {} hit elsewhere", lost, options.rays, wrong));
+}
+
+}  // namespace
+
+void add_seams(cli::Program& program) {
+  auto [command, o] = add_command<SeamsOptions>(
+      program, "seams", "Rays at the lines where height fields meet: how many are lost", run_seams);
+  command.add(&o.rays, {.names = "--rays", .help = "rays in all", .range = {1, 1e15}});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of terrains and rays"});
+  command.add(&o.device, {.names = "--device",
+                          .value = "NAME",
+                          .help = "a Vulkan device instead of the CPU, for the fields of scenes",
+                          .note = "cpu, gpu, auto or part of a name"});
 }
 
 }  // namespace scarp::bench

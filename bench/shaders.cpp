@@ -5,9 +5,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/report.h"
 #include "bench/shader_compilation.h"
 #include "bench/shader_table.h"
+#include "bench/shaders.h"
 #include "scarp/base/error.h"
 
 namespace scarp::bench {
@@ -41,6 +44,20 @@ void run_shaders(const ShadersOptions& options, const ReportOptions& report) {
   print_table(lines, 3);
   write_json(report, rows);
   if (!options.update.empty()) write_shader_table(options.update, table);
+}
+
+void add_shaders(cli::Program& program) {
+  auto [command, o] = add_command<ShadersOptions>(
+      program, "shaders", "Each shader compiled for AMD cards that need not be there: size, registers, spills",
+      run_shaders);
+  command.add(cli::List<std::string>{&o.families}, {.names = "--families", .help = "cards as RADV names them"});
+  command.add(&o.shader, {.names = "--shader", .value = "TEXT", .help = "only shaders whose path contains this"});
+  command.add(&o.update, {.names = "--update",
+                          .value = "FILE",
+                          .help = "table to rewrite with these figures",
+                          .files = "csv",
+                          .note = "bench/shader_statistics.csv, with navi21 alone",
+                          .excludes = {"--shader"}});
 }
 
 }  // namespace scarp::bench

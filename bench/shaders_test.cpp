@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bench/commands.h"
 #include "bench/shader_compilation.h"
 #include "bench/shader_table.h"
+#include "bench/shaders.h"
 #include "scarp/base/error.h"
 
 namespace scarp::bench {

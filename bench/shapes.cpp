@@ -12,8 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/random.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -24,6 +27,13 @@
 
 namespace scarp::bench {
 namespace {
+
+// `shapes`: sphere-trace over distance fields, compared with plain sphere tracing and checked by proofs.
+struct ShapesOptions {
+  int width = 480, height = 270;  // pixels
+  int repeats = 3;
+  std::int64_t judged = 1000;  // about this many rays per shape are judged
+};
 
 using Json = nlohmann::ordered_json;
 using namespace shape;
@@ -161,8 +171,7 @@ Row timed(const DistanceField& field, const std::vector<Ray>& rays, ShapeMarch m
   return row;
 }
 
-}  // namespace
-
+// Throws Error, after the report, if sphere-trace lost a crossing.
 void run_shapes(const ShapesOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"shape", "rays", "march", "values/ray", "bounds/ray", "ms/megapixel",
@@ -234,6 +243,17 @@ void run_shapes(const ShapesOptions& options, const ReportOptions& report) {
   print_table(lines, 3);
   write_json(report, rows);
   if (lost) throw Error("shapes: sphere-trace lost a crossing that the judge proves; see the table");
+}
+
+}  // namespace
+
+void add_shapes(cli::Program& program) {
+  auto [command, o] = add_command<ShapesOptions>(
+      program, "shapes", "Sphere-trace over distance fields, beside balls alone and proofs", run_shapes);
+  command.add(&o.width, {.names = "--width", .help = "pixels", .range = {1, 16384}});
+  command.add(&o.height, {.names = "--height", .help = "pixels", .range = {1, 16384}});
+  add_repeats_option(command, o.repeats);
+  command.add(&o.judged, {.names = "--judged", .help = "rays per shape that are judged, about", .range = {1, 0x1p40}});
 }
 
 }  // namespace scarp::bench

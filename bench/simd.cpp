@@ -5,14 +5,25 @@
 #include <cstdio>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/fields.h"
 #include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
+#include "bench/trace_options.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_simd.h"
 
 namespace scarp::bench {
 namespace {
+
+// `simd`: the vectors beside the scalar walk, one thread, with each optimisation disabled in turn.
+struct SimdOptions {
+  TraceOptions trace;
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -95,8 +106,6 @@ void compare(const BenchField& ground, double exaggeration, const std::vector<Ra
   }
 }
 
-}  // namespace
-
 void run_simd(const SimdOptions& options, const ReportOptions& report) {
   std::vector<RayClass> classes;
   for (const std::string& name : options.classes) classes.push_back(find_ray_class(name));
@@ -105,6 +114,18 @@ void run_simd(const SimdOptions& options, const ReportOptions& report) {
   for (const double exaggeration : options.trace.exaggerations)
     compare(exaggerated(ground, exaggeration), exaggeration, classes, options, rows);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_simd(cli::Program& program) {
+  std::vector<std::string> classes;
+  for (const RayClass ray_class : kRayClasses) classes.emplace_back(name_of(ray_class));
+  auto [command, o] = add_command<SimdOptions>(
+      program, "simd", "The vectors beside the scalar walk, and what each idea gains", run_simd);
+  add_size_option(command, o.trace.field.size);
+  add_classes_option(command, o.classes, std::move(classes));
+  add_trace_options(command, o.trace);
 }
 
 }  // namespace scarp::bench

@@ -13,13 +13,19 @@
 #include <optional>
 #include <utility>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/judge.h"
 #include "bench/naive_search.h"
 #include "bench/random.h"
+#include "bench/simt_options.h"
+#include "bench/trace_options.h"
 #ifdef SCARP_BENCH_VULKAN
 #include "bench/simt_recount.h"
 #endif
+#include "bench/fields.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/simt_trace.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -283,8 +289,6 @@ class Comparison {
   Json rows_ = Json::array();
 };
 
-}  // namespace
-
 void run_simt(const SimtOptions& options, const ReportOptions& report) {
   SimtShaders shaders =
       read_simt_shaders(options.blocks.empty() ? SCARP_SOURCE_DIR "/bench/simt_blocks.csv" : options.blocks);
@@ -305,6 +309,47 @@ void run_simt(const SimtOptions& options, const ReportOptions& report) {
   }
   comparison.print();
   write_json(report, comparison.rows());
+}
+
+}  // namespace
+
+void add_simt(cli::Program& program) {
+  auto [command, o] = add_command<SimtOptions>(
+      program, "simt", "What bundles of rays in lockstep pay with max-mip and with naive, counted on the CPU",
+      run_simt);
+  add_sizes_option(command, o.sizes);
+  add_ground_options(command, o.field);
+  add_classes_option(command, o.classes);
+  command.add(&o.groups, {.names = "--groups",
+                          .help = "groups of 64 successive rays, spread evenly over each class",
+                          .range = {1, 1 << 20}});
+  command.add(&o.ray_seed, {.names = "--ray-seed", .help = "seed of the rays"});
+  add_ray_size_option(
+      command,
+      [&rays = o.rays](const std::string& size) {
+        if (size == "small") rays = {160, 88, 4096, 4096, 64};
+      },
+      "full: groups of 1920 x 1080 pixels and 2^20 rays for each other class; small: of 160 x 88 and 2^12, for tests");
+  command.add(&o.voxels, {.names = "--voxels", .help = "instead: the voxel marches, in pictures of many objects"});
+  command.add(&o.wrong_limit,
+              {.names = "--wrong-limit", .help = "share of rays that naive may get wrong", .range = {0, 1}});
+  command.add(&o.blocks, {.names = "--blocks",
+                          .value = "FILE",
+                          .help = "table of instructions by block",
+                          .files = "csv",
+                          .fallback = "bench/simt_blocks.csv of the sources"});
+#ifdef SCARP_BENCH_VULKAN
+  command.add(&o.recount, {.names = "--recount", .help = "count the instructions by RADV, as this build compiles"});
+  const cli::Rule counts = cli::needs("--recount", [&o = o] { return o.recount; });
+  command.add(
+      &o.disassembly,
+      {.names = "--disassembly", .value = "FOLDER", .help = "folder for the counted disassemblies", .rules = {counts}});
+  command.add(&o.update, {.names = "--update",
+                          .value = "FILE",
+                          .help = "table to write instead of tracing rays",
+                          .files = "csv",
+                          .rules = {counts}});
+#endif
 }
 
 }  // namespace scarp::bench

@@ -214,7 +214,8 @@ SimtAnswer trace_naive(const SimtGround& on, const Ray& ray, bool any, const Sim
   MarchSettings settings;
   settings.naive = naive.settings;
   const HeightFieldSettings& scales = field.settings();
-  const glsl::ScarpSampling sampling = device_sampling("naive", settings, 0, 0, scales.scale * scales.exaggeration);
+  const glsl::ScarpSampling sampling =
+      device_sampling(Sampling::naive, settings, 0, 0, scales.scale * scales.exaggeration);
   const glsl::ScarpField& shader_field = on.impl().shader_field;
   const Hosted hosted(on, trace);
   glsl::ScarpHit hit = glsl::scarp_no_hit();

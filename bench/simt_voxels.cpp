@@ -7,8 +7,9 @@
 #include <mutex>
 #include <vector>
 
-#include "bench/commands.h"
+#include "bench/report.h"
 #include "bench/simt_blocks.h"
+#include "bench/simt_options.h"
 #include "bench/simt_voxel_trace.h"
 #include "bench/voxel_sets.h"
 #include "scarp/base/error.h"

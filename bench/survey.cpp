@@ -10,14 +10,29 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/embree_peer.h"
+#include "bench/fields.h"
 #include "bench/instruction_set.h"
+#include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
 #include "bench/scarp_engine.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 
 namespace scarp::bench {
 namespace {
+
+// `survey`: Scarp's best mode over its peers' best over several fields, cameras and suns; the median and the worst.
+struct SurveyOptions {
+  TraceOptions trace;
+  std::vector<std::string> kinds{"ridged", "fbm"};
+  std::vector<std::string> dems;
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "lidar", "lidar-ground", "near"};
+  std::vector<std::string> peers{"embree-tri", "embree-grid"};
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -123,8 +138,6 @@ class Survey {
   Json rows_ = Json::array();
 };
 
-}  // namespace
-
 void run_survey(const SurveyOptions& options, const ReportOptions& report) {
   hold_to_instruction_set(options.trace.instruction_set);
   Survey survey(options);
@@ -143,6 +156,23 @@ void run_survey(const SurveyOptions& options, const ReportOptions& report) {
   for (const BenchField& file : files) survey.run(file);
   survey.print();
   write_json(report, survey.rows());
+}
+
+}  // namespace
+
+void add_survey(cli::Program& program) {
+  auto [command, o] = add_command<SurveyOptions>(
+      program, "survey", "Scarp over Embree in several fields, from several cameras: median and worst", run_survey);
+  add_size_option(command, o.trace.field.size, "samples per side of the procedural DEMs");
+  command.add(cli::List<std::string>{&o.kinds},
+              {.names = "--kinds", .help = "kinds of procedural DEMs", .choices = {"ridged", "fbm"}, .closed = true});
+  command.add(cli::List<std::string>{&o.dems},
+              {.names = "--dems", .value = "FILE,...", .help = "raster files without holes, too", .files = "*"});
+  add_classes_option(command, o.classes);
+  command.add(cli::List<std::string>{&o.peers},
+              {.names = "--peers", .help = "peers to measure", .choices = o.peers, .closed = true});
+  add_field_options(command, o.trace);
+  add_measure_options(command, o.trace);
 }
 
 }  // namespace scarp::bench

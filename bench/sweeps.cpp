@@ -12,11 +12,14 @@
 #include <vector>
 
 #include "bench/bullet_sweep.h"
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/fields.h"
 #include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "bench/sweep_judge.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/ground_contact.h"
@@ -24,6 +27,15 @@
 
 namespace scarp::bench {
 namespace {
+
+// `sweeps`: spheres and capsules that move over ground, compared with Bullet and judged.
+struct SweepsOptions {
+  int size = 1025;      // samples per side of the field, >= 1025
+  int sweeps = 20'000;  // of each class beside Bullet; 0: none
+  int repeats = 5;
+  std::int64_t judged = 100'000;  // random ones over small fields and voxels
+  std::uint64_t seed = 1;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -272,14 +284,28 @@ std::int64_t judge_random(const SweepsOptions& options, Json& rows) {
   return wrong;
 }
 
-}  // namespace
-
+// Throws Error, after the report, if a capsule tunnelled or a contact is false.
 void run_sweeps(const SweepsOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   if (options.sweeps > 0) measure_beside_bullet(options, rows);
   const std::int64_t wrong = judge_random(options, rows);
   write_json(report, rows);
   if (wrong > 0) throw Error(fmt::format("sweeps: {} of {} are wrong", wrong, options.judged));
+}
+
+}  // namespace
+
+void add_sweeps(cli::Program& program) {
+  auto [command, o] = add_command<SweepsOptions>(
+      program, "sweeps",
+      "Spheres and capsules that move over ground, beside Bullet; random ones, judged by all triangles", run_sweeps);
+  command.add(&o.size, {.names = "--size", .help = "samples per side of the field", .range = {1025, 16385}});
+  command.add(
+      &o.sweeps,
+      {.names = "--sweeps", .help = "sweeps of each class beside Bullet", .range = {0, 1e8}, .note = "0: none"});
+  add_repeats_option(command, o.repeats, "timed passes");
+  command.add(&o.judged, {.names = "--judged", .help = "random sweeps that are judged", .range = {0, 1e12}});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of the sweeps"});
 }
 
 }  // namespace scarp::bench

@@ -11,13 +11,22 @@
 #include <string>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/protocol.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_volume.h"
 
 namespace scarp::bench {
 namespace {
+
+// `volumes`: from a file of numbers to voxels, compared with reading its bytes.
+struct VolumesOptions {
+  int side = 1024;  // voxels
+  int repeats = 3;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -83,8 +92,6 @@ double seconds_of(const std::string& path, const std::string& format, std::size_
   return seconds;
 }
 
-}  // namespace
-
 void run_volumes(const VolumesOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"voxels", "type", "colours", "build s", "plain read s", "ratio"}};
@@ -118,6 +125,15 @@ void run_volumes(const VolumesOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 2);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_volumes(cli::Program& program) {
+  auto [command, o] =
+      add_command<VolumesOptions>(program, "volumes", "How fast files of numbers become voxels", run_volumes);
+  command.add(&o.side, {.names = "--side", .help = "voxels per side", .range = {8, 2048}});
+  add_repeats_option(command, o.repeats);
 }
 
 }  // namespace scarp::bench

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
@@ -16,6 +19,13 @@
 
 namespace scarp::bench {
 namespace {
+
+// `voxel-edits`: time that voxel accelerators take to follow an edit.
+struct VoxelEditsOptions {
+  int side = 256;     // voxels
+  double radius = 8;  // of the sphere that is added and removed, in voxels
+  int edits = 40;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -74,8 +84,6 @@ Json measure(std::string_view name, std::string_view of, const VoxelEditsOptions
   return row;
 }
 
-}  // namespace
-
 void run_voxel_edits(const VoxelEditsOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   for (const std::string_view name : kScenes) {
@@ -93,6 +101,18 @@ void run_voxel_edits(const VoxelEditsOptions& options, const ReportOptions& repo
   }
   print_table(lines, 2);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_voxel_edits(cli::Program& program) {
+  auto [command, o] = add_command<VoxelEditsOptions>(
+      program, "voxel-edits", "How long accelerators of voxels take to follow an edit", run_voxel_edits);
+  command.add(&o.side, {.names = "--side", .help = "voxels per side", .range = {16, 512}});
+  command.add(&o.radius, {.names = "--radius",
+                          .help = "radius of the spheres that are added and removed, in voxels",
+                          .range = cli::kAboveZero});
+  command.add(&o.edits, {.names = "--edits", .help = "spheres", .range = {1, 100000}});
 }
 
 }  // namespace scarp::bench

@@ -10,8 +10,10 @@
 #include <mutex>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/random.h"
+#include "bench/report.h"
 #include "bench/voxel_scene_judge.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -20,6 +22,14 @@
 
 namespace scarp::bench {
 namespace {
+
+// `voxel-leaks`: all voxel marches on very many rays, at grids and then, as many, at scenes.
+struct VoxelLeaksOptions {
+  std::int64_t rays = 10'000'000;
+  std::uint64_t seed = 1;
+  int judge_every = 64;    // one in this many is also traced by voxel-exhaustive
+  std::string of = "all";  // "grids": single ones; "scenes": of rotated objects
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -239,8 +249,6 @@ std::array<Counts, 2> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWro
   return total.counts();
 }
 
-}  // namespace
-
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"rays", "count", "hits", "judged", "wrong"}};
@@ -263,6 +271,23 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
   write_json(report, rows);
   if (wrong > 0)
     throw Error(fmt::format("voxel-leaks: {} rays were answered differently; the first: {}", wrong, first_wrong.text));
+}
+
+}  // namespace
+
+void add_voxel_leaks(cli::Program& program) {
+  auto [command, o] = add_command<VoxelLeaksOptions>(
+      program, "voxel-leaks", "Very many rays at voxel grids; fails if marches differ", run_voxel_leaks);
+  command.add(&o.rays, {.names = "--rays", .help = "rays in all", .range = {1, 1e15}});
+  command.add(&o.seed, {.names = "--seed", .help = "seed of grids and rays"});
+  command.add(
+      &o.judge_every,
+      {.names = "--judge-every", .help = "one in so many is also traced by voxel-exhaustive", .range = {1, 1 << 30}});
+  command.add(&o.of, {.names = "--of",
+                      .value = "WHAT",
+                      .help = "single grids, or scenes of rotated objects",
+                      .choices = {"grids", "scenes", "all"},
+                      .closed = true});
 }
 
 }  // namespace scarp::bench

@@ -6,8 +6,11 @@
 #include <memory>
 #include <random>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/protocol.h"
+#include "bench/report.h"
+#include "bench/trace_options.h"
 #include "bench/voxel_sets.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -18,6 +21,13 @@
 
 namespace scarp::bench {
 namespace {
+
+// `voxel-models`: all voxel marches over models from files.
+struct VoxelModelsOptions {
+  std::vector<std::string> files;  // .vox and .binvox
+  int width = 256;                 // pixels per side of the pictures, from eight sides
+  int repeats = 5;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -80,8 +90,6 @@ struct RayClasses {
     for (const Hit& hit : hits) from.push_back(&hit);
   }
 };
-
-}  // namespace
 
 void run_voxel_models(const VoxelModelsOptions& options, const ReportOptions& report) {
   const ThreadLimit limit(1);
@@ -152,6 +160,17 @@ void run_voxel_models(const VoxelModelsOptions& options, const ReportOptions& re
   }
   print_table(lines, 4);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_voxel_models(cli::Program& program) {
+  auto [command, o] = add_command<VoxelModelsOptions>(
+      program, "voxel-models", "All voxel marches over the models of files: building, memory, speed", run_voxel_models);
+  command.add(&o.files, {.names = "FILE", .help = ".vox and .binvox", .files = "vox binvox", .required = true});
+  command.add(&o.width,
+              {.names = "--width", .help = "pixels per side of the pictures, a multiple of 8", .range = {8, 2048}});
+  add_repeats_option(command, o.repeats);
 }
 
 }  // namespace scarp::bench

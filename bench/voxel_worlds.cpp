@@ -11,11 +11,15 @@
 #include <optional>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/fields.h"
+#include "bench/trace_options.h"
 #ifdef SCARP_BENCH_NANOVDB
 #include "bench/nanovdb_peer.h"
 #endif
+#include "bench/protocol.h"
+#include "bench/report.h"
 #include "bench/voxel_engine.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/ground_voxels.h"
@@ -23,6 +27,15 @@
 
 namespace scarp::bench {
 namespace {
+
+// `voxel-worlds`: procedural ground as voxels, thousands a side.
+struct VoxelWorldsOptions {
+  int side = 4096;  // voxels
+  int width = 256;  // pixels per side of the pictures, from four corners, a multiple of 8
+  int repeats = 3;
+  bool planes = false;            // also voxel-planes, which visits every voxel
+  std::optional<bool> nanovdb{};  // also NanoVDB, where installed
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -72,8 +85,6 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-}  // namespace
-
 void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& report) {
   FieldOptions ground_options;
   ground_options.size = std::max(options.side, 33);
@@ -105,7 +116,7 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
   if (options.planes) add(std::make_shared<const VoxelModel>(model->marched_by(find_voxel_march("voxel-planes"))));
 #ifdef SCARP_BENCH_NANOVDB
   std::unique_ptr<NanovdbPeer> nanovdb;
-  if (options.nanovdb) {
+  if (options.nanovdb.value_or(true)) {
     const auto top = [&](int x, int y) {
       return x < 0 || y < 0 || x >= options.side || y >= options.side
                  ? 0
@@ -178,6 +189,19 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
   }
   print_table(lines, 3);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_voxel_worlds(cli::Program& program) {
+  auto [command, o] =
+      add_command<VoxelWorldsOptions>(program, "voxel-worlds", "Ground of voxels, thousands a side", run_voxel_worlds);
+  command.add(&o.side, {.names = "--side", .help = "voxels per side", .range = {33, 16384}});
+  command.add(&o.width,
+              {.names = "--width", .help = "pixels per side of the pictures, a multiple of 8", .range = {8, 2048}});
+  add_repeats_option(command, o.repeats);
+  command.add(&o.planes, {.names = "--planes", .help = "also voxel-planes, which visits every voxel"});
+  command.add(cli::Off{&o.nanovdb}, {.names = "--no-nanovdb", .help = "without NanoVDB"});
 }
 
 }  // namespace scarp::bench

@@ -8,11 +8,15 @@
 #include <memory>
 #include <vector>
 
+#include "bench/command.h"
 #include "bench/commands.h"
+#include "bench/trace_options.h"
+#include "bench/voxels_options.h"
 #ifdef SCARP_BENCH_NANOVDB
 #include "bench/nanovdb_peer.h"
 #endif
 #include "bench/protocol.h"
+#include "bench/report.h"
 #include "bench/voxel_embree_peer.h"
 #include "bench/voxel_hash.h"
 #include "bench/voxel_sets.h"
@@ -292,8 +296,6 @@ VoxelGrid block_of(const ivec3& objects) {
   return grid;
 }
 
-}  // namespace
-
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report) {
   const ThreadLimit limit(1);
   Json rows = Json::array();
@@ -316,6 +318,39 @@ void run_voxels(const VoxelsOptions& options, const ReportOptions& report) {
   }
   print_table(lines, 5);
   write_json(report, rows);
+}
+
+}  // namespace
+
+void add_voxels(cli::Program& program) {
+  auto [command, o] =
+      add_command<VoxelsOptions>(program, "voxels", "The founding post's tables: 1k to 16k objects of 32^3 voxels",
+                                 [](const VoxelsOptions& options, const ReportOptions& report) {
+#ifdef SCARP_BENCH_VULKAN
+                                   if (!options.device.empty()) return run_device_voxels(options, report);
+#endif
+                                   run_voxels(options, report);
+                                 });
+  command.add(cli::List<std::string>{&o.sets},
+              {.names = "--sets", .help = "sets of objects", .choices = o.sets, .closed = true});
+  command.add(cli::List<int>{&o.thousands}, {.names = "--thousands", .help = "thousands of objects", .range = {1, 16}});
+  command.add(&o.stride,
+              {.names = "--stride", .help = "one tile of 8 x 8 pixels in N x N of 1920 x 1080", .range = {1, 64}});
+  command.add(
+      &o.width,
+      {.names = "--width", .help = "pixels per side of the pictures of one grid, a multiple of 8", .range = {8, 2048}});
+  command.add(&o.block,
+              {.names = "--block", .help = "objects per side of the larger one of these grids", .range = {1, 16}});
+  add_repeats_option(command, o.repeats);
+  add_pass_limit_option(command, o.pass_limit_s, "a technique");
+#ifdef SCARP_BENCH_VULKAN
+  command.add(&o.device, {.names = "--device",
+                          .value = "NAME",
+                          .help = "instead: both ways of drawing of a Vulkan device, and its triangles",
+                          .note = "cpu, gpu, auto or part of a name"});
+  command.add(&o.height,
+              {.names = "--height", .help = "pixels of the pictures of --device, 16 : 9", .range = {9, 1080}});
+#endif
 }
 
 }  // namespace scarp::bench

@@ -11,12 +11,13 @@
 #include <limits>
 #include <memory>
 
-#include "bench/commands.h"
 #include "bench/device_seconds.h"
 #include "bench/pixel_match.h"
 #include "bench/protocol.h"
+#include "bench/report.h"
 #include "bench/voxel_sets.h"
 #include "bench/voxel_triangles.h"
+#include "bench/voxels_options.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/voxel_camera_vk.h"
 

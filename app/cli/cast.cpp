@@ -24,6 +24,7 @@
 #include "app/cli/places.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/scan.h"
 #include "app/cli/shared_options.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
@@ -64,10 +65,15 @@ Coordinates (--crs), also of --mesh-at; z is always in metres:
 
 Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row, position u,v in
 the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For inputs other than terrain also
-object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.)";
+object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.
+
+Scanner (--scanner), JSON: elevations, azimuths, rate, and a pose or a path of poses; optional:
+turns, range, noise, mounting, time_offsets, azimuth_offsets (doc/user/scanners.md). Points: time,
+column, channel, azimuth, elevation, range, x,y,z, object. LAS is version 1.4, point format 6.)";
 
 struct CastOptions : InputOptions {
   std::string rays, output, coordinates;
+  ScanOptions scan;
   bool any = false, all = false;
   int threads = 0;
   std::vector<std::string> typed;  // the values of the options
@@ -328,8 +334,89 @@ std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays
       below, rays.size());
 }
 
+// The input with the mesh of --mesh.
+struct WholeInput {
+  OpenedInput input;  // its scene is in `scene`
+  Places places;
+  Scene scene;
+  std::vector<std::string> notes;
+};
+
+WholeInput open_whole(const CastOptions& options, InputKind kind) {
+  const MeshInput mesh(options.mesh);
+  OpenedInput input = open(options, kind);
+  keep_inputs(options.output, input.files);
+  std::vector<std::string> notes;
+  for (const std::string& note : input.notes) notes.push_back(in_words_of_cast(note));
+  Places places = places_of(options, input);
+  if (kind == InputKind::terrain) {
+    if (const std::string note = no_ground_note(*input.scene.only_heights()); !note.empty()) notes.push_back(note);
+  }
+  stop_if_interrupted();
+  Scene scene = mesh.with_mesh(std::move(input.scene), places);
+  notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());
+  return {std::move(input), std::move(places), std::move(scene), std::move(notes)};
+}
+
+void run_table(const CastOptions& options, InputKind kind, AllHits all) {
+  const RayTable table = read_rays(options.rays);
+  const bool terrain = kind == InputKind::terrain && options.mesh.file.empty();
+  HitTable out(options.output,
+               options.any ? TableKind::blocked
+               : terrain   ? TableKind::hits
+                           : TableKind::scene_hits,
+               table.carried);
+  WholeInput whole = open_whole(options, kind);
+  std::vector<std::string>& notes = whole.notes;
+  const Places& places = whole.places;
+  const CoordinateFrame& frame = places.frame();
+  std::vector<Ray> rays = rays_in_local(table, frame);
+  if (std::string note = check(table, rays, whole.scene); !note.empty()) notes.push_back(std::move(note));
+  stop_if_interrupted();
+
+  const SceneOnDevice there = scene_on_device(options.device, whole.scene);
+  const Scene& scene = there.scene;
+  const std::string& device = there.device;
+  Caster caster(all, scene, whole.input.document ? whole.input.document->materials.size() : 0, frame, table, out);
+  const Progress progress = terminal_progress("cast");
+  for (std::size_t first = 0; first < rays.size(); first += kPiece) {
+    const std::size_t count = std::min(kPiece, rays.size() - first);
+    const std::span<const Ray> piece = std::span(rays).subspan(first, count);
+    if (options.any) {
+      caster.blocked(first, piece);
+    } else {
+      caster.hits(first, piece);
+    }
+    if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
+  }
+  out.commit();
+  // Last: on failure only one line is printed.
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
+    fmt::print(stderr, "note: {}\n", note);
+  if (::isatty(STDERR_FILENO) != 0) {
+    constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
+    fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
+               options.any ? "blocked" : "hits", caster.seconds(),
+               static_cast<double>(rays.size()) / std::max(caster.seconds(), kTick_s) * 1e-6,
+               device.empty() ? "" : ", on " + device);
+  }
+}
+
+void run_scanner(const CastOptions& options, InputKind kind) {
+  check_scan_output(options.scan, options.output);
+  ScannerFile scanner = read_scanner(options.scan.scanner);
+  keep_inputs(options.output, scanner.files);
+  const WholeInput whole = open_whole(options, kind);
+  const SceneOnDevice there = scene_on_device(options.device, whole.scene);
+  run_scan(options.scan, std::move(scanner), {there.scene, whole.places, whole.input.georeference}, options.output,
+           whole.notes, there.device);
+}
+
 void run(CastOptions options, const Command& command) {
   if (options.output == "-") options.output.clear();
+  if (options.rays.empty() && options.scan.scanner.empty())
+    throw WrongUsage("--rays FILE or --scanner FILE is required (see 'scarp cast --help')");
   const InputKind kind = kind_of_input(command, options);
   command.require_effect({kind, {}, march_of(options, kind)});
   const AllHits all = all_hits_of(options);  // refuses before files are read
@@ -348,56 +435,10 @@ void run(CastOptions options, const Command& command) {
   const ThreadLimit limit(options.threads);
   // The reader of the table may close the pipe, as `head` does: the program then ends silently, as others do.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
-
-  const RayTable table = read_rays(options.rays);
-  const bool terrain = kind == InputKind::terrain && options.mesh.file.empty();
-  HitTable out(options.output,
-               options.any ? TableKind::blocked
-               : terrain   ? TableKind::hits
-                           : TableKind::scene_hits,
-               table.carried);
-  const MeshInput mesh(options.mesh);
-  OpenedInput input = open(options, kind);
-  keep_inputs(options.output, input.files);
-  std::vector<std::string> notes = input.notes;
-  const Places places = places_of(options, input);
-  const CoordinateFrame& frame = places.frame();
-  std::vector<Ray> rays = rays_in_local(table, frame);
-  if (kind == InputKind::terrain) {
-    if (const std::string note = no_ground_note(*input.scene.only_heights()); !note.empty()) notes.push_back(note);
-  }
-  stop_if_interrupted();
-  const Scene whole = mesh.with_mesh(std::move(input.scene), places);
-  notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());
-  if (std::string note = check(table, rays, whole); !note.empty()) notes.push_back(std::move(note));
-  stop_if_interrupted();
-
-  const SceneOnDevice there = scene_on_device(options.device, whole);
-  const Scene& scene = there.scene;
-  const std::string& device = there.device;
-  Caster caster(all, scene, input.document ? input.document->materials.size() : 0, frame, table, out);
-  const Progress progress = terminal_progress("cast");
-  for (std::size_t first = 0; first < rays.size(); first += kPiece) {
-    const std::size_t count = std::min(kPiece, rays.size() - first);
-    const std::span<const Ray> piece = std::span(rays).subspan(first, count);
-    if (options.any) {
-      caster.blocked(first, piece);
-    } else {
-      caster.hits(first, piece);
-    }
-    if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
-  }
-  out.commit();
-  // Last: on failure only one line is printed.
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
-  if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
-    fmt::print(stderr, "note: {}\n", note);
-  if (::isatty(STDERR_FILENO) != 0) {
-    constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
-    fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
-               options.any ? "blocked" : "hits", caster.seconds(),
-               static_cast<double>(rays.size()) / std::max(caster.seconds(), kTick_s) * 1e-6,
-               device.empty() ? "" : ", on " + device);
+  if (options.scan.scanner.empty()) {
+    run_table(options, kind, all);
+  } else {
+    run_scanner(options, kind);
   }
 }
 
@@ -414,21 +455,26 @@ void add_cast(Program& program) {
                         .help = "table of rays: .csv or .npy",
                         .files = "csv npy",
                         .note = "-: CSV from standard input",
-                        .required = true});
-  add_output_option(command, o.output, "table of hits: .csv or .npy; -: CSV to standard output", "csv npy", false);
+                        .fallback = "none",
+                        .common = true});
+  add_scan_options(command, o.scan);
+  add_output_option(command, o.output,
+                    "table of hits: .csv or .npy; points of a scanner also .ply or .las; -: CSV to standard output",
+                    "csv npy ply las", false);
   add_coordinates_option(command, o.coordinates,
                          {.names = "--crs",
-                          .help = "coordinates of rays, hits and --mesh-at",
+                          .help = "coordinates of rays, scanners, hits and --mesh-at",
                           .fallback = "map; local for inputs without a georeference",
                           .common = true});
   command.add(&o.any, {.names = "--any",
                        .help = "occlusion only: columns ray,blocked (1, or 0; 0 also for rays that start below ground)",
-                       .common = true});
+                       .common = true,
+                       .excludes = {"--scanner"}});
   command.add(&o.all, {.names = "--all",
                        .help = "all hits of each ray in order of t",
                        .common = true,
                        .inputs = {kTerrain, kFirstHit, kFirstHit},
-                       .excludes = {"--any", "--mesh"}});
+                       .excludes = {"--any", "--mesh", "--scanner"}});
   add_march_option(command, o.march);
   add_device_option(command, o.device);
   add_threads_option(command, o.threads);
@@ -443,6 +489,7 @@ void add_cast(Program& program) {
   command.example("scarp cast dem.tif --rays rays.csv -o hits.csv");
   command.example("scarp cast dem.tif --rays rays.npy --crs local --any -o blocked.npy");
   command.example("scarp cast city.vox --rays rays.csv");
+  command.example("scarp cast dem.tif --scanner lidar.json -o points.las");
   command.runs([options, &command] {
     options->typed = command.typed_values();
     run(*options, command);

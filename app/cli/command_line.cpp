@@ -6,10 +6,12 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "app/cli/commands.h"
-#include "app/cli/help.h"
+#include "app/cli/gdal_words.h"
 #include "app/cli/progress.h"
+#include "app/options/help.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {
@@ -31,7 +33,21 @@ int flush_output() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0
 
 }  // namespace
 
-void add_commands(Program& program) {
+ProgramAbout about_scarp() {
+  return {.name = "scarp",
+          .version = SCARP_VERSION,
+          .summary = "Exact ray marching of terrain and voxels: elevation models in, pictures and hits out.",
+          .example = "scarp render dem.tif -o dem.png",
+          .with_file = [](const std::string& file) { return "scarp render " + file + " -o out.png"; },
+          .reworded =
+              [](const std::vector<std::string>& words) {
+                const bool map = !words.empty() && (words[0] == "viewshed" || words[0] == "shadow");
+                return map ? without_gdal_words(words) : words;
+              }};
+}
+
+Program scarp_program() {
+  Program program(about_scarp());
   add_render(program);
 #ifdef SCARP_VIEWER
   add_view(program);
@@ -52,11 +68,11 @@ void add_commands(Program& program) {
   add_devices(program);
 #endif
   add_options(program);
+  return program;
 }
 
 int run_command_line(int argc, char** argv) {
-  Program program;
-  add_commands(program);
+  Program program = scarp_program();
   return run_program(program, argc, argv);
 }
 

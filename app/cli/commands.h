@@ -2,7 +2,7 @@
 // The subcommands of `scarp`. Each declares itself and its options; it throws scarp::Error when it fails.
 #pragma once
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 
 namespace scarp::cli {
 
@@ -24,7 +24,8 @@ void add_devices(Program& program);  // with SCARP_VULKAN
 
 void add_options(Program& program);  // hidden: the documents generated from the declarations
 
-/// All of these.
-void add_commands(Program& program);
+ProgramAbout about_scarp();
+/// The program with all of these.
+Program scarp_program();
 
 }  // namespace scarp::cli

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/cli/documents.h"
-#include "app/cli/help.h"
+#include "app/options/help.h"
 
 namespace scarp::cli {
 namespace {

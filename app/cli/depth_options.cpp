@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 
 namespace scarp::cli {
 

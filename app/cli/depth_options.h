@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/render/camera/depth.h"
 
 namespace scarp::cli {

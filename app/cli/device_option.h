@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/scene/scene.h"
 

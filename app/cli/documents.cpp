@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/help.h"
+#include "app/options/help.h"
 
 namespace scarp::cli {
 namespace {

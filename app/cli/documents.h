@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 
 namespace scarp::cli {
 

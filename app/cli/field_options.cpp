@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {

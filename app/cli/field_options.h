@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/scene/file/from_raster.h"
 
 namespace scarp::cli {

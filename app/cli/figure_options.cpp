@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/numbers.h"
 #include "app/cli/vox_input.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "app/cli/command.h"
 #include "app/cli/picture_format.h"
+#include "app/options/command.h"
 #include "scarp/base/georeference.h"
 #include "scarp/output/figure.h"
 #include "scarp/render/frame/picture.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/command.h"
 #include "app/cli/places.h"
+#include "app/options/command.h"
 #include "scarp/render/camera/camera.h"
 
 namespace scarp::cli {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/field/height_function.h"
 #include "scarp/march/function/presets.h"
 #include "scarp/scene/file/example_functions.h"

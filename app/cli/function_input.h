@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/march/march_settings.h"
 #include "scarp/render/camera/camera.h"
 

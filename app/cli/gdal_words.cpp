@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "app/cli/option.h"
+#include "app/options/option.h"
 
 namespace scarp::cli {
 namespace {

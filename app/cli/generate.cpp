@@ -10,9 +10,9 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
-#include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/shared_options.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/base/georeference.h"
 #include "scarp/render/frame/picture_request.h"
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/scene/material.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/command.h"
 #include "app/cli/places.h"
+#include "app/options/command.h"
 #include "scarp/scene/scene.h"
 #include "scarp/source/mesh_file.h"
 

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "app/cli/exr_output.h"
-#include "app/cli/option.h"
+#include "app/options/option.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/base/georeference.h"
 #include "scarp/scene/scene.h"
 #include "scarp/source/coordinates.h"

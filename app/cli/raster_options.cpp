@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {

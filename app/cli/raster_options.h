@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/source/raster_options.h"
 
 namespace scarp::cli {

@@ -9,7 +9,7 @@
 
 #include "app/cli/kept_inputs.h"
 #include "app/cli/map_preview.h"
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 

@@ -12,10 +12,10 @@
 #include "app/cli/device_option.h"
 #include "app/cli/field_options.h"
 #include "app/cli/march_options.h"
-#include "app/cli/numbers.h"
 #include "app/cli/places.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/shared_options.h"
+#include "app/options/numbers.h"
 
 namespace scarp::cli {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/command.h"
 #include "app/cli/depth_options.h"
 #include "app/cli/figure_options.h"
 #include "app/cli/frames.h"
 #include "app/cli/look_options.h"
 #include "app/cli/open_input.h"
 #include "app/cli/places.h"
+#include "app/options/command.h"
 #include "scarp/render/frame/picture_request.h"
 
 namespace scarp::cli {

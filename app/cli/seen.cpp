@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 
 namespace scarp::cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {

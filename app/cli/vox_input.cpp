@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "app/cli/numbers.h"
 #include "app/cli/progress.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"

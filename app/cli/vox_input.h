@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <variant>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 
 namespace scarp::viewer {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/cli/command_line.h"
+#include "app/cli/commands.h"
 #include "app/cli/view_options.h"
 #include "app/viewer/opening.h"
 #include "app/viewer/viewer.h"
@@ -13,7 +14,7 @@
 
 int main(int argc, char** argv) {
   using namespace scarp;
-  const auto program = std::make_shared<cli::Program>();
+  const auto program = std::make_shared<cli::Program>(cli::about_scarp());
   const auto options = std::make_shared<cli::ViewOptions>();
   cli::Command& command = declare_view(*program, *options);
   command.runs([&] {

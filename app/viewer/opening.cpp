@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -40,7 +41,7 @@ std::vector<GivenOption> combinable(const cli::Command& command, const std::vect
 }
 
 struct Parsed {
-  std::shared_ptr<cli::Program> program = std::make_shared<cli::Program>();
+  std::shared_ptr<cli::Program> program = std::make_shared<cli::Program>(cli::about_scarp());
   std::shared_ptr<cli::ViewOptions> options = std::make_shared<cli::ViewOptions>();
   cli::Command& command = declare_view(*program, *options);
 

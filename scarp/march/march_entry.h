@@ -10,12 +10,14 @@
 #include <string_view>
 
 #include "scarp/march/guarantee.h"
+#include "scarp/march/sampling_kind.h"
 
 namespace scarp {
 
 struct MarchEntry {
   std::string_view name{};  ///< as typed: "max-mip"
   Guarantee guarantee = Guarantee::approximate;
+  Sampling sampling = Sampling::none;
   bool simd = false;               ///< answers batches in vectors
   bool gpu = false;                ///< runs on Vulkan devices
   std::string_view parameters{};   ///< its settings with their defaults, for people

@@ -5,15 +5,16 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
+#include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
+#include "scarp/output/little_endian.h"
+#include "scarp/output/npy_array.h"
+#include "scarp/output/output_file.h"
 
 namespace scarp {
 namespace {
@@ -69,9 +70,6 @@ std::span<const std::string_view> words_of(std::size_t column) {
   return {};
 }
 
-// Size of the pieces written to the file.
-constexpr std::size_t kPiece = 1 << 20;
-
 // RFC 4180: quotes text that contains a separator, a quote or a line break.
 void append_quoted(std::string& out, std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
@@ -86,29 +84,10 @@ void append_quoted(std::string& out, std::string_view text) {
   out += '"';
 }
 
-void append_little_endian(std::string& out, double number) {
-  const auto bits = std::bit_cast<std::uint64_t>(number);
-  for (int i = 0; i < 8; ++i) out += static_cast<char>(bits >> (8 * i) & 0xff);
-}
-
-// The header of an array of `rows` structures. Its length does not depend on `rows`, so it can be rewritten at the end.
-std::string npy_header(std::span<const std::string_view> columns, std::int64_t rows) {
-  std::string fields;
-  for (const std::string_view name : columns) fields += fmt::format("('{}', '<f8'), ", name);
-  constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
-  constexpr std::size_t kAlignment = 64;
-  constexpr int kWidestCount = std::numeric_limits<std::int64_t>::digits10 + 1;
-  const std::string count = fmt::format("{}", rows);
-  std::string dictionary = fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}",
-                                       std::string_view(fields).substr(0, fields.size() - 2), count);
-  dictionary.append(kWidestCount - count.size(), ' ');
-  const std::size_t unpadded = kMagic.size() + 2 + dictionary.size() + 1;
-  dictionary.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
-  dictionary += '\n';
-  std::string header(kMagic);
-  header += static_cast<char>(dictionary.size() & 0xff);
-  header += static_cast<char>(dictionary.size() >> 8 & 0xff);
-  return header + dictionary;
+std::string npy_header(std::span<const std::string_view> names, std::int64_t rows) {
+  std::vector<NpyColumn> columns;
+  for (const std::string_view name : names) columns.push_back({name});
+  return npy_array_header(columns, rows);
 }
 
 bool is_npy(const std::string& path) {
@@ -129,45 +108,30 @@ std::optional<HitKind> find_hit_kind(std::string_view name) {
   return static_cast<HitKind>(found - kKindNames.begin());
 }
 
-void HitTable::OutputCloser::operator()(std::FILE* file) const {
-  if (file != stdout) std::fclose(file);
-}
-
 HitTable::HitTable(const std::string& path, TableKind kind, const TextColumns& carried)
-    : path_(path), kind_(kind), carried_(carried), npy_(is_npy(path)) {
+    : kind_(kind), carried_(carried), npy_(is_npy(path)) {
   const auto columns = columns_of(kind);
   for (const std::string& name : carried.names) {
     if (!npy_ && std::find(columns.begin(), columns.end(), name) != columns.end()) {
-      refuse(fmt::format("column '{}' of the rays has the name of an output column (rename it)", name));
+      throw Error(fmt::format("{}: column '{}' of the rays has the name of an output column (rename it)",
+                              path.empty() ? "standard output" : path, name));
     }
   }
-  if (path.empty()) {
-    file_.reset(stdout);
-  } else {
-    place_ = std::make_unique<ReplaceFile>(path);
-    file_.reset(std::fopen(place_->temporary_path().c_str(), "wb"));
-    if (!file_) refuse(std::strerror(errno));
-  }
+  file_ = std::make_unique<OutputFile>(path);
   put_header();
 }
 
 HitTable::~HitTable() = default;
 
-void HitTable::refuse(std::string_view what) const {
-  throw Error(fmt::format("{}: {}", path_.empty() ? "standard output" : path_, what));
-}
-
 void HitTable::put_header() {
   const auto columns = columns_of(kind_);
-  if (npy_) {
-    text_ += npy_header(columns, rows_);
-    return;
-  }
+  if (npy_) return file_->add(npy_header(columns, rows_));
+  std::string text;
   for (const std::string& name : carried_.names) {
-    append_quoted(text_, name);
-    text_ += ',';
+    append_quoted(text, name);
+    text += ',';
   }
-  text_ += fmt::format("{}\n", fmt::join(columns, ","));
+  file_->add(text + fmt::format("{}\n", fmt::join(columns, ",")));
 }
 
 void HitTable::put(std::int64_t ray, std::span<const double> numbers) {
@@ -191,7 +155,8 @@ void HitTable::put(std::int64_t ray, std::span<const double> numbers) {
     }
     text_ += '\n';
   }
-  if (text_.size() >= kPiece) flush();
+  file_->add(text_);
+  text_.clear();
 }
 
 void HitTable::add(std::span<const HitRow> rows) {
@@ -244,24 +209,6 @@ void HitTable::add(std::int64_t first_ray, std::span<const std::uint8_t> blocked
   }
 }
 
-void HitTable::flush() {
-  if (std::fwrite(text_.data(), 1, text_.size(), file_.get()) != text_.size()) {
-    refuse("cannot be written (is the disk full?)");
-  }
-  text_.clear();
-}
-
-void HitTable::commit() {
-  flush();
-  if (npy_) {
-    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) refuse(std::strerror(errno));
-    text_ = npy_header(columns_of(kind_), rows_);
-    flush();
-  }
-  if (std::fflush(file_.get()) != 0) refuse("cannot be written (is the disk full?)");
-  if (!place_) return;
-  if (std::fclose(file_.release()) != 0) refuse("cannot be written (is the disk full?)");
-  place_->commit();
-}
+void HitTable::commit() { file_->commit(npy_ ? npy_header(columns_of(kind_), rows_) : std::string()); }
 
 }  // namespace scarp

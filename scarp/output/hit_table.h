@@ -15,7 +15,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,11 +22,12 @@
 #include <string_view>
 
 #include "scarp/base/ray.h"
-#include "scarp/base/replace_file.h"
 #include "scarp/base/text_columns.h"
 #include "scarp/base/vec.h"
 
 namespace scarp {
+
+class OutputFile;
 
 /// Returns "miss", "hit", "below" or "exhausted".
 std::string_view name_of(HitStatus status);
@@ -72,22 +72,14 @@ class HitTable {
   void commit();
 
  private:
-  struct OutputCloser {
-    void operator()(std::FILE* file) const;
-  };
-
   void put_header();
   void put(std::int64_t ray, std::span<const double> numbers);
-  void flush();
-  [[noreturn]] void refuse(std::string_view what) const;
 
-  std::string path_;
   TableKind kind_;
   const TextColumns& carried_;
   bool npy_;
-  std::unique_ptr<ReplaceFile> place_;  // null: standard output
-  std::unique_ptr<std::FILE, OutputCloser> file_;
-  std::string text_;  // not written yet
+  std::unique_ptr<OutputFile> file_;
+  std::string text_;  // of one row
   std::int64_t rows_ = 0;
 };
 

@@ -487,6 +487,17 @@ std::string Scene::marches() const {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+Sampling Scene::sampling() const {
+  std::optional<Sampling> common;
+  for (const SceneObject& object : objects_) {
+    const SceneField& field = *fields_[object.field];
+    if (field.is_backdrop()) continue;
+    if (common && *common != field.sampling()) return Sampling::none;
+    common = field.sampling();
+  }
+  return common.value_or(Sampling::none);
+}
+
 std::vector<std::string> Scene::caveats() const {
   std::set<std::string> caveats;
   for (const SceneObject& object : objects_) caveats.insert(fields_[object.field]->caveat());

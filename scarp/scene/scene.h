@@ -161,6 +161,8 @@ class Scene {
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
+  /// Returns how the marches sample; `none` if one of them does not or does it differently.
+  Sampling sampling() const;
   /// Returns the distinct SceneField::caveat() messages of its fields.
   std::vector<std::string> caveats() const;
 

@@ -53,6 +53,7 @@ struct SceneFieldParts {
     const Field* field;
     const Entry* march;
     const MarchSettings* settings;
+    double seam = 0;  ///< of heights: as HeightTarget::seam
   };
   using Heights = Marched<HeightField, HeightMarchEntry>;
   using Function = Marched<HeightFunction, FunctionMarchEntry>;
@@ -73,8 +74,9 @@ class SceneField {
  public:
   virtual ~SceneField() = default;
 
-  virtual std::string_view kind() const = 0;   ///< "heights", "function", "shape", "voxels", "mesh"
-  virtual std::string_view march() const = 0;  ///< its name
+  virtual std::string_view kind() const = 0;                    ///< "heights", "function", "shape", "voxels", "mesh"
+  virtual std::string_view march() const = 0;                   ///< its name
+  virtual Sampling sampling() const { return Sampling::none; }  ///< of the march
   /// Returns why the march with its settings guarantees less than MarchEntry states; empty if it does not.
   virtual std::string caveat() const { return {}; }
   /// Bounding box of everything that rays can hit; empty if there is nothing, nullopt for an unbounded field.

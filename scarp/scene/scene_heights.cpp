@@ -57,6 +57,7 @@ class Heights final : public SceneField {
 
   std::string_view kind() const override { return "heights"; }
   std::string_view march() const override { return march_.name; }
+  Sampling sampling() const override { return march_.sampling; }
   std::string caveat() const override {
     if (march_.name != "lipschitz" || settings_.lipschitz.shrink == 0) return {};
     return lipschitz_caveat(settings_.lipschitz, std::isnan(slope_) ? slope_bound(field_) : slope_);
@@ -156,7 +157,7 @@ class Heights final : public SceneField {
     if (from.empty()) return scarp::occluded(target(), rays, blocked, march_, settings_);
     scarp::occluded(target(), begun_on_all_threads(rays, from), blocked, march_, settings_);
   }
-  SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_}}; }
+  SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_, kSeam}}; }
   // A ray from a wall starts free: the wall is behind it.
   Ray started(const Ray& ray, const Hit* from) const override {
     Ray r = ray;

@@ -49,6 +49,7 @@ class Tiles final : public SceneField {
 
   std::string_view kind() const override { return "tiles"; }
   std::string_view march() const override { return march_.name; }
+  Sampling sampling() const override { return march_.sampling; }
   std::optional<WorldBox> box() const override { return box_; }
   double cell_side() const override { return std::min(layout_.ground.cell_x, layout_.ground.cell_y); }
   std::int64_t elements() const override { return elements_; }

@@ -86,7 +86,7 @@ class HeightsOnDevice final : public FieldOnDevice {
 
  private:
   DeviceQueries& queries(bool count) { return marches_.heights(*parts_.march, *parts_.settings, count); }
-  DeviceTarget target() const { return {parts_.field, &ground_, slope_}; }
+  DeviceTarget target() const { return {parts_.field, &ground_, slope_, parts_.seam}; }
 
   Marches& marches_;
   SceneFieldParts::Heights parts_;

@@ -18,10 +18,9 @@ namespace {
 
 using test::run;
 using Names = std::vector<std::string>;
+using test::number;
 using test::Row;
 using test::rows_of;
-
-double number(const Row& row, const std::string& column) { return std::strtod(row.at(column).c_str(), nullptr); }
 
 class Cast : public testing::Test {
  protected:

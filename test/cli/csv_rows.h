@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <string>
@@ -15,6 +16,9 @@ namespace scarp::test {
 
 /// Values by column.
 using Row = std::map<std::string, std::string>;
+
+/// Returns the number in a column; 0 for an empty field.
+inline double number(const Row& row, const std::string& column) { return std::strtod(row.at(column).c_str(), nullptr); }
 
 /// Returns the rows of a CSV without quotes.
 inline std::vector<Row> rows_of(const std::string& csv) {

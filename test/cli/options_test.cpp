@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
-#include "app/cli/help.h"
+#include "app/options/help.h"
 #include "base/refusal.h"
 #include "cli/program.h"
 #include "scarp/base/error.h"
@@ -30,8 +30,7 @@ using Names = std::vector<std::string>;
 
 // The declarations of the program.
 const cli::Program& declared() {
-  static cli::Program program;
-  if (program.commands().empty()) cli::add_commands(program);
+  static const cli::Program program = cli::scarp_program();
   return program;
 }
 

@@ -14,6 +14,7 @@
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
+#include "scarp/march/sampling_entries.h"
 
 namespace scarp {
 namespace {
@@ -27,6 +28,7 @@ constexpr std::uint32_t kLipschitzLocalWords[] = {
 
 struct DeviceMarch {
   std::string_view name;
+  Sampling sampling;
   std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
   std::uint32_t choice;  // the shader's
@@ -34,16 +36,19 @@ struct DeviceMarch {
   int evaluations;       // maximum evaluations of the program per step
 };
 
-constexpr DeviceMarch sampling_march(std::string_view name, std::uint32_t choice) {
-  return {name, "scarp/march/function/function_marches.comp", kFunctionMarchesWords, choice, false, 1};
+constexpr DeviceMarch sampling_march(const MarchEntry& march, std::uint32_t choice) {
+  return {
+      march.name, march.sampling, "scarp/march/function/function_marches.comp", kFunctionMarchesWords, choice, false,
+      1};
 }
 
 constexpr std::array kDeviceMarches = {
-    sampling_march("naive", glsl::kScarpNaive),
-    sampling_march("fixed-step", glsl::kScarpFixedStep),
-    sampling_march("relaxed", glsl::kScarpRelaxed),
-    sampling_march("lipschitz", glsl::kScarpLipschitz),
-    DeviceMarch{"lipschitz-local", "scarp/march/function/lipschitz_local.comp", kLipschitzLocalWords, 0, true, 2},
+    sampling_march(kNaiveEntry, glsl::kScarpNaive),
+    sampling_march(kFixedStepEntry, glsl::kScarpFixedStep),
+    sampling_march(kRelaxedEntry, glsl::kScarpRelaxed),
+    sampling_march(kLipschitzEntry, glsl::kScarpLipschitz),
+    DeviceMarch{"lipschitz-local", Sampling::none, "scarp/march/function/lipschitz_local.comp", kLipschitzLocalWords, 0,
+                true, 2},
 };
 
 const DeviceMarch& device_march(const FunctionMarchEntry& march) {
@@ -64,16 +69,16 @@ ShaderProgram program_of(const DeviceMarch& march, bool any, std::uint32_t parts
           {RayRuns<FunctionRays>::kThreads, march.choice + (asks_any ? 1 : 0), parts}};
 }
 
-glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, double slope) {
+glsl::ScarpSampling sampling_of(Sampling march, const MarchSettings& settings, double slope) {
   glsl::ScarpSampling result{};
-  if (march == "lipschitz-local") {
+  if (march == Sampling::none) {  // lipschitz-local
     result.tolerance = static_cast<float>(settings.lipschitz_local.tolerance);
     result.max_steps = settings.lipschitz_local.max_steps;
     return result;
   }
   // 2^-20 exceeds the rounding errors of the factor and the step.
   result = device_sampling(march, settings, slope, 0x1p-20, 1);
-  if (march == "fixed-step") {
+  if (march == Sampling::fixed_step) {
     result.factor = static_cast<float>(settings.function.step);
     result.least = static_cast<float>(settings.function.step_share);
   }
@@ -116,7 +121,7 @@ struct DeviceFunctionQueries::Impl {
   void ask(const DeviceFunctionTarget& target, bool any, std::span<const Ray> asked, const Answer& answer) {
     const FunctionProgram& program = target.function->program(target.use);
     glsl::FunctionBatch batch{};
-    batch.settings = sampling_of(march.name, march_settings, target.function->bound_everywhere(target.use).slope);
+    batch.settings = sampling_of(march.sampling, march_settings, target.function->bound_everywhere(target.use).slope);
     batch.code = target.device->address(target.use);
     batch.instructions = static_cast<std::uint32_t>(program.code.size());
     batch.result = program.result;

@@ -9,6 +9,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/height/batch_states.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
+#include "scarp/march/sampling_entries.h"
 
 namespace scarp {
 namespace {
@@ -40,8 +41,8 @@ struct DeviceHeightMarch::Row {
   std::uint32_t choice;                   // ScarpSampling::march
   std::size_t state_bytes;                // of an interrupted march
 
-  static constexpr Row sampling(std::string_view name, std::uint32_t choice) {
-    return {name,
+  static constexpr Row sampling(const MarchEntry& march, std::uint32_t choice) {
+    return {march.name,
             "scarp/march/height/height_marches.comp",
             kHeightMarchesWords,
             "scarp/march/height/height_marches_second.comp",
@@ -56,10 +57,10 @@ struct DeviceHeightMarch::Row {
 constexpr std::array<DeviceHeightMarch::Row, 5> DeviceHeightMarch::Row::kAll = {
     Row{"max-mip", "scarp/march/height/max_mip.comp", kMaxMipWords, "scarp/march/height/max_mip_exact.comp",
         kMaxMipExactWords, true, 0, sizeof(glsl::BatchWalk)},
-    sampling("naive", glsl::kScarpNaive),
-    sampling("fixed-step", glsl::kScarpFixedStep),
-    sampling("relaxed", glsl::kScarpRelaxed),
-    sampling("lipschitz", glsl::kScarpLipschitz),
+    sampling(kNaiveEntry, glsl::kScarpNaive),
+    sampling(kFixedStepEntry, glsl::kScarpFixedStep),
+    sampling(kRelaxedEntry, glsl::kScarpRelaxed),
+    sampling(kLipschitzEntry, glsl::kScarpLipschitz),
 };
 
 std::string DeviceHeightMarch::names() { return names_of(Row::kAll); }

@@ -38,8 +38,8 @@ TwoFloats two_floats(double x) {
 template <bool Wraps>
 struct AxisTimes {
   double enter, exit;
-  explicit AxisTimes(const GridAxis<Wraps>& axis) {
-    const double off = HeightField::rounding_of_line(axis.origin, axis.cells);
+  AxisTimes(const GridAxis<Wraps>& axis, double seam) {
+    const double off = seam + HeightField::rounding_of_line(axis.origin, axis.cells);
     const double late = axis.moves() ? off * std::abs(axis.per_direction) : 0;
     enter = axis.enter_time() - late, exit = axis.exit_time() + late;
     if (!axis.moves() && !(axis.origin >= -off && axis.origin <= axis.cells + off)) exit = -HUGE_VAL;
@@ -76,7 +76,7 @@ void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec
 
 // A ray for max-mip.
 template <bool Wraps>
-DeviceRay on_grid(const HeightField& field, const Ray& ray) {
+DeviceRay on_grid(const HeightField& field, const Ray& ray, double seam) {
   DeviceRay result;
   GridRay local = field.grid_from_world(ray);
   // The longer horizontal component, or that of a vertical ray, is scaled to 1 to 2 by a power of two, which is exact.
@@ -111,7 +111,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     y.begin_in(cell.row, begin);
     flags |= glsl::kScarpOnSurface;
   }
-  const AxisTimes<Wraps> across_x(x), across_y(y);
+  const AxisTimes<Wraps> across_x(x, seam), across_y(y, seam);
   if constexpr (!Wraps) {
     const double border = std::max(across_x.enter, across_y.enter);
     way = std::min({last, across_x.exit, across_y.exit});
@@ -136,7 +136,11 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   if (!strict)
     cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
 
-  result.lingers = !strict && field.nodata_count() > 0 && lingers_at_line(field, local, lowest, highest, begin, way, 0);
+  const bool holes = field.nodata_count() > 0;
+  if (!strict && (holes || !Wraps)) {
+    result.lingers =
+        lingers_at_line(field, local, lowest, highest, begin, way, seam, holes ? RimLines::all : RimLines::borders);
+  }
   const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
   // The remaining part: only walls can be hit above or below all ground.
   const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
@@ -196,9 +200,9 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
   return result;
 }
 
-DeviceRay device_ray(const HeightField& field, const Ray& ray) {
+DeviceRay device_ray(const HeightField& field, const Ray& ray, double seam) {
   if (!field.has_cells() || field.all_nodata() || !is_followable(ray)) return {};
-  return field.wraps() ? on_grid<true>(field, ray) : on_grid<false>(field, ray);
+  return field.wraps() ? on_grid<true>(field, ray, seam) : on_grid<false>(field, ray, seam);
 }
 
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top) {

@@ -28,14 +28,15 @@ struct DeviceRay {
   double begin = 0;      ///< t = (begin + time) * per_time for a time returned by the march
   double per_time = 1;   ///< a power of two
   bool marches = false;  ///< whether there is anything to march; otherwise `known` is the result
-  /// Whether it stays beside a line too long for floats to distinguish ground and hole there: it is left to the
-  /// exhaustive march on the host.
+  /// Whether it stays beside a border or the rim of a hole too long for floats to distinguish the two sides: it is left
+  /// to the exhaustive march on the host.
   bool lingers = false;
   HitStatus known = HitStatus::miss;
 };
 
-/// For max-mip, clipped to the highest sample, too. `ray` must be valid (validate() of march/height/queries.h).
-DeviceRay device_ray(const HeightField& field, const Ray& ray);
+/// For max-mip, clipped to the highest sample, too. `ray` must be valid (validate() of march/height/queries.h). `seam`
+/// is HeightTarget::seam.
+DeviceRay device_ray(const HeightField& field, const Ray& ray, double seam = 0);
 /// For the marches that sample along the ray: it starts where they do, at the border or where its range starts.
 /// `clip_at_top`: it ends where it rises above the highest sample, which changes no other point.
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top = false);

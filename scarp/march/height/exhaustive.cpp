@@ -76,8 +76,10 @@ class Ground {
     ox_ = ray.origin.x / to.cell_x;
     oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
     oz_ = up_ * (ray.origin.z / to.exaggeration - to.offset) / to.scale;
-    dx_ = ray.direction.x / to.cell_x;
-    dy_ = -ray.direction.y / to.cell_y;
+    // Times of lines are finite along axes with movement only.
+    const auto movement = [](double d) { return std::isinf(1 / d) ? 0.0 : d; };
+    dx_ = movement(ray.direction.x / to.cell_x);
+    dy_ = movement(-ray.direction.y / to.cell_y);
     dz_ = up_ * ray.direction.z / (to.exaggeration * to.scale);
     // 8 roundings of a position and of a line's time, for each of two fields that meet.
     off_x_ = target.seam + 16 * 0x1p-53 * (std::abs(ox_) + field.cell_cols());

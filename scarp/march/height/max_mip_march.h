@@ -19,7 +19,7 @@ namespace {
 // pyramid is useless.
 bool runs_along_line(const GridRay& ray) {
   const auto along = [&](int axis) {
-    return ray.direction[axis] == 0 && ray.origin[axis] == std::floor(ray.origin[axis]);
+    return std::isinf(1 / ray.direction[axis]) && ray.origin[axis] == std::floor(ray.origin[axis]);
   };
   return along(0) || along(1);
 }

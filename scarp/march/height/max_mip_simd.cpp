@@ -521,7 +521,17 @@ class VectorWalk {
       const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, c.t_clear + h)), zero);
       const VD steepest =
           hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
-      const auto above = hn::Gt(m.in, hn::Add(hn::Mul(gap, steepest), doubt));
+      // Where it comes in, it may have touched the rim before, within the allowance.
+      const VD cols = hn::Set(dd, f_.cols), rows = hn::Set(dd, f_.rows);
+      const VD enter_x = CellRays::line(hn::IfThenElse(r.back_x, hn::Add(first_x, cols), first_x), r.ox, r.per_x);
+      const VD enter_y = CellRays::line(hn::IfThenElse(r.back_y, hn::Add(first_y, rows), first_y), r.oy, r.per_y);
+      const auto late = [&](VD lines, VD o, VD d, VD per) HWY_ATTR {
+        const VD off = hn::Add(hn::Set(dd, f_.seam), hn::Mul(hn::Set(dd, 16 * kUnit), hn::Add(lines, hn::Abs(o))));
+        return hn::IfThenElseZero(hn::Ne(d, zero), hn::Mul(off, hn::Abs(per)));
+      };
+      const VD before = hn::IfThenElseZero(hn::Ge(hn::Max(enter_x, enter_y), t_in),
+                                           hn::Max(late(cols, r.ox, r.dx, r.per_x), late(rows, r.oy, r.dy, r.per_y)));
+      const auto above = hn::Gt(m.in, hn::Add(hn::Mul(hn::Add(gap, before), steepest), doubt));
       // march_max_mip() starts where the ray comes down to the highest sample, not before.
       const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
       const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));

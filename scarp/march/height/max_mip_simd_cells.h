@@ -202,12 +202,14 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
     const VD status = whole(a.status), seen = whole(a.seen), level = whole(a.level);
     const MD at_begin = hn::Eq(any ? hn::Add(level, seen) : level, zero);
-    const MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, kConcerned)), at_begin);
     const CellRays c(r, cells, part);
     // A ray parallel to an axis reaches no line of that axis.
     const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
     const VD never = hn::Set(dd, std::numeric_limits<double>::infinity());
     const VD t_in = hn::Load(dd, a.t_begin + part);
+    // In small fields, rays from outside begin at level 0, too: they may touch the rim before.
+    const MD starts = hn::And(at_begin, hn::Eq(t_in, hn::Load(dd, r.t_min + part)));
+    const MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, kConcerned)), starts);
     const VD tx = hn::IfThenElse(still_x, never, c.x_out()), ty = hn::IfThenElse(still_y, never, c.y_out());
     const MD moves = hn::Or(c.moves(), hn::Or(hn::And(still_x, c.moves_y()), hn::And(still_y, c.moves_x())));
     const VD t_out = hn::Max(hn::Min(tx, ty), t_in), length = hn::Sub(t_out, t_in);

@@ -183,7 +183,8 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   // Beside the field, or above all ground from start to end.
   const V tie = hn::Mul(hn::Set(tag, 0x1p-40), hn::Add(hn::Abs(t_border), hn::Abs(t_exit)));
   const auto beside = hn::Gt(hn::Sub(t_border, t_exit), hn::Add(tie, hn::Add(slack, slack)));
-  const auto stays_above = hn::And(hn::And(hn::Gt(height(t_border), over), hn::Lt(t_border, t_exit)),
+  // Up to the slack before and behind the field, too, where it may touch the rim.
+  const auto stays_above = hn::And(hn::And(hn::Gt(height(hn::Sub(t_border, slack)), over), hn::Lt(t_border, t_exit)),
                                    hn::Or(hn::Not(falls), hn::Gt(height(hn::Add(t_exit, slack)), over)));
   const auto misses = hn::And(sound, hn::Or(beside, stays_above));
   const V at_x = hn::Add(x.origin, hn::Mul(x.direction, t_begin)),

@@ -59,7 +59,7 @@ class Walk {
       if (wanted_.t_clear > t_in_ && !skip_on(wanted_.t_clear)) return;
     } else {
       if (!enter()) {
-        if (!Wraps && side_ == Side::above) follow_border_on_exit();
+        if (!Wraps && side_ != Side::unknown) follow_border_on_exit();
         return;
       }
       if (!x_.moves() && !y_.moves()) return vertical();
@@ -352,9 +352,9 @@ class Walk {
         }
       } else if (Holes && ground_.is_hole(col, row)) {
         const bool corner = cuts_corner(through_x, t_in, t_line);
-        const auto follow = [&] {
-          return follow_rim(t_in, std::min(t_line, ray_.t_max), {col - 1, col + 1, row - 1, row + 1}, corner);
-        };
+        // A ray beside no ground keeps its side only if it stays above all ground.
+        const bool stays = corner && std::min(ray_height(t_in), ray_height(t_line)) > highest;
+        const auto follow = [&] { return follow_rim(t_in, t_line, {col - 1, col + 1, row - 1, row + 1}, stays); };
         if (slow_ ? follow()
                   : begun_ && side_ != Side::below && (touches(t_in) || (sinks_over_rim(t_in) && follow()))) {
           break;
@@ -380,9 +380,8 @@ class Walk {
         begun_ = true;
       }
       if (!falling && lowest_code > highest_code) break;
-      // The range is closed: it may end where the ray leaves a hole.
-      const bool ends_on_line = Holes && t_line == ray_.t_max && t_line < t_exit;
-      if (!(t_line < t_end) && !ends_on_line) {
+      // The range is closed: the cell behind the line on which it ends may have the hit.
+      if (!(t_line < t_end) && !(t_line == ray_.t_max && t_line < t_exit)) {
         left = t_end < t_end_ || (Wraps && Holes && t_exit == t_end_);
         // A line of constant column crossed together with the seam of the rows comes first, too.
         const bool another_column =
@@ -513,16 +512,17 @@ class Walk {
   [[gnu::noinline]] bool follow_border(double begin, double end, bool goes_in) {
     const GridRay ray = grid_ray();
     const auto beside = rim(ray);
-    begin = std::max(begin, ray_.t_min), end = std::min(end, ray_.t_max);
+    begin = std::max(begin, ray_.t_min);
+    if (begin > ray_.t_max) return false;
     return beside.may_touch(begin, end) && follow_rim(begin, end, beside.cells_under(begin, end), false, goes_in);
   }
   // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
   bool follow_border_on_entry() {
-    const bool goes_in = t_in_ <= t_end_;
+    const bool goes_in = t_in_ <= std::min(x_.exit_time(), y_.exit_time());  // wherever the range ends
     return follow_border(rim(grid_ray()).first_time(), goes_in ? t_in_ : rim(grid_ray()).last_time(), goes_in);
   }
   void follow_border_on_exit() {
-    if (strict_ || (!lists() && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
+    if (strict_ || (!lists() && answer_) || (side_ == Side::unknown && !begun_)) return;
     follow_border(std::min(x_.exit_time(), y_.exit_time()), rim(grid_ray()).last_time(), false);
   }
   Rim<T, Wraps, UpsideDown> rim(const GridRay& ray) const { return {field_, ground_, x_, y_, ray, seam_, seam_step_}; }

@@ -80,9 +80,14 @@ class HeightRuns : public RaySlices<HeightRays> {
   std::vector<glsl::HitBlock> answered_;
 };
 
-glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
+glsl::ScarpSampling sampling_of(Sampling march, const MarchSettings& settings, const DeviceTarget& target) {
   const HeightFieldSettings& field = target.field->settings();
   return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
+}
+
+// For rays that DeviceRay::lingers keeps from the device.
+Hit on_host(const DeviceTarget& target, const Ray& ray) {
+  return march_exhaustive({.field = target.field, .seam = target.seam}, ray);
 }
 
 // The kind of ground that a shader for the target is specialised for.
@@ -106,6 +111,7 @@ struct DeviceQueries::Impl {
   Impl(const Device& device, const HeightMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
       : name(entry.name),
+        sampling(entry.sampling),
         march_settings(march_settings_),
         runs(device, settings.rays_at_once),
         statistics(settings.statistics),
@@ -126,18 +132,19 @@ struct DeviceQueries::Impl {
   template <class Answer>
   void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
            const Answer& answer) {
-    const bool exact = name == "max-mip";
+    const bool exact = sampling == Sampling::none;  // max-mip
     const bool starts =
         std::any_of(asked.begin(), asked.end(), [](const Ray& ray) { return ray.start == RayStart::on_surface; });
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
     query.exact_only = exact_only || leaves_first_pass(*target.field);
-    if (!exact) query.sampling = sampling_of(name, march_settings, target);
+    if (!exact) query.sampling = sampling_of(sampling, march_settings, target);
     last_ground = target.ground->address();
     last_query = query;
     runs.ask(
         begin(target.ground->address(), query), [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
         [&](std::size_t i) {
-          return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i], clip_at_top);
+          return exact ? device_ray(*target.field, asked[i], target.seam)
+                       : sampled_device_ray(*target.field, asked[i], clip_at_top);
         },
         [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& hit) {
           answer(i, prepared, hit);
@@ -151,6 +158,7 @@ struct DeviceQueries::Impl {
   }
 
   std::string_view name;
+  Sampling sampling;
   MarchSettings march_settings;
   HeightRuns runs;
   bool statistics, exact_only, clip_at_top;
@@ -177,7 +185,7 @@ void DeviceQueries::closest_hits(const DeviceTarget& target, std::span<const Ray
                                  std::span<DeviceRayCost> costs) {
   require_room(rays.size(), hits.size(), costs.size());
   impl_->ask(target, false, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
-    hits[i] = prepared.lingers ? march_exhaustive({target.field}, rays[i]) : hit_from_device(rays[i], prepared, answer);
+    hits[i] = prepared.lingers ? on_host(target, rays[i]) : hit_from_device(rays[i], prepared, answer);
   });
 }
 
@@ -186,7 +194,7 @@ void DeviceQueries::occluded(const DeviceTarget& target, std::span<const Ray> ra
   require_room(rays.size(), blocked.size(), costs.size());
   impl_->ask(target, true, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
     blocked[i] = prepared.lingers
-                     ? static_cast<bool>(march_exhaustive({target.field}, rays[i]))
+                     ? static_cast<bool>(on_host(target, rays[i]))
                      : prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
   });
 }

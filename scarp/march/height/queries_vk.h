@@ -46,6 +46,7 @@ struct DeviceTarget {
   const DeviceGround* ground = nullptr;  ///< made from the field
   /// slope_bound(*field), metres per metre; needed by marches with needs_slope.
   double slope = std::numeric_limits<double>::quiet_NaN();
+  double seam = 0;  ///< as HeightTarget::seam, for max-mip
 };
 
 /// One march, ready to run on any ground of a device. Not thread-safe.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "scarp/march/height/rounding.h"
 
@@ -21,10 +22,13 @@ inline bool clip_to_heights(const GridRay& ray, double low, double high, double&
   return begin <= end;
 }
 
+/// The lines at which a ray may linger: all, or those where the field ends.
+enum class RimLines : std::uint8_t { all, borders };
+
 /// Returns whether the ray, in this time and between these heights, stays within the allowance of a line for so long
 /// that its height there is not known to kQuickRim.
 inline bool lingers_at_line(const HeightField& field, const GridRay& ray, double low, double high, double begin,
-                            double end, double seam) {
+                            double end, double seam, RimLines lines = RimLines::all) {
   if (!clip_to_heights(ray, low, high, begin, end)) return false;
   const double relief = field.max_sample() - field.min_sample();
   const auto lingers = [&](int axis) {
@@ -32,7 +36,10 @@ inline bool lingers_at_line(const HeightField& field, const GridRay& ray, double
     if (d != 0 && std::abs(ray.direction.z) + along * relief <= kQuickRim * relief * std::abs(d)) return false;
     const auto at = [&](double t) { return d == 0 ? ray.origin[axis] : ray.origin[axis] + d * t; };
     const double a = at(begin), b = at(end), off = rounding_of_line(field, ray, axis, seam);
-    return std::floor(std::max(a, b) + off) >= std::ceil(std::min(a, b) - off);
+    const double least = std::min(a, b) - off, most = std::max(a, b) + off;
+    const int cells = axis == 0 ? field.cell_cols() : field.cell_rows();
+    if (lines == RimLines::borders) return (least <= 0 && most >= 0) || (least <= cells && most >= cells);
+    return std::floor(most) >= std::ceil(least);
   };
   return lingers(0) || lingers(1);
 }

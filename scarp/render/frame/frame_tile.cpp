@@ -14,7 +14,6 @@ namespace {
 
 // Maximum steps assumed by fog and pictures of iterations if the march has no limit.
 constexpr double kMostSteps = 256;
-constexpr std::string_view kFixedStep = "fixed-step";
 // Number of points whose surfaces are prefetched.
 constexpr std::size_t kPointsAhead = 8;
 
@@ -317,7 +316,7 @@ float FrameTile::share_of_steps(std::size_t point, double most) const {
   const Seen& seen = seen_[point];
   const bool meets = seen.hit || (view_.water() && meetings_[point]);
   // A stepped ray that hits nothing takes all its steps, sampled or not.
-  if (!meets && (view_.step_march() || view_.scene().marches() == kFixedStep)) return 1;
+  if (!meets && (view_.step_march() || view_.scene().sampling() == Sampling::fixed_step)) return 1;
   return static_cast<float>(std::min(1.0, seen.steps / most));
 }
 

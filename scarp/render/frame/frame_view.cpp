@@ -64,7 +64,7 @@ Haze haze_of(const Scene& scene, const Camera& camera, const PictureSettings& se
 
 std::optional<StepMarch> step_march_of(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
   const HeightField* field = scene.only_heights();
-  if (settings.look != Look::comanche || !field || scene.marches() != "fixed-step") return {};
+  if (settings.look != Look::comanche || !field || scene.sampling() != Sampling::fixed_step) return {};
   const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(*field);
   return StepMarch(*field, settings.comanche, reach, camera.forward());
 }

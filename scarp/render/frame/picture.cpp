@@ -77,7 +77,7 @@ class ImageTile final : public TileWork {
 
 // On a device, only whole frames support the stepped rays of `comanche`.
 void require_steps(const Scene& scene) {
-  if (scene.on_device() && scene.marches() == "fixed-step") {
+  if (scene.on_device() && scene.sampling() == Sampling::fixed_step) {
     throw Error(
         "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step (use max-mip, or the "
         "CPU)");

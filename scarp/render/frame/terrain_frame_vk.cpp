@@ -90,7 +90,7 @@ void set_steps(glsl::FrameSettings& s, const Scene& scene, const Camera& camera,
   const HeightField& field = *scene.only_heights();
   const ComancheSettings& comanche = settings.comanche;
   const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(field);
-  const bool stepped = scene.marches() == "fixed-step";
+  const bool stepped = scene.sampling() == Sampling::fixed_step;
   s.step = static_cast<float>(reach / comanche.steps);
   s.steps = comanche.steps;
   s.interpolate = comanche.interpolate;
@@ -222,7 +222,7 @@ class FrameMaker {
   // The march and the field of a scene.
   explicit FrameMaker(const Scene& scene)
       : device_(scene.device_terrain()->device),
-        stepped_(scene.marches() == "fixed-step"),
+        stepped_(scene.sampling() == Sampling::fixed_step),
         flags_(device_field((*scene.only_heights()), nullptr).flags),
         stages_(device_, stepped_) {}
 
@@ -319,9 +319,9 @@ bool makes_whole_frames(const Scene& scene, const Camera& camera, const PictureS
   const DeviceTerrain* terrain = scene.device_terrain();
   // The shader paints the ground's own colours.
   if (!terrain || scene.objects()[0].material < settings.materials.size()) return false;
-  const std::string march = scene.marches();
-  const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
-  if (!stepped && march != "max-mip") return false;
+  const Sampling march = scene.sampling();
+  const bool stepped = march == Sampling::fixed_step && settings.look == Look::comanche;
+  if (!stepped && march != Sampling::none) return false;  // of the marches that do not sample, devices have max-mip
   Ray eye;
   eye.origin = camera.eye();
   const dvec3 place = (*scene.only_heights()).grid_from_world(eye).origin;

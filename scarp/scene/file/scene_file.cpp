@@ -6,20 +6,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "scarp/base/error.h"
-#include "scarp/base/input_file.h"
 #include "scarp/scene/file/example_functions.h"
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
 #include "scarp/scene/file/scene_places.h"
 #include "scarp/scene/file/scene_schema.h"
-#include "scarp/source/incomplete_file.h"
 
 namespace scarp {
 namespace {
@@ -28,16 +24,6 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostObjects = std::size_t{1} << 20;
-
-std::string text_of(const std::string& path) {
-  if (fs::is_directory(path)) throw Error("is a folder; give the file of a scene");
-  refuse_special_file(path);
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file && !file.eof()) throw Error("cannot be read; is it there?");
-  refuse_lfs_pointer(text);
-  return text;
-}
 
 // Shared by all files of a scene.
 struct Whole {
@@ -53,7 +39,7 @@ struct Whole {
 class SceneReader {
  public:
   SceneReader(const std::string& path, Whole& whole) : path_(path), whole_(whole) {
-    json_ = parse_scene_text(text_of(path));
+    json_ = parse_scene_text(json_text_of(path, "a scene"));
     whole_.files.push_back(path);
     check_scene_schema(json_);
     around_.folder = fs::path(path).parent_path().string();

@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -18,7 +21,9 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/scene/file/json_object.h"
+#include "scarp/source/incomplete_file.h"
 
 namespace scarp {
 namespace {
@@ -117,6 +122,16 @@ class SchemaWalk {
 }
 
 }  // namespace
+
+std::string json_text_of(const std::string& path, std::string_view what) {
+  if (std::filesystem::is_directory(path)) throw Error(fmt::format("is a folder; give the file of {}", what));
+  refuse_special_file(path);
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file && !file.eof()) throw Error("cannot be read; is it there?");
+  refuse_lfs_pointer(text);
+  return text;
+}
 
 Json parse_scene_text(std::string_view text) {
   std::vector<Level> levels;

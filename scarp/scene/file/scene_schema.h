@@ -11,6 +11,10 @@ namespace scarp {
 /// Maximum nesting depth of a scene file.
 inline constexpr std::size_t kDeepestScene = 1000;
 
+/// Returns the text of a JSON file. Throws Error without its name if it is a folder, missing or not readable; `what` is
+/// the content that is expected, "a scene".
+std::string json_text_of(const std::string& path, std::string_view what);
+
 /// Throws Error naming the line if the text is not JSON, or naming the position as a JSON pointer for a duplicate key
 /// or more than kDeepestScene levels.
 nlohmann::json parse_scene_text(std::string_view text);

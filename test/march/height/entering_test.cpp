@@ -13,6 +13,7 @@
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/height_marches.glsl.h"
+#include "scarp/march/height/height_table.h"
 
 namespace scarp::test {
 namespace {
@@ -49,7 +50,8 @@ TEST(EnteringRays, ContinueInSinglePrecision) {
           const MaxPyramid pyramid(field);
           glsl::host_field = &field;
           glsl::host_pyramid = &pyramid;
-          const glsl::ScarpSampling settings = device_sampling(name, {}, slope_bound(field), 0, 1);
+          const glsl::ScarpSampling settings =
+              device_sampling(find_height_march(name).sampling, {}, slope_bound(field), 0, 1);
           for (std::size_t i = 0; i < rays.size(); ++i) {
             const DeviceRay prepared = sampled_device_ray(field, rays[i]);
             hits[i] = hit_from_device(rays[i], prepared,

@@ -16,6 +16,7 @@
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/height_marches_lean.glsl.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/march/height/queries_vk.h"
 #include "vk/device_under_test.h"
 
@@ -52,7 +53,7 @@ TEST_P(HeightMarchesOnDevice, SampleTheSamePointsAsTheCpu) {
   const std::vector<Ray> rays = rays_along(field);
   const DeviceGround ground(device(), field);
   const DeviceTarget target{&field, &ground, slope_bound(field)};
-  const glsl::ScarpSampling settings = device_sampling(GetParam(), {}, target.slope, 0, 1);
+  const glsl::ScarpSampling settings = device_sampling(find_height_march(GetParam()).sampling, {}, target.slope, 0, 1);
   DeviceQueries queries(device(), find_height_march(GetParam()), {}, {.statistics = true});
   std::vector<Hit> hits(kRaysAlongHills);
   std::vector<DeviceRayCost> costs(kRaysAlongHills);

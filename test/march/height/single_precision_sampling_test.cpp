@@ -16,6 +16,7 @@
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/height_marches_lean.glsl.h"
+#include "scarp/march/height/height_table.h"
 
 namespace scarp::test {
 namespace {
@@ -49,7 +50,8 @@ void check(const Marched& marched, const FieldKind& fields, const RayKind& rays,
   const double slope = slope_bound(field);
   glsl::host_field = &field;
   glsl::host_pyramid = &pyramid;
-  const glsl::ScarpSampling settings = device_sampling(marched.march, marched.settings, slope, 0, 1);
+  const glsl::ScarpSampling settings =
+      device_sampling(find_height_march(marched.march).sampling, marched.settings, slope, 0, 1);
   for (int j = 0; j < kRaysPerField; ++j) {
     const Ray ray = rays.make(field, random);
     const DeviceRay prepared = sampled_device_ray(field, ray);
@@ -124,7 +126,7 @@ TEST(SinglePrecisionSampling, RestartsMidRay) {
   glsl::host_field = &field;
   glsl::host_pyramid = &pyramid;
   const glsl::ScarpField on_device = device_field(field, &pyramid);
-  const glsl::ScarpSampling settings = device_sampling("naive", {}, 0, 0, 1);
+  const glsl::ScarpSampling settings = device_sampling(Sampling::naive, {}, 0, 0, 1);
   Random random(12);
   int far = 0;
   for (int i = 0; i < kRays; ++i) {
@@ -171,7 +173,7 @@ TEST(SinglePrecisionSampling, LipschitzStopsAboveTheGround) {
   glsl::host_pyramid = &pyramid;
   MarchSettings all;
   all.lipschitz = {.tolerance = 0, .max_steps = 100'000};
-  const glsl::ScarpSampling settings = device_sampling("lipschitz", all, slope_bound(field), 0, 1);
+  const glsl::ScarpSampling settings = device_sampling(Sampling::lipschitz, all, slope_bound(field), 0, 1);
   Random random(13);
   int hits = 0;
   for (int i = 0; i < kRays; ++i) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "cases.h"
 #include "march/height/spiteful.h"
 #include "scarp/field/ground_points.h"
 #include "scarp/march/height/exhaustive.h"
@@ -361,6 +362,112 @@ TEST(SteepRims, HitsCornersNextToEmptyBlocksForAnyRangeEnd) {
     }
     rays.check();
   }
+}
+
+// Rays beside the border, over a hole that ends there: they sink below the ground before they come to the next cell.
+TEST(SteepRims, MissHolesThatReachTheBorder) {
+  const std::vector<float> samples{1, 2, 3, 4, 5, 6, 7, 8, kNone};
+  for (const double cell : {1.0, 0.1, 7.7}) {
+    const HeightField field = HeightField::own(samples, 3, 3, {.cell_x = cell, .cell_y = cell});
+    for (const double seam : {0.0, kSeamOfScenes}) {
+      SteepRays rays(field, seam);
+      for (const double lean : leans()) {
+        for (const double drift : {1e-3, 1e-10, 1e-17, 1e-300, 5e-324}) {
+          rays.expect_none({{2 * cell, 0.5 * cell, 10}, {lean * cell, drift * cell, -1}});
+          rays.expect_none({{1.5 * cell, 0, 10}, {-drift * cell, lean * cell, -1}});
+        }
+      }
+      rays.check();
+    }
+  }
+}
+
+// Rays along the border, below its rim where they start: they emerge where the rim is low, and hit its next rise.
+TEST(SteepRims, FollowRaysThatEmergeAlongTheBorder) {
+  constexpr int kSide = 5;
+  const float heights[kSide] = {9, 1, 1, 9, 1};
+  std::vector<float> by_row, by_col;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) by_row.push_back(heights[row]), by_col.push_back(heights[col]);
+  }
+  const HeightField rows = HeightField::own(by_row, kSide, kSide), cols = HeightField::own(by_col, kSide, kSide);
+  for (const double seam : {0.0, kSeamOfScenes}) {
+    SteepRays along_y(rows, seam), along_x(cols, seam);
+    for (const double lean : leans()) {
+      if (std::abs(lean) * kSide > HeightField::rounding_of_line(0, kSide - 1)) continue;
+      for (const double border : {0.0, kSide - 1.0}) {
+        along_y.expect_hit({{border, kSide - 1, 5}, {lean, -1, 0}}, 2.5);
+        along_x.expect_hit({{0, border, 5}, {1, lean, 0}}, 2.5);
+      }
+    }
+    along_y.check();
+    along_x.check();
+  }
+}
+
+// Where the range ends changes no hit, and a hit at its end counts: at nodes, edges and borders, from everywhere.
+TEST(SteepRims, KeepHitsAtTheEndOfTheRange) {
+  Random random(12);
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (int i = 0; i < cases(400, 40, 4); ++i) {
+      std::vector<float> samples(12);
+      for (float& sample : samples) sample = static_cast<float>(whole(random, 0, 9));
+      const HeightField field = HeightField::own(samples, 4, 3, {.surface = surface});
+      const MaxPyramid pyramid(field);
+      const HeightTarget target{&field, &pyramid, 0, i % 2 == 0 ? 0.0 : kSeamOfScenes};
+      for (int j = 0; j < 200; ++j) {
+        const int col = whole(random, 0, 3), row = whole(random, 0, 2);
+        const dvec3 node(col, 2 - row, samples[static_cast<std::size_t>(row * 4 + col)]);
+        Ray ray{.origin = {uniform(random, -1, 4), uniform(random, -1, 3), 20}};
+        if (j % 2 == 0) ray.origin = {node.x, node.y, node.z + uniform(random, 1, 60)};
+        ray.direction = node - ray.origin;
+        const std::vector<double> all = leans();
+        if (j % 2 == 0) ray.direction.x = all[static_cast<std::size_t>(whole(random, 0, 20))];
+        if (j % 4 == 0) ray.direction.y = all[static_cast<std::size_t>(whole(random, 0, 20))];
+        const Hit hit = march_max_mip(target, ray);
+        if (!hit) continue;
+        ray.t_max = hit.t;
+        ASSERT_EQ(march_max_mip(target, ray), hit) << i << " " << j;
+        ASSERT_TRUE(occluded_max_mip(target, ray)) << i << " " << j;
+        ray.t_max = std::nextafter(hit.t, -1e300);
+        ASSERT_FALSE(ray.t_max >= ray.t_min && march_max_mip(target, ray)) << i << " " << j;
+      }
+    }
+  }
+}
+
+// Rays that pass a node of the border by less than the distance at which placed fields meet, rising and falling.
+TEST(SteepRims, TouchNodesOfTheBorderAlikeInAllQueries) {
+  Random random(13);
+  int hits = 0;
+  for (const int side : {3, 5, 40}) {
+    std::vector<float> samples(static_cast<std::size_t>(side * side));
+    for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 100));
+    const HeightField field = HeightField::own(samples, side, side);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid, 0, kSeamOfScenes};
+    std::vector<Ray> rays;
+    for (int i = 0; i < cases(200000, 20000, 2000); ++i) {
+      const int at = whole(random, 0, side - 1), border = whole(random, 0, 1) * (side - 1);
+      const int col = i % 2 == 0 ? at : border, row = i % 2 == 0 ? border : at;
+      const auto beside = [&] { return std::ldexp(uniform(random, -1, 1), -whole(random, 25, 60)); };
+      const dvec3 node(col + beside(), side - 1 - row + beside(), samples[static_cast<std::size_t>(row * side + col)]);
+      const dvec3 d(uniform(random, -2, 2), uniform(random, -2, 2), uniform(random, -100, 100));
+      rays.push_back({.origin = node - d * uniform(random, 0, 2), .direction = d});
+    }
+    std::vector<Hit> batch(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size());
+    closest_hits(target, rays, batch);
+    occluded(target, rays, blocked);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit hit = march_max_mip(target, rays[i]);
+      hits += hit ? 1 : 0;
+      ASSERT_EQ(batch[i], hit) << side << " " << i;
+      ASSERT_EQ(blocked[i] != 0, static_cast<bool>(hit)) << side << " " << i;
+      ASSERT_EQ(occluded_max_mip(target, rays[i]), static_cast<bool>(hit)) << side << " " << i;
+    }
+  }
+  EXPECT_GT(hits, 1000);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/raii.h"
@@ -183,7 +184,8 @@ DeviceRay sampled(const HeightField& field, const Ray& ray) { return sampled_dev
 std::vector<Realisation> realisations(double slope) {
   std::vector<Realisation> all = {{"max-mip", glsl::kTexturesMaxMip, device_ray, {}}};
   for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
-    all.push_back({name, glsl::kTexturesSampled, sampled, device_sampling(name, march_settings(), slope, 0, 1)});
+    all.push_back({name, glsl::kTexturesSampled, sampled,
+                   device_sampling(find_height_march(name).sampling, march_settings(), slope, 0, 1)});
   }
   return all;
 }

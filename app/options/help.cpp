@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/help.h"
+#include "app/options/help.h"
 
 #include <fmt/format.h>
 
@@ -91,7 +91,7 @@ std::vector<TopicOptions> options_by_topic(const Command& command) {
 }
 
 std::string usage_of(const Command& command) {
-  std::string usage = "scarp " + command.name();
+  std::string usage = command.program() + " " + command.name();
   bool more = false;
   for (const Declared& one : command.options()) {
     if (!one.positional() && !one.option.required) {
@@ -110,13 +110,13 @@ std::string usage_of(const Command& command) {
 std::string help_text(const Program& program) {
   std::vector<HelpRow> rows;
   for (const Command* command : program.commands()) rows.push_back({command->name(), command->summary()});
-  return "Exact ray marching of terrain and voxels: elevation models in, pictures and hits out.\n"
-         "Usage: scarp SUBCOMMAND [OPTIONS]\n\nSubcommands:\n" +
-         table_of(rows) +
-         "\nOptions:\n"
-         "  -h, --help   this text; 'scarp SUBCOMMAND --help' lists the options of a subcommand\n"
-         "  --version    version\n\n"
-         "Example:\n  scarp render dem.tif -o dem.png\n";
+  const ProgramAbout& about = program.about();
+  return fmt::format(
+      "{0}\nUsage: {1} SUBCOMMAND [OPTIONS]\n\nSubcommands:\n{2}\nOptions:\n"
+      "  -h, --help   this text; '{1} SUBCOMMAND --help' lists the options of a subcommand\n"
+      "  --version    version\n\n"
+      "Example:\n  {3}\n",
+      about.summary, about.name, table_of(rows), about.example);
 }
 
 std::string help_text(const Command& command, const std::string& topic) {
@@ -131,8 +131,8 @@ std::string help_text(const Command& command, const std::string& topic) {
     listed += fmt::format("\n{}:\n{}", heading_of(of), table_of(options));
   }
   if (!found && !topics.empty()) {
-    throw WrongUsage(fmt::format("--help '{}': unknown topic of 'scarp {}' (topics: {})", topic, command.name(),
-                                 topics_of(command)));
+    throw WrongUsage(fmt::format("--help '{}': unknown topic of '{} {}' (topics: {})", topic, command.program(),
+                                 command.name(), topics_of(command)));
   }
   if (!topic.empty() && topic != "all") return head + listed;
   const std::string all = head + listed + tail;
@@ -143,8 +143,8 @@ std::string help_text(const Command& command, const std::string& topic) {
       if (one->option.common || one->option.required) common.push_back(one);
     }
   }
-  const std::string more =
-      fmt::format("More options: 'scarp {} --help TOPIC'; topics: {}.", command.name(), topics_of(command));
+  const std::string more = fmt::format("More options: '{} {} --help TOPIC'; topics: {}.", command.program(),
+                                       command.name(), topics_of(command));
   return head + "\nCommon options:\n" + table_of(common) + "\n" + wrapped(more) + tail;
 }
 

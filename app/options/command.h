@@ -7,16 +7,17 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "app/cli/option.h"
+#include "app/options/option.h"
 
 namespace scarp::cli {
 
 /// A subcommand. Variables that options are bound to must live until it has run.
 class Command {
  public:
-  Command(std::string name, std::string summary, bool hidden);
+  Command(std::string program, std::string name, std::string summary, bool hidden);
 
   /// Declares an option or a positional argument.
   void add(Binding to, Option option);
@@ -27,6 +28,7 @@ class Command {
   /// The function that the subcommand runs.
   void runs(std::function<void()> work) { work_ = std::move(work); }
 
+  const std::string& program() const { return program_; }
   const std::string& name() const { return name_; }
   const std::string& summary() const { return summary_; }
   bool hidden() const { return hidden_; }
@@ -65,7 +67,7 @@ class Command {
   const Typed* typed(std::string_view name) const;
   void set_values();
 
-  std::string name_, summary_, footer_;
+  std::string program_, name_, summary_, footer_;
   bool hidden_;
   std::deque<Declared> options_;  // stays in place: Typed points into it
   std::vector<std::string> examples_;
@@ -76,8 +78,23 @@ class Command {
 /// Whether `option` is in given().
 bool is_given(const std::vector<std::string>& given, std::string_view option);
 
+/// The name and texts of a program.
+struct ProgramAbout {
+  std::string name{};     ///< "scarp"
+  std::string version{};  //
+  std::string summary{};  ///< one line
+  std::string example{};  ///< a command line
+  /// The command line that was probably meant if a file is typed instead of a subcommand; null: none.
+  std::function<std::string(const std::string& file)> with_file{};
+  /// Words in the place of those typed; null: no change. May throw WrongUsage.
+  std::function<std::vector<std::string>(const std::vector<std::string>& words)> reworded{};
+};
+
 class Program {
  public:
+  explicit Program(ProgramAbout about) : about_(std::move(about)) {}
+  const ProgramAbout& about() const { return about_; }
+
   /// A hidden subcommand is not listed in the help.
   Command& add(const std::string& name, const std::string& summary, bool hidden = false);
   /// The visible subcommands.
@@ -90,6 +107,7 @@ class Program {
   const std::vector<std::string>& words() const { return words_; }
 
  private:
+  ProgramAbout about_;
   std::vector<std::string> words_;
   std::deque<Command> commands_;
 };

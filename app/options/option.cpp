@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/option.h"
+#include "app/options/option.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,6 +35,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, kTopics> kTo
     {"input", "Input interpretation"},
     {"march", "March settings"},
     {"window", "Window"},
+    {"report", "Report"},
 }};
 
 std::string kinds_text(unsigned kinds) {
@@ -74,49 +75,117 @@ std::string placeholder(const Option& option, const Binding& to) {
   if (std::holds_alternative<bool*>(to) || std::holds_alternative<Off>(to)) return {};
   if (option.unit == "metres") return "M";
   if (option.unit == "degrees") return "DEG";
+  if (std::holds_alternative<List<std::string>>(to)) return "WORD,...";
+  if (std::holds_alternative<List<int>>(to)) return "N,...";
+  if (std::holds_alternative<List<double>>(to)) return "F,...";
   return std::holds_alternative<double*>(to) || std::holds_alternative<std::optional<double>*>(to) ? "F" : "N";
 }
 
-// Returns the error of a text; empty if it is valid.
+// "from 1 to 8", "1 or more".
 template <class Whole>
-std::string set_whole(Whole& value, const NumberRange& range, const std::string& text) {
-  Whole number = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool good = error == std::errc() && rest == text.data() + text.size();
-  if (good && static_cast<double>(number) >= range.least && static_cast<double>(number) <= range.most) {
-    value = number;
-    return {};
-  }
-  constexpr auto kLeast = std::numeric_limits<Whole>::min(), kMost = std::numeric_limits<Whole>::max();
-  const std::string least = std::isfinite(range.least) ? fmt::format("{}", range.least) : fmt::format("{}", kLeast);
-  if (!std::isfinite(range.most) && std::is_signed_v<Whole>)
-    return fmt::format("'{}': expected a whole number, {} or more", text, least);
-  const std::string most = std::isfinite(range.most) ? fmt::format("{}", range.most) : fmt::format("{}", kMost);
-  return fmt::format("'{}': expected a whole number from {} to {}", text, least, most);
+std::string whole_numbers_text(const NumberRange& range) {
+  const std::string least = std::isfinite(range.least) ? fmt::format("{}", range.least)
+                                                       : fmt::format("{}", std::numeric_limits<Whole>::min());
+  if (!std::isfinite(range.most) && std::is_signed_v<Whole>) return least + " or more";
+  const std::string most =
+      std::isfinite(range.most) ? fmt::format("{}", range.most) : fmt::format("{}", std::numeric_limits<Whole>::max());
+  return fmt::format("from {} to {}", least, most);
 }
 
-std::string set_bool(bool& value, const std::string& text, bool flag) {
-  if (text != "true" && text != "false") {
-    return flag ? fmt::format("'{}': takes no value", text) : fmt::format("'{}': expected true or false", text);
+template <class Whole>
+std::optional<Whole> whole_from(const std::string& text) {
+  Whole number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && rest == text.data() + text.size()) return number;
+  if constexpr (sizeof(Whole) == 8) {
+    constexpr double kExact = 0x1p53;  // below it, doubles are all whole numbers
+    if (double large = 0; text.find('e') != std::string::npos && number_in(kZeroOrMore)(text).empty() &&
+                          (large = std::strtod(text.c_str(), nullptr)) < kExact && std::floor(large) == large)
+      return static_cast<Whole>(large);
   }
-  value = text == "true";
   return {};
 }
 
-template <class Whole>
-std::string set_whole(std::optional<Whole>& value, const NumberRange& range, const std::string& text) {
-  Whole number = 0;
-  const std::string wrong = set_whole(number, range, text);
-  if (wrong.empty()) value = number;
-  return wrong;
-}
+// "N" of "N,...".
+std::string one_of(const std::string& values) { return values.substr(0, values.find(",...")); }
 
-template <class Number>
-std::string set_number(Number& value, const NumberRange& range, const std::string& text) {
-  const std::string wrong = number_in(range)(text);
-  if (wrong.empty()) value = std::strtod(text.c_str(), nullptr);
-  return wrong;
-}
+// Sets the variable of a binding; the result is the error of the text, empty if it is valid.
+struct Assignment {
+  const Declared& declared;
+  const std::string& text;
+
+  std::string operator()(bool* value) const {
+    if (text != "true" && text != "false")
+      return fmt::format("'{}': {}", text, declared.flag() ? "takes no value" : "expected true or false");
+    *value = text == "true";
+    return {};
+  }
+  std::string operator()(const Off& off) const {
+    bool on = false;
+    const std::string wrong = (*this)(&on);
+    if (wrong.empty()) *off.what = !on;
+    return wrong;
+  }
+  template <class Number>
+  requires std::is_arithmetic_v<Number> std::string operator()(Number* value) const {
+    const NumberRange& range = declared.option.range;
+    if constexpr (std::is_floating_point_v<Number>) {
+      const std::string wrong = number_in(range)(text);
+      if (wrong.empty()) *value = std::strtod(text.c_str(), nullptr);
+      return wrong;
+    } else {
+      const auto number = whole_from<Number>(text);
+      if (!number || static_cast<double>(*number) < range.least || static_cast<double>(*number) > range.most)
+        return fmt::format("'{}': expected a whole number{} {}", text,
+                           std::isfinite(range.most) || !std::is_signed_v<Number> ? "" : ",",
+                           whole_numbers_text<Number>(range));
+      *value = *number;
+      return {};
+    }
+  }
+  template <class Value>
+  std::string operator()(std::optional<Value>* value) const {
+    Value given{};
+    const std::string wrong = (*this)(&given);
+    if (wrong.empty()) *value = given;
+    return wrong;
+  }
+  std::string operator()(std::string* value) const {
+    const auto& choices = declared.option.choices;
+    if (declared.option.closed && std::find(choices.begin(), choices.end(), text) == choices.end()) {
+      const std::vector<std::string_view> words(choices.begin(), choices.end());
+      return fmt::format("'{}': expected {}", text, listed(words, "or"));
+    }
+    *value = text;
+    return {};
+  }
+  std::string operator()(std::vector<std::string>* values) const {
+    std::string value;
+    const std::string wrong = (*this)(&value);
+    if (wrong.empty()) values->push_back(value);
+    return wrong;
+  }
+  template <class Value>
+  std::string operator()(const List<Value>& list) const {
+    std::vector<Value> values;
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const std::size_t end = std::min(text.find(',', begin), text.size());
+      Value value{};
+      const std::string part = text.substr(begin, end - begin);
+      if (std::string wrong = Assignment{declared, part}(&value); !wrong.empty()) return wrong;
+      values.push_back(std::move(value));
+      begin = end + 1;
+    }
+    *list.to = std::move(values);
+    return {};
+  }
+  std::string operator()(const Setter& set) const {
+    std::string checked;
+    if (std::string wrong = (*this)(&checked); !wrong.empty()) return wrong;
+    set(text);
+    return {};
+  }
+};
 
 }  // namespace
 
@@ -179,7 +248,8 @@ std::string Declared::meaning() const {
     text += ": " + listed(words, "or");
   }
   if (!option.unit.empty()) text += " in " + option.unit;
-  if (const std::string range = range_text(option.range, placeholder(option, to)); !range.empty()) text += ", " + range;
+  if (const std::string range = range_text(option.range, one_of(placeholder(option, to))); !range.empty())
+    text += ", " + range;
   if (!option.note.empty()) text += "; " + option.note;
   return text;
 }
@@ -199,39 +269,7 @@ std::string Declared::restrictions() const {
 }
 
 void set_value(const Declared& declared, const std::string& text) {
-  const NumberRange& range = declared.option.range;
-  const auto& choices = declared.option.choices;
-  std::string wrong;
-  if (declared.option.closed && std::find(choices.begin(), choices.end(), text) == choices.end()) {
-    const std::vector<std::string_view> words(choices.begin(), choices.end());
-    wrong = fmt::format("'{}': expected {}", text, listed(words, "or"));
-  } else if (const auto* flag = std::get_if<bool*>(&declared.to)) {
-    wrong = set_bool(**flag, text, declared.flag());
-  } else if (const auto* off = std::get_if<Off>(&declared.to)) {
-    bool on = false;
-    wrong = set_bool(on, text, true);
-    if (wrong.empty()) *off->what = !on;
-  } else if (const auto* whole = std::get_if<int*>(&declared.to)) {
-    wrong = set_whole(**whole, range, text);
-  } else if (const auto* perhaps_whole = std::get_if<std::optional<int>*>(&declared.to)) {
-    wrong = set_whole(**perhaps_whole, range, text);
-  } else if (const auto* small = std::get_if<std::uint32_t*>(&declared.to)) {
-    wrong = set_whole(**small, range, text);
-  } else if (const auto* perhaps_small = std::get_if<std::optional<std::uint32_t>*>(&declared.to)) {
-    wrong = set_whole(**perhaps_small, range, text);
-  } else if (const auto* large = std::get_if<std::uint64_t*>(&declared.to)) {
-    wrong = set_whole(**large, range, text);
-  } else if (const auto* number = std::get_if<double*>(&declared.to)) {
-    wrong = set_number(**number, range, text);
-  } else if (const auto* perhaps = std::get_if<std::optional<double>*>(&declared.to)) {
-    wrong = set_number(**perhaps, range, text);
-  } else if (const auto* word = std::get_if<std::string*>(&declared.to)) {
-    **word = text;
-  } else if (const auto* words = std::get_if<std::vector<std::string>*>(&declared.to)) {
-    (*words)->push_back(text);
-  } else {
-    std::get<Setter>(declared.to)(text);
-  }
+  const std::string wrong = std::visit(Assignment{declared, text}, declared.to);
   if (!wrong.empty()) throw WrongUsage(declared.name + " " + wrong);
 }
 

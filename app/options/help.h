@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/command.h"
+#include "app/options/command.h"
 
 namespace scarp::cli {
 

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {
@@ -49,8 +49,9 @@ enum class Topic : std::uint8_t {
   input,
   march,
   window,
+  report,
 };
-constexpr int kTopics = 18;
+constexpr int kTopics = 19;
 std::string_view name_of(Topic topic);
 std::string_view heading_of(Topic topic);
 
@@ -86,9 +87,15 @@ using Setter = std::function<void(const std::string& text)>;
 struct Off {
   std::optional<bool>* what;
 };
-using Binding =
-    std::variant<bool*, Off, int*, std::optional<int>*, std::uint32_t*, std::optional<std::uint32_t>*, std::uint64_t*,
-                 double*, std::optional<double>*, std::string*, std::vector<std::string>*, Setter>;
+/// Several values in one, "1025,4097": range and choices hold for each. The given ones replace the default.
+template <class Value>
+struct List {
+  std::vector<Value>* to;
+};
+/// Whole numbers of 64 bits may be written as 1e9. std::vector<std::string>* takes several arguments.
+using Binding = std::variant<bool*, Off, int*, std::optional<int>*, std::uint32_t*, std::optional<std::uint32_t>*,
+                             std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
+                             std::vector<std::string>*, List<int>, List<double>, List<std::string>, Setter>;
 
 struct Option {
   std::string names;                    ///< "-o,--output", "--fov"; "IN" for positional arguments

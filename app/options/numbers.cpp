@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/numbers.h"
+#include "app/options/numbers.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/command.h"
+#include "app/options/command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,8 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "app/cli/gdal_words.h"
-#include "app/cli/help.h"
+#include "app/options/help.h"
 
 namespace scarp::cli {
 namespace {
@@ -21,16 +21,26 @@ constexpr const char* kHelp = "-h,--help";
 
 std::string long_name(const std::string& names) { return names.substr(names.find(',') + 1); }
 
+// The value of a variable as text.
+struct ValueText {
+  template <class Value>
+  requires std::is_arithmetic_v<Value> std::string operator()(Value* value) const { return fmt::format("{}", *value); }
+  std::string operator()(std::string* value) const { return *value; }
+  template <class Value>
+  std::string operator()(const List<Value>& list) const {
+    return fmt::format("{}", fmt::join(*list.to, ","));
+  }
+  template <class Other>
+  std::string operator()(const Other&) const {
+    return {};
+  }
+};
+
 // The value of the variable before anything is parsed.
-std::string default_of(const Option& option, const Binding& to) {
+std::string default_of(const Declared& declared) {
+  const Option& option = declared.option;
   if (!option.fallback.empty() || option.required) return option.fallback;
-  if (const auto* flag = std::get_if<bool*>(&to)) return option.value.empty() ? "" : fmt::format("{}", **flag);
-  if (const auto* whole = std::get_if<int*>(&to)) return fmt::format("{}", **whole);
-  if (const auto* small = std::get_if<std::uint32_t*>(&to)) return fmt::format("{}", **small);
-  if (const auto* large = std::get_if<std::uint64_t*>(&to)) return fmt::format("{}", **large);
-  if (const auto* number = std::get_if<double*>(&to)) return fmt::format("{}", **number);
-  if (const auto* text = std::get_if<std::string*>(&to)) return **text;
-  return {};
+  return declared.flag() ? std::string() : std::visit(ValueText{}, declared.to);
 }
 
 // Insertions, deletions and replacements of letters between two words.
@@ -65,7 +75,8 @@ std::string see_help(const CLI::App& app, const CLI::App* called) {
   return fmt::format("see '{}{} --help'", app.get_name(), called == nullptr ? "" : " " + called->get_name());
 }
 
-std::string unknown_word(const CLI::App& app, const CLI::App* called, const std::vector<std::string>& words) {
+std::string unknown_word(const CLI::App& app, const CLI::App* called, const std::vector<std::string>& words,
+                         const ProgramAbout& about) {
   const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
   // After a word that is not a subcommand, every option is unknown.
   const auto option =
@@ -79,8 +90,8 @@ std::string unknown_word(const CLI::App& app, const CLI::App* called, const std:
   const std::string& word = words.front();
   if (called != nullptr) return fmt::format("'{}': unexpected argument ({})", word, see_help(app, called));
   std::error_code no_file;
-  if (std::filesystem::exists(word, no_file))
-    return fmt::format("'{0}' is a file, not a subcommand (did you mean 'scarp render {0} -o out.png'?)", word);
+  if (about.with_file && std::filesystem::exists(word, no_file))
+    return fmt::format("'{}' is a file, not a subcommand (did you mean '{}'?)", word, about.with_file(word));
   std::vector<std::string> names;
   for (const CLI::App* one : app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); }))
     names.push_back(one->get_name());
@@ -89,9 +100,10 @@ std::string unknown_word(const CLI::App& app, const CLI::App* called, const std:
                      see_help(app, nullptr));
 }
 
-std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& app, const CLI::App* called) {
+std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& app, const CLI::App* called,
+                          const ProgramAbout& about) {
   if (const std::vector<std::string> words = app.remaining(true); !words.empty())
-    return unknown_word(app, called, words);
+    return unknown_word(app, called, words, about);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && called != nullptr) {
     for (const CLI::Option* option : called->get_options()) {
       const std::string name = option->get_name(), text = error.what();
@@ -106,13 +118,13 @@ std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& app, con
 
 }  // namespace
 
-Command::Command(std::string name, std::string summary, bool hidden)
-    : name_(std::move(name)), summary_(std::move(summary)), hidden_(hidden) {}
+Command::Command(std::string program, std::string name, std::string summary, bool hidden)
+    : program_(std::move(program)), name_(std::move(name)), summary_(std::move(summary)), hidden_(hidden) {}
 
 void Command::add(Binding to, Option option) {
   Declared declared{std::move(option), std::move(to), {}, {}};
   declared.name = long_name(declared.option.names);
-  declared.default_text = default_of(declared.option, declared.to);
+  declared.default_text = default_of(declared);
   options_.push_back(std::move(declared));
 }
 
@@ -205,7 +217,7 @@ void Command::set_values() {
   }
   for (const Declared& one : options_) {
     if (one.option.required && !given(one.name))
-      throw WrongUsage(fmt::format("{} is required (see 'scarp {} --help')", one.synopsis(), name_));
+      throw WrongUsage(fmt::format("{} is required (see '{} {} --help')", one.synopsis(), program_, name_));
   }
   for (const Typed& one : typed_) {
     for (const std::string& other : one.option->option.excludes) {
@@ -225,7 +237,7 @@ bool is_given(const std::vector<std::string>& given, std::string_view option) {
 }
 
 Command& Program::add(const std::string& name, const std::string& summary, bool hidden) {
-  return commands_.emplace_back(name, summary, hidden);
+  return commands_.emplace_back(about_.name, name, summary, hidden);
 }
 
 std::vector<const Command*> Program::commands() const {
@@ -244,7 +256,7 @@ const Command* Program::find(std::string_view name) const {
 
 void Program::run(int argc, char** argv) {
   static const std::string kNoText;
-  CLI::App app({}, "scarp");
+  CLI::App app({}, about_.name);
   app.set_help_flag();
   const auto add_help = [](CLI::App& to) { return to.add_option(kHelp, CLI::callback_t())->expected(0, 1); };
   const CLI::Option* help = add_help(app);
@@ -275,12 +287,12 @@ void Program::run(int argc, char** argv) {
   try {
     words_.assign(argv + 1, argv + argc);
     std::vector<std::string> words = words_;
-    if (!words.empty() && (words[0] == "viewshed" || words[0] == "shadow")) words = without_gdal_words(words);
+    if (about_.reworded) words = about_.reworded(words);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     const auto subs = app.get_subcommands();
-    wrong = what_is_wrong(error, app, subs.empty() ? nullptr : subs.front());
+    wrong = what_is_wrong(error, app, subs.empty() ? nullptr : subs.front(), about_);
   }
   // Help is printed regardless of other arguments.
   const auto topic_of = [](const CLI::Option& option) {
@@ -298,10 +310,10 @@ void Program::run(int argc, char** argv) {
   }
   if (!wrong.empty()) throw WrongUsage(wrong);
   if (version->count() > 0) {
-    fmt::print("scarp {}\n", SCARP_VERSION);
+    fmt::print("{} {}\n", about_.name, about_.version);
     return;
   }
-  if (called == all.end()) throw WrongUsage("no subcommand (see 'scarp --help')");
+  if (called == all.end()) throw WrongUsage(fmt::format("no subcommand (see '{} --help')", about_.name));
   std::vector<Command::Typed> typed;
   for (const CLI::Option* option : called->app->parse_order()) {
     const auto one = std::find_if(called->options.begin(), called->options.end(),

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: a file that grows piece by piece, and becomes visible when it is complete.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "scarp/base/replace_file.h"
+
+namespace scarp {
+
+class OutputFile {
+ public:
+  /// Opens the file at once. An empty path: standard output. Throws Error if the path is not writable.
+  explicit OutputFile(const std::string& path);
+  ~OutputFile();
+
+  /// Adds bytes; they are written in large pieces. Throws Error if writing fails (disk full), as do the calls below.
+  void add(std::string_view bytes);
+  /// Writes the rest, then `header` over the beginning of the file unless it is empty, and renames the file.
+  void commit(std::string_view header = {});
+
+  /// Throws Error "PATH: WHAT".
+  [[noreturn]] void refuse(std::string_view what) const;
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const;
+  };
+
+  void write(std::string_view bytes);
+
+  std::string path_;
+  std::unique_ptr<ReplaceFile> place_;  // null: standard output
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::string waiting_;  // not written yet
+};
+
+}  // namespace scarp

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+// `scarp cast --scanner` from outside: a scanner file in, points out.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <map>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/csv_rows.h"
+#include "cli/program.h"
+#include "full_disk.h"
+
+namespace scarp {
+namespace {
+
+using test::number;
+using test::Row;
+using test::rows_of;
+using test::run;
+using Names = std::vector<std::string>;
+
+// Casts into a raster without a CRS, which a note would mention.
+test::Result cast(Names arguments) {
+  arguments.insert(arguments.begin(), "cast");
+  if (arguments[1].ends_with(".asc")) arguments.insert(arguments.end(), {"--raster-crs", "none"});
+  return run(arguments);
+}
+
+constexpr double kScanDegree = std::numbers::pi / 180;
+const std::string kHead = "time,column,channel,azimuth,elevation,range,x,y,z,object\n";
+
+class Scan : public testing::Test {
+ protected:
+  static constexpr int kSide = 101;
+
+  std::string path(const std::string& name) const { return scratch_.path(name); }
+  std::string write(const std::string& name, const std::string& text) const { return scratch_.write(name, text); }
+
+  // An ESRI ASCII grid with its south-west node at (1000, 2000), cells of 10.
+  template <class Height>
+  std::string grid(const std::string& name, const Height& height) const {
+    std::string text =
+        fmt::format("ncols {0}\nnrows {0}\nxllcenter 1000\nyllcenter 2000\ncellsize 10\nNODATA_value -9999\n", kSide);
+    for (int row = 0; row < kSide; ++row) {
+      for (int col = 0; col < kSide; ++col) text += fmt::format("{:.2f} ", height(col, row));
+      text += "\n";
+    }
+    return write(name, text);
+  }
+  std::string flat() const {
+    return grid("flat.asc", [](int, int) { return 100.0; });
+  }
+  std::string hills() const {
+    return grid("hills.asc", [](int col, int row) {
+      return 100 + 20 * std::sin(0.11 * col) * std::cos(0.09 * row) + 2 * std::sin(0.9 * col + row);
+    });
+  }
+  std::string scanner(const std::string& place, const std::string& more = "",
+                      const std::string& elevations = "[5, -10, -30]") const {
+    return write("car.json", fmt::format("{{\"elevations\": {}, \"azimuths\": {{\"count\": 36}}, \"rate\": 10, {}{}}}",
+                                         elevations, place, more));
+  }
+  std::string still() const { return scanner(R"("pose": {"at": [1500, 2500], "above": 1.5, "heading": 45})"); }
+
+  // One line on stderr that has the fragment, and no file left.
+  void expect_refused(const Names& arguments, const std::string& fragment) const {
+    const Names before = scratch_.files();
+    expect_refusal(run(arguments), before, fragment);
+  }
+  void expect_refusal(const test::Result& result, const Names& before, const std::string& fragment) const {
+    EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_EQ(result.err.find("scarp: error: "), 0u) << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  }
+
+  test::Scratch scratch_;
+};
+
+TEST_F(Scan, MeasuresAPlain) {
+  const auto result = cast({flat(), "--scanner", still()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  ASSERT_EQ(result.out.find(kHead), 0u);
+  const std::vector<Row> rows = rows_of(result.out);
+  ASSERT_EQ(rows.size(), 36u * 2u) << "rays above the horizon are left out";
+  for (const Row& row : rows) {
+    const double elevation = number(row, "channel") == 1 ? -10 : -30;
+    const double azimuth = std::fmod(45 + 10 * number(row, "column"), 360);
+    EXPECT_NEAR(number(row, "elevation"), elevation, 1e-4);
+    EXPECT_NEAR(number(row, "azimuth"), azimuth, 1e-3);
+    EXPECT_NEAR(number(row, "time"), number(row, "column") / 360, 1e-12);
+    const double away = 1.5 / std::tan(-elevation * kScanDegree);
+    EXPECT_NEAR(number(row, "range"), 1.5 / std::sin(-elevation * kScanDegree), 1e-5);
+    EXPECT_NEAR(number(row, "x"), 1500 + away * std::sin(azimuth * kScanDegree), 1e-4);
+    EXPECT_NEAR(number(row, "y"), 2500 + away * std::cos(azimuth * kScanDegree), 1e-4);
+    EXPECT_NEAR(number(row, "z"), 100, 1e-5);
+    EXPECT_EQ(row.at("object"), "0");
+  }
+}
+
+TEST_F(Scan, MissesAreWrittenOnRequest) {
+  const auto result = cast({flat(), "--scanner", still(), "--misses"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<Row> rows = rows_of(result.out);
+  ASSERT_EQ(rows.size(), 36u * 3u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("channel"), std::to_string(i % 3));
+    EXPECT_EQ(rows[i].at("range").empty(), i % 3 == 0);
+    EXPECT_EQ(rows[i].at("x").empty(), i % 3 == 0);
+  }
+  for (const char* output : {"o.las", "o.ply"})
+    expect_refused({"cast", flat(), "--scanner", still(), "--misses", "-o", path(output)},
+                   fmt::format("--misses: '{}' holds points only (write .csv or .npy)", path(output)));
+}
+
+// Every file has the same points.
+TEST_F(Scan, FormatsAgree) {
+  const std::string ground = hills(), lidar = still();
+  const std::vector<Row> rows = rows_of(cast({ground, "--scanner", lidar}).out);
+  ASSERT_GT(rows.size(), 40u);
+  std::map<std::string, std::string> files;
+  for (const char* name : {"o.csv", "o.npy", "o.ply", "o.las"}) {
+    const auto result = cast({ground, "--scanner", lidar, "-o", path(name)});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out + result.err, "");
+    files[name] = test::text_of(path(name));
+  }
+  EXPECT_EQ(rows_of(files["o.csv"]), rows);
+  const auto at = [](const std::string& bytes, std::size_t offset) {
+    double number = 0;
+    std::memcpy(&number, bytes.data() + offset, sizeof number);
+    return number;
+  };
+  const std::size_t count = rows.size();
+  const std::size_t npy = files["o.npy"].size() - count * 60, ply = files["o.ply"].size() - count * 60;
+  std::uint32_t las = 0;
+  std::uint64_t points = 0;
+  std::memcpy(&las, files["o.las"].data() + 96, sizeof las);
+  std::memcpy(&points, files["o.las"].data() + 247, sizeof points);
+  EXPECT_EQ(points, count);
+  ASSERT_EQ(files["o.las"].size(), las + count * 40);
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* axes[] = {"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double expected = number(rows[i], axes[axis]);
+      EXPECT_EQ(at(files["o.npy"], npy + i * 60 + 32 + 8 * axis), expected);
+      EXPECT_EQ(at(files["o.ply"], ply + i * 60 + 8 * axis), expected);
+      std::int32_t steps = 0;
+      std::memcpy(&steps, files["o.las"].data() + las + i * 40 + 4 * axis, sizeof steps);
+      const double scale = at(files["o.las"], 131 + 8 * axis), offset = at(files["o.las"], 155 + 8 * axis);
+      EXPECT_NEAR(steps * scale + offset, expected, 0.00051);
+    }
+    EXPECT_EQ(at(files["o.las"], las + i * 40 + 22), number(rows[i], "time"));
+  }
+}
+
+// The fan of max-mip, batches of other marches, and a scene with a mesh or of other fields.
+TEST_F(Scan, MarchesAgree) {
+  const std::string ground = hills(), lidar = still();
+  const std::vector<Row> fan = rows_of(cast({ground, "--scanner", lidar}).out);
+  const std::vector<Row> judge = rows_of(cast({ground, "--scanner", lidar, "--march", "exhaustive"}).out);
+  ASSERT_EQ(fan.size(), judge.size());
+  for (std::size_t i = 0; i < fan.size(); ++i) {
+    EXPECT_EQ(fan[i].at("column"), judge[i].at("column"));
+    EXPECT_EQ(fan[i].at("channel"), judge[i].at("channel"));
+    for (const char* column : {"range", "x", "y", "z"})
+      EXPECT_NEAR(number(fan[i], column), number(judge[i], column), 5e-3) << i << " " << column;
+  }
+}
+
+TEST_F(Scan, FollowsAPathOverGround) {
+  write("drive.csv", "time,x,y,above,heading\n0,1200,2300,2,90\n1,1600,2300,2,90\n");
+  const std::string lidar = write(
+      "drive.json",
+      R"({"elevations": [-90], "azimuths": {"count": 4}, "rate": 5, "path": "drive.csv", "mounting": {"forward": 3}})");
+  const auto result = cast({flat(), "--scanner", lidar});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<Row> rows = rows_of(result.out);
+  ASSERT_EQ(rows.size(), 21u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_NEAR(number(rows[i], "time"), 0.05 * static_cast<double>(i), 1e-12);
+    EXPECT_NEAR(number(rows[i], "x"), 1203 + 20 * static_cast<double>(i), 1e-4);
+    EXPECT_NEAR(number(rows[i], "y"), 2300, 1e-4);
+    EXPECT_NEAR(number(rows[i], "range"), 2, 1e-5);
+  }
+  expect_refused({"cast", flat(), "--scanner", lidar, "-o", path("drive.csv")}, "is the input");
+}
+
+TEST_F(Scan, ScansOtherInputs) {
+  const auto function = cast(
+      {"--function", "hills", "--scanner", scanner(R"("pose": {"at": [0, 0], "above": 5})", R"(, "range": [0, 300])")});
+  EXPECT_EQ(function.status, 0) << function.err;
+  EXPECT_GT(rows_of(function.out).size(), 20u);
+  // A ball of radius 5 on the plain is the second object.
+  flat();
+  const std::string scene = write("scene.json", R"({"objects": [
+    {"heights": {"file": "flat.asc"}},
+    {"shape": {"sphere": {"radius": 5}}, "at": [500, 520, 105]}]})");
+  const std::string lidar = scanner(R"("pose": {"at": [500, 500, 105]})", "", "[0, -45]");
+  const auto result = cast({scene, "--scanner", lidar});
+  ASSERT_EQ(result.status, 0) << result.err;
+  int on_ball = 0;
+  for (const Row& row : rows_of(result.out)) {
+    if (row.at("object") != "1") continue;
+    ++on_ball;
+    EXPECT_NEAR(std::hypot(number(row, "x") - 500, number(row, "y") - 520, number(row, "z") - 105), 5, 1e-3);
+  }
+  EXPECT_EQ(on_ball, 3) << "at azimuths of -10, 0 and 10 degrees";
+}
+
+TEST_F(Scan, NoiseIsOffByDefaultAndRepeatable) {
+  const std::string pose = R"("pose": {"at": [1500, 2500], "above": 1.5})";
+  const auto scan = [&](const std::string& more) { return cast({flat(), "--scanner", scanner(pose, more)}).out; };
+  const std::string exact = scan(""), a = scan(R"(, "noise": {"range": 0.02})"),
+                    b = scan(R"(, "noise": {"range": 0.02})"), c = scan(R"(, "noise": {"range": 0.02, "seed": 2})");
+  EXPECT_EQ(exact, scan(R"(, "noise": {"range": 0})"));
+  EXPECT_NE(exact, a);
+  EXPECT_EQ(a, b);
+  EXPECT_NE(a, c);
+}
+
+TEST_F(Scan, ThreadsDoNotChangeThePoints) {
+  const std::string ground = hills();
+  const std::string lidar = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5, "pitch": 7})", R"(, "turns": 300)");
+  cast({ground, "--scanner", lidar, "-o", path("a.npy"), "--threads", "1"});
+  cast({ground, "--scanner", lidar, "-o", path("b.npy"), "--threads", "3"});
+  EXPECT_EQ(test::text_of(path("a.npy")), test::text_of(path("b.npy")));
+  EXPECT_GT(test::text_of(path("a.npy")).size(), 100000u);
+}
+
+TEST_F(Scan, ScansWithoutPointsAreWholeFilesWithANote) {
+  const std::string up = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5})", "", "[30, 60]");
+  for (const char* name : {"o.csv", "o.npy", "o.ply", "o.las"}) {
+    const auto result = cast({flat(), "--scanner", up, "-o", path(name)});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "note: nothing was hit: all 72 rays end above the ground, or beyond the range\n");
+    EXPECT_GT(test::text_of(path(name)).size(), 20u);
+  }
+  EXPECT_EQ(test::text_of(path("o.csv")), kHead);
+  const auto beside = cast({flat(), "--scanner", scanner(R"("pose": {"at": [0, 0, 150]})")});
+  EXPECT_EQ(beside.status, 0);
+  EXPECT_EQ(beside.err.find("note: nothing was hit: the scanner starts at x 0, y 0; the scene is in map coordinates x "
+                            "1000 to 2000, y 2000 to 3000"),
+            0u)
+      << beside.err;
+  const auto below = cast({flat(), "--scanner", scanner(R"("pose": {"at": [1500, 2500, 50]})")});
+  EXPECT_NE(below.err.find("rays start below ground, or enter it"), std::string::npos) << below.err;
+  const auto none = cast({flat(), "--scanner", scanner(R"("path": [{"time": 0, "at": [1500, 2500], "above": 1,
+      "heading": 0}, {"time": 1, "at": [1510, 2500], "above": 1, "heading": 0}], "time_offsets": [0, 0, 2])")});
+  EXPECT_EQ(none.err, "note: the path is shorter than a column of the scanner: 0 rays, and no points in the output\n");
+}
+
+TEST_F(Scan, ErrorsSayWhatToDo) {
+  const std::string ground = flat(), lidar = still(), rays = write("rays.csv", "x,y,z,dx,dy,dz\n1,2,3,0,0,-1\n");
+  expect_refused({"cast", ground}, "--rays FILE or --scanner FILE is required");
+  expect_refused({"cast", ground, "--rays", rays, "--scanner", lidar}, "--scanner");
+  expect_refused({"cast", ground, "--rays", rays, "--misses"}, "--misses has no effect without --scanner FILE");
+  expect_refused({"cast", ground, "--scanner", lidar, "--any"}, "--any");
+  expect_refused({"cast", ground, "--scanner", lidar, "--all"}, "--all");
+  expect_refused({"cast", ground, "--scanner", lidar, "-o", path("o.laz")}, "end the name in .csv, .npy, .ply or .las");
+  expect_refused({"cast", ground, "--rays", rays, "-o", path("o.las")}, "end the name in .csv or .npy");
+  expect_refused({"cast", ground, "--scanner", lidar, "-o", lidar}, "is the input");
+  expect_refused({"cast", ground, "--scanner", path("none.json")}, "none.json: cannot be read; is it there?");
+  expect_refused({"cast", ground, "--scanner", ground}, "flat.asc: no JSON");
+  expect_refused({"cast", ground, "--scanner", scanner(R"("pose": {"at": [1, 2], "above": 3})")},
+                 "car.json: /pose: there is no ground at 1,2, outside the bounds in map coordinates");
+  expect_refused({"cast", ground, "--wrap", "periodic", "--scanner", lidar}, "scanner: has no largest range");
+  expect_refused({"cast", ground, "--scanner", lidar, "--crs", "lonlat"}, "flat.asc: ");
+  write("drive.csv", "time,lon,lat,above,heading\n0,1,2,2,90\n1,1.1,2,2,90\n");
+  expect_refused({"cast", ground, "--scanner", scanner(R"("path": "drive.csv")")}, "(give --crs lonlat)");
+  write("drive.csv", "time,x,y,above,heading\n0,1200,2300,2,90\n1,1300,nan,2,90\n");
+  expect_refused({"cast", ground, "--scanner", scanner(R"("path": "drive.csv")")},
+                 "drive.csv: line 3: y 'nan' is not a finite number");
+}
+
+TEST_F(Scan, FullDisksLeaveNothing) {
+  const std::string ground = flat();
+  const std::string lidar = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5})", R"(, "turns": 300)");
+  const Names before = scratch_.files();
+  const test::FullDisk disk(400000);
+  for (const char* name : {"o.csv", "o.npy", "o.ply", "o.las"}) {
+    test::Program program({"cast", ground, "--scanner", lidar, "-o", path(name)});
+    expect_refusal(program.result(), before, "cannot be written (is the disk full?)");
+  }
+}
+
+TEST_F(Scan, InterruptsLeaveNothing) {
+  const std::string ground = flat();
+  const std::string lidar = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5})", R"(, "turns": 1000000)");
+  const Names before = scratch_.files();
+  test::Program program({"cast", ground, "--scanner", lidar, "-o", path("o.las")});
+  for (int i = 0; i < 10000 && scratch_.files() == before; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_NE(scratch_.files(), before);
+  ::kill(program.pid(), SIGINT);
+  const auto result = program.result();
+  EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+  EXPECT_EQ(scratch_.files(), before);
+}
+
+// Degrees in steps of 1e-8, and the CRS as WKT 1.
+TEST_F(Scan, LasOfDegreesKeepsMillimetres) {
+  const std::string ground = grid("flat.asc", [](int, int) { return 100.0; });
+  const Names raster = {"--raster-crs", "EPSG:4326", "--bounds=10,0,10.01,0.01"};
+  const std::string lidar = scanner(R"("pose": {"at": [10.005, 0.005], "above": 1.5})");
+  for (const char* crs : {"map", "lonlat"}) {
+    Names arguments = {"cast", ground, "--scanner", lidar, "--crs", crs, "-o", path("o.las")};
+    arguments.insert(arguments.end(), raster.begin(), raster.end());
+    const auto result = run(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string las = test::text_of(path("o.las"));
+    double scale = 0;
+    std::memcpy(&scale, las.data() + 131, sizeof scale);
+    EXPECT_EQ(scale, 1e-8);
+    EXPECT_EQ(las.substr(375 + 2, 15), "LASF_Projection");
+    EXPECT_EQ(las.substr(375 + 54, 7), "GEOGCS[");
+  }
+  Names arguments = {"cast",  ground,  "--scanner", scanner(R"("pose": {"at": [500, 500], "above": 1.5})"),
+                     "--crs", "local", "-o",        path("o.las")};
+  arguments.insert(arguments.end(), raster.begin(), raster.end());
+  ASSERT_EQ(run(arguments).status, 0);
+  EXPECT_EQ(test::text_of(path("o.las")).substr(375 + 2, 9), "LASF_Spec") << "local metres have no CRS";
+}
+
+}  // namespace
+}  // namespace scarp
