@@ -417,6 +417,12 @@ TEST(ScarpBench, SeamsLoseNoRay) {
   }
 }
 
+TEST(ScarpBench, PitchesWritesTheDocumentedFields) {
+  const json all = output_of("pitches --size 129 --repeats 1 --step 45");
+  expect_documented(all, "pitches");
+  EXPECT_EQ(all["rows"].size(), 12u);
+}
+
 TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
   const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
   expect_documented(all, "sweeps");
