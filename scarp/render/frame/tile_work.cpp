@@ -2,7 +2,13 @@
 #include "scarp/render/frame/tile_work.h"
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/kept_memory.h"
@@ -160,22 +166,41 @@ void work_on_camera_tiles(const Scene& scene, const Camera& camera, int width, i
     return work_on_tiles(
         scene, tiles, most_rays, [&](const PixelTile& tile) { return make(tile, nullptr); }, progress);
   }
+  // The first tile of an area looks for all of it; the others wait. Tiles are the pieces, so that a picture ends soon
+  // when it is stopped.
+  struct Area {
+    std::once_flag looked;
+    std::optional<CameraSights> sights;
+    std::atomic<std::int64_t> left;  // tiles
+  };
   const std::int64_t down = (tiles.rows() + height_of_area - 1) / height_of_area;
+  std::vector<Area> areas(static_cast<std::size_t>(tiles.columns() * down));
+  const auto rows_of = [&](std::int64_t area) {
+    const std::int64_t first = area / tiles.columns() * height_of_area;
+    return std::pair(first, std::min(first + height_of_area, tiles.rows()));
+  };
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const auto [first, last] = rows_of(static_cast<std::int64_t>(i));
+    areas[i].left = last - first;
+  }
   parallel_for(
-      tiles.columns() * down, 1,
+      tiles.columns() * down * height_of_area, 1,
       [&](std::int64_t begin, std::int64_t end) {
         KeptRound round;
-        for (std::int64_t area = begin; area < end; ++area) {
-          const std::int64_t column = area % tiles.columns(), first = area / tiles.columns() * height_of_area;
-          const std::int64_t last = std::min(first + height_of_area, tiles.rows());
-          const PixelTile top = tiles[first * tiles.columns() + column];
-          CameraSights sights;
-          fan.look({top.x0, top.y0, top.x1, tiles[(last - 1) * tiles.columns() + column].y1}, sights);
-          for (std::int64_t row = first; row < last; ++row) {
-            const std::unique_ptr<TileWork> work = make(tiles[row * tiles.columns() + column], &sights);
-            round.reset();
-            while (work->next(round)) answer(scene, round);
-          }
+        for (std::int64_t i = begin; i < end; ++i) {
+          const std::int64_t number = i / height_of_area, column = number % tiles.columns();
+          const auto [first, last] = rows_of(number);
+          const std::int64_t row = first + i % height_of_area;
+          if (row >= last) continue;
+          Area& area = areas[static_cast<std::size_t>(number)];
+          std::call_once(area.looked, [&, from = first, to = last] {
+            const PixelTile top = tiles[from * tiles.columns() + column];
+            fan.look({top.x0, top.y0, top.x1, tiles[(to - 1) * tiles.columns() + column].y1}, area.sights.emplace());
+          });
+          const std::unique_ptr<TileWork> work = make(tiles[row * tiles.columns() + column], &*area.sights);
+          round.reset();
+          while (work->next(round)) answer(scene, round);
+          if (--area.left == 0) area.sights.reset();
         }
       },
       progress);

@@ -178,7 +178,7 @@ TEST(FunctionsInShaders, MarchesMatchWithinSinglePrecision) {
     if (name == "lipschitz-local")
       return glsl::scarp_lipschitz_local(*program, ray.ray,
                                          {static_cast<float>(settings.lipschitz_local.tolerance), 1024, kAll}, false);
-    glsl::ScarpSampling sampling = device_sampling(name, settings, slope, 0x1p-20, 1);
+    glsl::ScarpSampling sampling = device_sampling(find_function_march(name).sampling, settings, slope, 0x1p-20, 1);
     if (name == "fixed-step") sampling.factor = static_cast<float>(settings.function.step);
     return glsl::scarp_function_march(*program, ray.ray, sampling, kAll);
   };
