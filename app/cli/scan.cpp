@@ -57,7 +57,8 @@ std::optional<WorldBox> scan_box(const Scene& scene, const Lidar& lidar) {
 
 LasSettings las_settings_of(const ScannedScene& scanned, const Lidar& lidar, std::vector<std::string>& notes) {
   const CoordinateFrame& frame = scanned.places.frame();
-  constexpr double kUnbounded = 1e5;  // metres about the scanner, where nothing else is known
+  constexpr double kStep = 0.001, kStepDegrees = 1e-8;  // a millimetre: 1e-8 degrees are 1.1 mm of a meridian
+  constexpr double kUnbounded = 1e5;                    // metres about the scanner, where nothing else is known
   const dvec3 start = lidar.path.front().position;
   const WorldBox box = scan_box(scanned.scene, lidar).value_or(WorldBox{start - kUnbounded, start + kUnbounded});
   const dvec3 middle = 0.5 * (box.low + box.high);
@@ -66,12 +67,12 @@ LasSettings las_settings_of(const ScannedScene& scanned, const Lidar& lidar, std
                     middle,  middle + 1.0};
   LasSettings las;
   if (frame.from_local(points)) {
-    las = las_settings({-180, -90, box.low.z}, {180, 90, box.high.z}, dvec3(1e-8, 1e-8, 1e-3));
+    las = las_settings({-180, -90, box.low.z}, {180, 90, box.high.z}, dvec3(kStepDegrees, kStepDegrees, kStep));
   } else {
     dvec3 low = points[0], high = points[0];
     for (int i = 1; i < 4; ++i) low = min(low, points[i]), high = max(high, points[i]);
     low.z = box.low.z, high.z = box.high.z;
-    las = las_settings(low, high, 0.001 * abs(points[5] - points[4]));
+    las = las_settings(low, high, kStep * abs(points[5] - points[4]));
   }
   if (frame.coordinates() == Coordinates::lonlat) {
     las.crs_wkt = las_wkt("OGC:CRS84");

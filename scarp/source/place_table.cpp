@@ -24,7 +24,6 @@ namespace {
 enum Column : std::size_t { x, y, z, tx, ty, tz, lon, lat, tlon, tlat, column_count };
 constexpr std::array<std::string_view, column_count> kNames = {"x",  "y",   "z",   "tx",   "ty",
                                                                "tz", "lon", "lat", "tlon", "tlat"};
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 // The columns of a header; those that are missing are `npos`.
 struct Header {
@@ -54,13 +53,6 @@ Header header_of(const std::vector<std::string_view>& fields, PlaceKind kind, Pl
     throw Error(fmt::format("{} (required: {})", plain ? "columns x,y and lon,lat both" : "no columns with places",
                             lines ? "x,y[,z],tx,ty[,tz] or lon,lat[,z],tlon,tlat[,tz]" : "x,y[,z] or lon,lat[,z]"));
   return header;
-}
-
-double number_of(std::string_view field, std::string_view name, std::int64_t line) {
-  double number = 0;
-  if (!parse_field(trimmed(field), number) || !std::isfinite(number))
-    throw Error(fmt::format("line {}: {} '{}' is not a finite number", line, name, shown_field(field)));
-  return number;
 }
 
 // --- vector files --------------------------------------------------------------------------------------------------
@@ -156,7 +148,6 @@ std::string PlaceTable::where(std::size_t row) const {
 }
 
 PlaceTable parse_place_csv(std::string_view bytes, PlaceKind kind) {
-  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   CsvRows rows(bytes);
   if (!rows.next()) throw Error("is empty (expected a header and places)");
   PlaceTable table;
@@ -167,7 +158,7 @@ PlaceTable parse_place_csv(std::string_view bytes, PlaceKind kind) {
     const std::int64_t line = rows.line();
     if (fields.size() != width)
       throw Error(fmt::format("line {}: {} fields (the header has {})", line, fields.size(), width));
-    const auto number = [&](Column column) { return number_of(fields[header.at[column]], kNames[column], line); };
+    const auto number = [&](Column column) { return finite_field(fields[header.at[column]], kNames[column], line); };
     const auto height = [&](Column column) {
       return header.has(column) && !trimmed(fields[header.at[column]]).empty() ? std::optional(number(column))
                                                                                : std::nullopt;

@@ -42,18 +42,10 @@ PoseHeader pose_header(const std::vector<std::string_view>& fields, PoseTable& t
   return at;
 }
 
-double pose_number(std::string_view field, std::string_view name, std::int64_t line) {
-  double number = 0;
-  if (!parse_field(trimmed(field), number) || !std::isfinite(number))
-    throw Error(fmt::format("line {}: {} '{}' is not a finite number", line, name, shown_field(field)));
-  return number;
-}
-
 }  // namespace
 
 PoseTable parse_pose_csv(std::string_view bytes) {
   PoseTable table;
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
   CsvRows rows(bytes);
   if (!rows.next()) throw Error("is empty; expected a header and one row per pose");
   const std::size_t width = rows.fields().size();
@@ -63,7 +55,7 @@ PoseTable parse_pose_csv(std::string_view bytes) {
     if (rows.fields().size() != width)
       throw Error(fmt::format("line {}: {} fields; the header has {}", line, rows.fields().size(), width));
     const auto number = [&](PoseColumn column) {
-      return at[column] == kNoColumn ? 0.0 : pose_number(rows.fields()[at[column]], kPoseColumns[column], line);
+      return at[column] == kNoColumn ? 0.0 : finite_field(rows.fields()[at[column]], kPoseColumns[column], line);
     };
     PoseRow row;
     row.time = number(kTime);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +13,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/input_file.h"
+#include "scarp/source/csv_rows.h"
 #include "scarp/source/incomplete_file.h"
 
 namespace scarp {
@@ -51,6 +53,13 @@ std::string shown_field(std::string_view text) {
   std::replace_if(
       result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return text.size() > kLongest ? result + "..." : result;
+}
+
+double finite_field(std::string_view field, std::string_view column, std::int64_t line) {
+  double number = 0;
+  if (!parse_field(trimmed(field), number) || !std::isfinite(number))
+    throw Error(fmt::format("line {}: {} '{}' is not a finite number", line, column, shown_field(field)));
+  return number;
 }
 
 }  // namespace scarp

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,9 @@ std::string table_bytes(const std::string& path);
 
 /// A field in a form that fits in a one-line message.
 std::string shown_field(std::string_view text);
+
+/// The number in a field. Throws Error naming line and column if it is none, or not finite.
+double finite_field(std::string_view field, std::string_view column, std::int64_t line);
 
 /// Parses a whole field; returns whether it is a number.
 template <class Number>

@@ -11,6 +11,7 @@
 
 #include "cli/csv_rows.h"
 #include "cli/program.h"
+#include "cli/refused.h"
 #include "scarp/march/march_settings.h"
 
 namespace scarp {
@@ -50,11 +51,7 @@ class Cast : public testing::Test {
     Names arguments = {"cast", path("hills.asc"), "-o", path("hits.csv")};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const auto result = run(arguments);
-    EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(result.err.find("scarp: error: "), 0u) << result.err;
-    EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
+    test::expect_refused(result, fragment);
     EXPECT_EQ(scratch_.files(), before);
   }
   void expect_rays_refused(const std::string& table, const std::string& fragment, Names options = {}) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cli/program.h"
+#include "cli/refused.h"
 #include "output/read_png.h"
 #include "scarp/output/png.h"
 
@@ -43,10 +44,7 @@ class Cli : public testing::Test {
     const Names before = scratch_.files();
     const auto result = run({"render", input, "-o", path("out.png")});
     EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(result.err.find("scarp: error: "), 0u) << result.err;
-    EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
+    test::expect_refused(result, fragment);
     EXPECT_EQ(scratch_.files(), before);
   }
 

@@ -16,7 +16,9 @@
 
 #include "cli/csv_rows.h"
 #include "cli/program.h"
+#include "cli/refused.h"
 #include "full_disk.h"
+#include "scene/lidar_rounding.h"
 
 namespace scarp {
 namespace {
@@ -76,11 +78,7 @@ class Scan : public testing::Test {
     expect_refusal(run(arguments), before, fragment);
   }
   void expect_refusal(const test::Result& result, const Names& before, const std::string& fragment) const {
-    EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(result.err.find("scarp: error: "), 0u) << result.err;
-    EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
+    test::expect_refused(result, fragment);
     EXPECT_EQ(scratch_.files(), before);
   }
 
@@ -94,17 +92,19 @@ TEST_F(Scan, MeasuresAPlain) {
   ASSERT_EQ(result.out.find(kHead), 0u);
   const std::vector<Row> rows = rows_of(result.out);
   ASSERT_EQ(rows.size(), 36u * 2u) << "rays above the horizon are left out";
+  constexpr double kWritten = 0x1p-16;  // half a unit of floats from 256 to 512 degrees
   for (const Row& row : rows) {
     const double elevation = number(row, "channel") == 1 ? -10 : -30;
     const double azimuth = std::fmod(45 + 10 * number(row, "column"), 360);
-    EXPECT_NEAR(number(row, "elevation"), elevation, 1e-4);
-    EXPECT_NEAR(number(row, "azimuth"), azimuth, 1e-3);
-    EXPECT_NEAR(number(row, "time"), number(row, "column") / 360, 1e-12);
-    const double away = 1.5 / std::tan(-elevation * kScanDegree);
-    EXPECT_NEAR(number(row, "range"), 1.5 / std::sin(-elevation * kScanDegree), 1e-5);
-    EXPECT_NEAR(number(row, "x"), 1500 + away * std::sin(azimuth * kScanDegree), 1e-4);
-    EXPECT_NEAR(number(row, "y"), 2500 + away * std::cos(azimuth * kScanDegree), 1e-4);
-    EXPECT_NEAR(number(row, "z"), 100, 1e-5);
+    EXPECT_NEAR(number(row, "elevation"), elevation, test::room_of_angle() / kScanDegree + kWritten);
+    EXPECT_NEAR(number(row, "azimuth"), azimuth, test::room_of_angle(elevation * kScanDegree) / kScanDegree + kWritten);
+    EXPECT_DOUBLE_EQ(number(row, "time"), number(row, "column") / 360);
+    const double away = 1.5 / std::tan(-elevation * kScanDegree), range = 1.5 / std::sin(-elevation * kScanDegree);
+    const double off = test::room_on_plain(range, elevation * kScanDegree);
+    EXPECT_NEAR(number(row, "range"), range, off);
+    EXPECT_NEAR(number(row, "x"), 1500 + away * std::sin(azimuth * kScanDegree), off);
+    EXPECT_NEAR(number(row, "y"), 2500 + away * std::cos(azimuth * kScanDegree), off);
+    EXPECT_NEAR(number(row, "z"), 100, off);
     EXPECT_EQ(row.at("object"), "0");
   }
 }
@@ -159,7 +159,7 @@ TEST_F(Scan, FormatsAgree) {
       std::int32_t steps = 0;
       std::memcpy(&steps, files["o.las"].data() + las + i * 40 + 4 * axis, sizeof steps);
       const double scale = at(files["o.las"], 131 + 8 * axis), offset = at(files["o.las"], 155 + 8 * axis);
-      EXPECT_NEAR(steps * scale + offset, expected, 0.00051);
+      EXPECT_LE(std::abs(steps * scale + offset - expected), 0.5 * scale * (1 + 0x1p-20)) << "half a step, rounded";
     }
     EXPECT_EQ(at(files["o.las"], las + i * 40 + 22), number(rows[i], "time"));
   }
@@ -189,10 +189,11 @@ TEST_F(Scan, FollowsAPathOverGround) {
   const std::vector<Row> rows = rows_of(result.out);
   ASSERT_EQ(rows.size(), 21u);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_NEAR(number(rows[i], "time"), 0.05 * static_cast<double>(i), 1e-12);
-    EXPECT_NEAR(number(rows[i], "x"), 1203 + 20 * static_cast<double>(i), 1e-4);
-    EXPECT_NEAR(number(rows[i], "y"), 2300, 1e-4);
-    EXPECT_NEAR(number(rows[i], "range"), 2, 1e-5);
+    const double off = test::room_on_plain(2, 0.5 * std::numbers::pi);
+    EXPECT_DOUBLE_EQ(number(rows[i], "time"), 0.05 * static_cast<double>(i));
+    EXPECT_NEAR(number(rows[i], "x"), 1203 + 20 * static_cast<double>(i), off);
+    EXPECT_NEAR(number(rows[i], "y"), 2300, off);
+    EXPECT_NEAR(number(rows[i], "range"), 2, off);
   }
   expect_refused({"cast", flat(), "--scanner", lidar, "-o", path("drive.csv")}, "is the input");
 }

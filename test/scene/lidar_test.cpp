@@ -2,6 +2,7 @@
 // Rays of a scanner that stands or moves: ranges and positions by formulas of their own, and one answer by fans and
 // batches.
 #include "scarp/scene/lidar.h"
+#include "scene/lidar_rounding.h"
 
 #include <gtest/gtest.h>
 
@@ -70,18 +71,20 @@ TEST(LidarScan, RangesOverAPlainFollowFromHeightAndElevation) {
     const auto column = static_cast<int>(i / 5);
     EXPECT_EQ(answer.channel, static_cast<int>(channel));
     EXPECT_EQ(answer.column, column);
-    EXPECT_NEAR(answer.time, 5 + column / 12.0 / 4, 1e-12);
+    EXPECT_DOUBLE_EQ(answer.time, 5 + column / 12.0 / 4);
     const double azimuth = column % 12 * 30 * kDegree, elevation = lidar.elevations[channel];
-    EXPECT_NEAR(static_cast<double>(answer.elevation), elevation, 1e-6);
-    EXPECT_NEAR(std::remainder(static_cast<double>(answer.azimuth) - azimuth, 2 * kPi), 0, 1e-6);
+    EXPECT_NEAR(static_cast<double>(answer.elevation), elevation, test::room_of_angle());
+    EXPECT_NEAR(std::remainder(static_cast<double>(answer.azimuth) - azimuth, 2 * kPi), 0,
+                test::room_of_angle(elevation));
     ASSERT_EQ(static_cast<bool>(answer), elevation < 0) << channel;
     if (!answer) {
       EXPECT_TRUE(std::isinf(answer.range));
       continue;
     }
     const double range = 30 / -std::sin(elevation), flat = 30 / std::tan(-elevation);
-    EXPECT_NEAR(static_cast<double>(answer.range), range, 1e-6 * range);
-    expect_near(answer.position, {10000 + flat * std::sin(azimuth), 9000 + flat * std::cos(azimuth), 7}, 2e-6 * range);
+    const double room = test::room_on_plain(range, elevation);
+    EXPECT_NEAR(static_cast<double>(answer.range), range, room);
+    expect_near(answer.position, {10000 + flat * std::sin(azimuth), 9000 + flat * std::cos(azimuth), 7}, room);
   }
 }
 
@@ -196,8 +199,9 @@ TEST(LidarScan, OrientationsAreAppliedInOrder) {
           std::cos(elevation) * (std::sin(azimuth) * right + std::cos(azimuth) * forward) + std::sin(elevation) * up;
       ASSERT_TRUE(answer);
       ASSERT_LT(d.z, 0);
-      expect_near(answer.position, eye + eye.z / -d.z * d, 1e-4);
-      EXPECT_NEAR(static_cast<double>(answer.range), eye.z / -d.z, 1e-4);
+      const double room = test::room_on_plain(eye.z / -d.z, std::asin(d.z));
+      expect_near(answer.position, eye + eye.z / -d.z * d, room);
+      EXPECT_NEAR(static_cast<double>(answer.range), eye.z / -d.z, room);
       EXPECT_NEAR(static_cast<double>(answer.scan_angle),
                   std::atan2(d.x * std::cos(heading) - d.y * std::sin(heading), -d.z), 1e-5);
     }
@@ -223,8 +227,9 @@ TEST(LidarScan, NorthTurnsHeadingsAndNotTheAzimuthsThatAreReported) {
   lidar.path[0].heading = kPi / 2;
   lidar.north = 0.1;
   const auto returns = all_of(LidarScan(ground, lidar));
-  EXPECT_NEAR(static_cast<double>(returns[0].azimuth), kPi / 2, 1e-6);
-  expect_near(returns[0].position, {10000 + 100 * std::cos(0.1), 10000 - 100 * std::sin(0.1), 0}, 1e-3);
+  EXPECT_NEAR(static_cast<double>(returns[0].azimuth), kPi / 2, test::room_of_angle(kPi / 4));
+  expect_near(returns[0].position, {10000 + 100 * std::cos(0.1), 10000 - 100 * std::sin(0.1), 0},
+              test::room_on_plain(100 * std::sqrt(2), kPi / 4));
 }
 
 TEST(LidarScan, MovesLinearlyBetweenPoses) {
@@ -239,12 +244,13 @@ TEST(LidarScan, MovesLinearlyBetweenPoses) {
   const auto returns = all_of(scan);
   for (const LidarReturn& answer : returns) {
     const double time = 10 + 0.25 * static_cast<double>(answer.column);
-    EXPECT_NEAR(answer.time, time, 1e-12);
+    EXPECT_DOUBLE_EQ(answer.time, time);
     const dvec3 at = time < 14 ? dvec3(9000 + 10 * (time - 10), 9000, 50)
                                : dvec3(9040, 9000 + 50 * (time - 14), 50 + 20 * (time - 14));
     ASSERT_TRUE(answer);
-    expect_near(answer.position, {at.x, at.y, 0}, 1e-4);
-    EXPECT_NEAR(static_cast<double>(answer.range), at.z, 1e-4);
+    const double room = test::room_on_plain(at.z, kPi / 2);
+    expect_near(answer.position, {at.x, at.y, 0}, room);
+    EXPECT_NEAR(static_cast<double>(answer.range), at.z, room);
   }
 }
 
@@ -258,13 +264,16 @@ TEST(LidarScan, TurnsTheShorterWayAtConstantSpeed) {
   lidar.path = {{0, {10000, 10000, 100}, 350 * kDegree, 0, 0}, {1, {10000, 10000, 100}, 30 * kDegree, 0, 0}};
   for (const LidarReturn& answer : all_of(LidarScan(ground, lidar))) {
     const double expected = (350 + 40 * answer.time) * kDegree;
-    EXPECT_NEAR(std::remainder(static_cast<double>(answer.azimuth) - expected, 2 * kPi), 0, 1e-5) << answer.time;
+    EXPECT_NEAR(std::remainder(static_cast<double>(answer.azimuth) - expected, 2 * kPi), 0,
+                test::room_of_angle(kPi / 4) + lidar.azimuth_step)
+        << answer.time;
   }
   // Orientations between two about the same axis turn about it, too.
   lidar.path[0].heading = lidar.path[1].heading = 0;
   lidar.path[0].pitch = -30 * kDegree, lidar.path[1].pitch = 20 * kDegree;
   for (const LidarReturn& answer : all_of(LidarScan(ground, lidar)))
-    EXPECT_NEAR(static_cast<double>(answer.elevation), (-75 + 50 * answer.time) * kDegree, 1e-5) << answer.time;
+    EXPECT_NEAR(static_cast<double>(answer.elevation), (-75 + 50 * answer.time) * kDegree, test::room_of_angle())
+        << answer.time;
 }
 
 TEST(LidarScan, ChannelsFireFromTheirOwnPlaces) {
@@ -279,8 +288,8 @@ TEST(LidarScan, ChannelsFireFromTheirOwnPlaces) {
   for (const LidarReturn& answer : all_of(scan)) {
     const double time =
         static_cast<double>(answer.column) + lidar.time_offsets[static_cast<std::size_t>(answer.channel)];
-    EXPECT_NEAR(answer.time, time, 1e-12);
-    EXPECT_NEAR(answer.position.x, 9000 + 100 * time, 1e-4);
+    EXPECT_DOUBLE_EQ(answer.time, time);
+    EXPECT_NEAR(answer.position.x, 9000 + 100 * time, test::room_on_plain(50, kPi / 2));
   }
 }
 

@@ -526,7 +526,7 @@ class VectorWalk {
       const VD enter_x = CellRays::line(hn::IfThenElse(r.back_x, hn::Add(first_x, cols), first_x), r.ox, r.per_x);
       const VD enter_y = CellRays::line(hn::IfThenElse(r.back_y, hn::Add(first_y, rows), first_y), r.oy, r.per_y);
       const auto late = [&](VD lines, VD o, VD d, VD per) HWY_ATTR {
-        const VD off = hn::Add(hn::Set(dd, f_.seam), hn::Mul(hn::Set(dd, 16 * kUnit), hn::Add(lines, hn::Abs(o))));
+        const VD off = rounding_of_line(dd, o, lines, f_.seam);
         return hn::IfThenElseZero(hn::Ne(d, zero), hn::Mul(off, hn::Abs(per)));
       };
       const VD before = hn::IfThenElseZero(hn::Ge(hn::Max(enter_x, enter_y), t_in),

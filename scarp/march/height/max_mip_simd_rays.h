@@ -113,6 +113,12 @@ struct AxisSpan {
   hn::Mask<D> back;
   hn::Mask<D> beside;  // runs along the border, outside
 };
+// rounding_of_line() of rounding.h.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V rounding_of_line(D tag, V o, V cells, double seam) {
+  return hn::Add(hn::Set(tag, seam), hn::Mul(hn::Set(tag, 16 * kUnit), hn::Add(cells, hn::Abs(o))));
+}
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE AxisSpan<D> axis_span(D tag, V o, V d, V cells, double seam) {
   const V zero = hn::Zero(tag), far = hn::Set(tag, std::numeric_limits<double>::infinity());
@@ -124,8 +130,7 @@ HWY_INLINE AxisSpan<D> axis_span(D tag, V o, V d, V cells, double seam) {
   // A ray that does not move along the axis is within the field always or never.
   const auto still = hn::Eq(d, zero), within = hn::And(hn::Ge(o, zero), hn::Le(o, cells));
   const V off = hn::Max(hn::Neg(o), hn::Sub(o, cells));
-  // rounding_of_line()
-  const V line = hn::Mul(hn::Set(tag, 16 * kUnit), hn::Add(cells, hn::Abs(o)));
+  const V line = rounding_of_line(tag, o, cells, 0);
   s.beside = hn::And(still, hn::AndNot(within, hn::Le(off, hn::Add(hn::Set(tag, seam), line))));
   s.enter = hn::IfThenElse(still, hn::IfThenElse(within, hn::Neg(far), far), hn::Mul(hn::Neg(s.origin), s.per));
   s.exit = hn::IfThenElse(still, far, hn::Mul(hn::Sub(cells, s.origin), s.per));

@@ -93,7 +93,8 @@ void take_azimuths(const Json& json, Lidar& lidar) {
   if (const Json* given = object.find("step")) {
     constexpr const char* kStep = "degrees between columns, clockwise if above 0; count steps are at most a whole turn";
     step = number_in(*given, object.path_of("step"), -kWhole, kWhole, kStep);
-    if (step == 0 || std::abs(step) * lidar.columns > kWhole * (1 + 1e-9))
+    constexpr double kRounded = 1 + 0x1p-52;  // the typed number and the product
+    if (step == 0 || std::abs(step) * lidar.columns > kWhole * kRounded)
       refuse_json(object.path_of("step"), *given, kStep);
     // 0.1 is a little more than a tenth.
     step = std::clamp(step, -kWhole / lidar.columns, kWhole / lidar.columns);
