@@ -200,7 +200,8 @@ struct ObjectRay {
     note_block(SimtBlock::object);
     glsl::ScarpVoxelClip clip{t_min, t_max, -1, false};
     for (int axis = 0; axis < 3; ++axis) {
-      if (ray.given[axis] == 0) origin[axis] = glsl::scarp_voxel_level(origin[axis], room);
+      if (ray.given[axis] == 0)
+        origin[axis] = glsl::scarp_voxel_level(axis, origin[axis], room, ray.back, box.low[axis], box.high[axis]);
       met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], room, ray.speed[axis],
                                    ray.back, box.low[axis], box.high[axis], false, 0, clip) &&
             met;
@@ -254,7 +255,8 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
       }
       if (child == kNoChild) continue;
       const VoxelObjects::Placed& object = all.placed[child & ~glsl::kScarpBoxLeaf];
-      const auto& [turn, ties, room] = all.turns[object.turn];
+      const auto& [turn, ties, own_room, per_metre] = all.turns[object.turn];
+      const double room = glsl::scarp_voxel_room(own_room, per_metre, ray.room);
       if (turned.turn != object.turn) turned.set(object.turn, turn, ties[0], ray.direction);
       const VoxelTarget& target = all.targets[object.model];
       ObjectRay begun(turned, turn * (ray.origin - object.origin), room, ray.t_min, t_max, target.box);

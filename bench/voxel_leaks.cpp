@@ -208,40 +208,53 @@ std::array<Counts, kRayKinds> leaks_of_grids(const VoxelLeaksOptions& options, F
 }
 
 constexpr std::int64_t kRaysPerScene = 512;
-constexpr std::array<const char*, 2> kSceneNames = {"turned objects: exact directions", "turned objects: others"};
+constexpr std::size_t kSceneKinds = 4;
+constexpr std::array<const char*, kSceneKinds> kSceneNames = {
+    "turned objects: exact rays", "turned objects: rounded rays", "placed fields: exact rays",
+    "placed fields: rounded rays"};
 
-// Judged: all but rays whose quantised direction passes an edge on either side.
-std::array<Counts, 2> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
-  Total<2> total;
+// Half of the rays of a scene see its objects in one field, the others see each in a field of its own. Judged: all but
+// rays that may pass a solid voxel or hit it, because they are rounded at its edge.
+std::array<Counts, kSceneKinds> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
+  Total<kSceneKinds> total;
   const std::int64_t scenes = (options.rays + kRaysPerScene - 1) / kRaysPerScene;
   parallel_for(scenes, 4, [&](std::int64_t begin, std::int64_t end) {
-    std::array<Counts, 2> counts;
-    std::vector<LatticeRay> lattice(kRaysPerScene);
-    std::vector<Ray> rays(kRaysPerScene);
-    std::vector<Hit> hits(kRaysPerScene);
-    std::vector<std::uint8_t> blocked(kRaysPerScene);
+    std::array<Counts, kSceneKinds> counts;
+    std::vector<LatticeRay> lattice(kRaysPerScene / 2);
+    std::vector<Ray> rays(lattice.size());
+    std::vector<Hit> hits(lattice.size());
+    std::vector<std::uint8_t> blocked(lattice.size());
     for (std::int64_t index = begin; index < end; ++index) {
       Random random(options.seed, ~static_cast<std::uint64_t>(index));
       const VoxelSceneJudge judge(random, {});
       const VoxelObjects objects(judge.placed());
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        lattice[i] = VoxelSceneJudge::random_ray(random);
-        rays[i] = judge.world_ray(lattice[i]);
-      }
-      objects.closest_hits(rays, hits);
-      objects.occluded(rays, blocked);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        Counts& count = counts[lattice[i].exact ? 0 : 1];
-        const LatticeAnswer expected = judge.answer(lattice[i]);
-        const Hit hit = objects.closest_hit(rays[i]);
-        ++count.rays;
-        count.hits += hit ? 1 : 0;
-        count.judged += expected.decided ? 1 : 0;
-        if (judge.agrees(lattice[i], expected, hit) && hit == hits[i] && static_cast<bool>(hit) == (blocked[i] != 0) &&
-            static_cast<bool>(hit) == objects.occluded(rays[i]))
-          continue;
-        ++count.wrong;
-        first_wrong.tell(fmt::format("scene {}, ray {}", index, i));
+      const Scene fields = judge.as_fields();
+      for (const bool placed : {false, true}) {
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          lattice[i] = VoxelSceneJudge::random_ray(random);
+          rays[i] = judge.world_ray(lattice[i]);
+        }
+        if (placed) {
+          fields.closest_hits(rays, hits);
+          fields.occluded(rays, blocked);
+        } else {
+          objects.closest_hits(rays, hits);
+          objects.occluded(rays, blocked);
+        }
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          Counts& count = counts[(placed ? 2u : 0u) + (judge.exact(lattice[i]) ? 0u : 1u)];
+          const LatticeAnswer expected = judge.answer(lattice[i]);
+          Hit hit = placed ? fields.closest_hit(rays[i]) : objects.closest_hit(rays[i]);
+          const bool any = placed ? fields.occluded(rays[i]) : objects.occluded(rays[i]);
+          const bool same = hit == hits[i] && any == (blocked[i] != 0) && any == static_cast<bool>(hit);
+          if (placed) hit.part = hit.object;
+          ++count.rays;
+          count.hits += hit ? 1 : 0;
+          count.judged += expected.decided() ? 1 : 0;
+          if (same && judge.agrees(lattice[i], expected, hit)) continue;
+          ++count.wrong;
+          first_wrong.tell(fmt::format("scene {}, ray {}{}", index, i, placed ? " at placed fields" : ""));
+        }
       }
     }
     total.add(counts);

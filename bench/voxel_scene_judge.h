@@ -8,10 +8,16 @@
 //
 // The rule, in the directions of the lattice: planes crossed at once are crossed in the order x, y, z; a ray along a
 // plane belongs to the upper side, and a ray that starts on a plane to the cell that it enters.
+//
+// Half of the scenes have sides and places that are rounded, such as 0.1 m at 371.3 m: there a plane has a slightly
+// different place in each object, and a ray a slightly different one than any plane. Rays along planes must be answered
+// all the same, exactly by the rule. Where a rounded ray crosses several planes at once, any order is admissible, but
+// none may lead it between two cells that touch.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <memory>
@@ -34,13 +40,16 @@ struct LatticeRay {
   bool exact = false;
 };
 
-/// The first solid cell, or all that are entered at the same t.
+/// The solid cells that may be hit first.
 struct LatticeAnswer {
-  std::int64_t t_num = 0, t_den = 1;  ///< t = t_num / t_den
-  std::vector<std::array<int, 3>> cells;
-  bool decided = true;  ///< false: an inexact ray passes an edge, where its quantised ray may take either side
+  struct Entry {
+    std::int64_t t_num, t_den;  ///< t = t_num / t_den
+    std::array<int, 3> cell;
+  };
+  std::vector<Entry> entries;  ///< in the order in which the ray enters them
+  bool certain = false;        ///< whether one of them must be hit
 
-  bool hit() const { return !cells.empty(); }
+  bool decided() const { return certain || entries.empty(); }
 };
 
 class VoxelSceneJudge {
@@ -50,7 +59,11 @@ class VoxelSceneJudge {
   /// A random scene. `march` of all models; empty: any.
   VoxelSceneJudge(Random& random, std::string_view march)
       : solid_(static_cast<std::size_t>(kSide * kSide * kSide)),
-        side_(random.below(3) == 0 ? 0.25 : 1),
+        rounded_(random.below(2) == 0),
+        side_(rounded_               ? random_side(random)
+              : random.below(3) == 0 ? 0.25
+                                     : 1),
+        base_(rounded_ ? random_base(random, side_) : dvec3(0.0)),
         corner_(random.below(9) - 4, random.below(9) - 4, random.below(9) - 4) {
     const int objects = 2 + random.below(23), models = 1 + random.below(4);
     const bool tiles = random.below(3) == 0;  // of one size, side by side
@@ -90,7 +103,8 @@ class VoxelSceneJudge {
         turn[k][to] = sign[at] * side_;
         if (sign[at] < 0) shift[to] = length;
       }
-      placed_.places.push_back({static_cast<std::uint32_t>(model), turn, side_ * dvec3(corner_ + low + shift)});
+      placed_.places.push_back({static_cast<std::uint32_t>(model), turn, base_ + side_ * dvec3(corner_ + low + shift)});
+      at_.push_back(low + shift);
       for (int z = 0; z < size.z; ++z) {
         for (int y = 0; y < size.y; ++y) {
           for (int x = 0; x < size.x; ++x) {
@@ -103,7 +117,11 @@ class VoxelSceneJudge {
 
   const PlacedVoxels& placed() const { return placed_; }
 
-  /// The same objects as separate fields, rotated by their placements; mirrored ones are mirrored in their fields.
+  /// Whether a ray's numbers are exact in every object.
+  bool exact(const LatticeRay& ray) const { return ray.exact && !rounded_; }
+
+  /// The same objects as separate fields, rotated and partly scaled by their placements; mirrored ones are mirrored in
+  /// their fields.
   Scene as_fields() const {
     std::vector<SceneFieldPtr> fields;
     std::vector<SceneObject> objects;
@@ -111,10 +129,11 @@ class VoxelSceneJudge {
       const glm::dmat3 mirror(dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1));
       const glm::dmat3 turn = place.world_from_grid / side_;
       const bool mirrored = dot(cross(turn[0], turn[1]), turn[2]) < 0;
+      SceneObject object;
+      object.placement.scale = std::array{1.0, side_, 0.5}[objects.size() % 3];
       PlacedVoxels own;
       own.models = {placed_.models[place.model]};
-      own.places = {{0, side_ * (mirrored ? mirror : glm::dmat3(1.0)), dvec3(0.0)}};
-      SceneObject object;
+      own.places = {{0, side_ / object.placement.scale * (mirrored ? mirror : glm::dmat3(1.0)), dvec3(0.0)}};
       object.field = static_cast<std::uint32_t>(fields.size());
       object.placement.turn = mirrored ? turn * mirror : turn;
       object.placement.origin = place.origin;
@@ -129,7 +148,7 @@ class VoxelSceneJudge {
     const VoxelPlace& place = placed_.places[static_cast<std::size_t>(object)];
     std::array<int, 3> cell{};
     for (int to = 0; to < 3; ++to) {
-      int at = static_cast<int>(place.origin[to] / side_) - corner_[to];
+      int at = at_[static_cast<std::size_t>(object)][to];
       for (int k = 0; k < 3; ++k) {
         if (place.world_from_grid[k][to] > 0) at += voxel[k];
         if (place.world_from_grid[k][to] < 0) at -= voxel[k] + 1;
@@ -165,7 +184,7 @@ class VoxelSceneJudge {
     Ray world;
     for (int i = 0; i < 3; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      world.origin[i] = side_ * (0.5 * static_cast<double>(ray.origin[at]) + corner_[i]);
+      world.origin[i] = std::fma(side_, 0.5 * static_cast<double>(ray.origin[at]) + corner_[i], base_[i]);
       world.direction[i] = side_ * 0.5 * static_cast<double>(ray.direction[at]);
     }
     world.t_max = static_cast<double>(ray.t_max);
@@ -173,59 +192,116 @@ class VoxelSceneJudge {
   }
 
   LatticeAnswer answer(const LatticeRay& ray) const {
+    const bool in_order = exact(ray);
     LatticeAnswer answer;
     // The cell and, per axis with a direction, halves of a voxel to the next plane: it is crossed at halves / |d|.
-    std::array<std::int64_t, 3> cell{}, halves{}, speed{}, step{};
+    Cell cell{}, halves{}, speed{}, step{};
+    unsigned begun = 0;  // axes whose planes it starts on
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int64_t at = ray.origin[i], d = ray.direction[i];
       step[i] = d < 0 ? -1 : 1, speed[i] = d < 0 ? -d : d;
       const std::int64_t floor = at >= 0 ? at / 2 : -((1 - at) / 2);
       cell[i] = d < 0 && 2 * floor == at ? floor - 1 : floor;
       halves[i] = d < 0 ? at - 2 * cell[i] : 2 * (cell[i] + 1) - at;
+      begun |= d != 0 && 2 * floor == at ? 1u << i : 0u;
     }
-    std::int64_t num = 0, den = 1;  // t of the cell's entry
+    const auto behind = [&](unsigned axes) {
+      Cell at = cell;
+      for (std::size_t i = 0; i < 3; ++i) at[i] -= axes >> i & 1 ? step[i] : 0;
+      return at;
+    };
+    // A rounded start may lie behind its planes.
+    if (rounded_) {
+      for (unsigned axes = begun; axes != 0; axes = (axes - 1) & begun) enter(behind(axes), 0, 1, answer);
+    }
+    bool over = enter(cell, 0, 1, answer) && (in_order || ray.t_max > 0);
+    answer.certain = over;
+    std::int64_t num = 0, den = 1;
     for (;;) {
-      const bool later = answer.hit() && num * answer.t_den > answer.t_num * den;
-      if (later || num > ray.t_max * den) return answer;
-      if (solid(cell)) {
-        if (!answer.hit()) answer.t_num = num, answer.t_den = den;
-        answer.decided = answer.decided && (ray.exact || num != ray.t_max * den);
-        answer.cells.push_back({static_cast<int>(cell[0]), static_cast<int>(cell[1]), static_cast<int>(cell[2])});
-      }
+      // The axes of the planes that are crossed next.
+      unsigned axes = 0;
       std::size_t first = 3;
       for (std::size_t i = 0; i < 3; ++i) {
         if (speed[i] == 0) continue;
         const bool inwards = step[i] > 0 ? cell[i] < kSide : cell[i] >= 0;
         if (!inwards) return answer;
-        if (first == 3) {
-          first = i;
-          continue;
-        }
-        const std::int64_t left = halves[i] * speed[first], right = halves[first] * speed[i];
-        if (left == right && !ray.exact && !answer.hit()) answer.decided = false;
-        if (left < right) first = i;
+        const std::int64_t left = first < 3 ? halves[i] * speed[first] : 0,
+                           right = first < 3 ? halves[first] * speed[i] : 1;
+        if (left < right) first = i, axes = 0;
+        if (left <= right) axes |= 1u << i;
       }
-      num = halves[first], den = speed[first];
-      cell[first] += step[first];
-      halves[first] += 2;
+      const std::int64_t next_num = halves[first], next_den = speed[first];
+      const bool later = next_num * den > num * next_den;
+      if ((over && later) || next_num > ray.t_max * next_den) return answer;
+      num = next_num, den = next_den;
+      if (in_order) axes = 1u << first;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (axes >> i & 1) cell[i] += step[i], halves[i] += 2;
+      }
+      const bool blocked = enter_around(behind, axes, num, den, answer);
+      over = over || (blocked && (in_order || num != ray.t_max * den));
+      answer.certain = over;
     }
   }
 
   /// Whether a hit of the scene is admissible for the ray.
   bool agrees(const LatticeRay& ray, const LatticeAnswer& expected, const Hit& hit) const {
-    if (!expected.decided) return true;
-    if (static_cast<bool>(hit) != expected.hit()) return false;
-    if (!hit) return true;
-    const double t = static_cast<double>(expected.t_num) / static_cast<double>(expected.t_den);
+    if (!hit) return !expected.certain;
+    const std::array<int, 3> cell = cell_of(static_cast<int>(hit.part), hit.voxel);
     // In voxels, along the longest component; a quantised ray is off by less than 2^-14.
     const double longest = 0.5 * static_cast<double>(std::max({std::abs(ray.direction[0]), std::abs(ray.direction[1]),
                                                                std::abs(ray.direction[2])}));
-    if (ray.exact ? hit.t != t : !(std::abs(hit.t - t) * longest < 0x1p-13)) return false;
-    const std::array<int, 3> cell = cell_of(static_cast<int>(hit.part), hit.voxel);
-    return std::find(expected.cells.begin(), expected.cells.end(), cell) != expected.cells.end();
+    return std::any_of(expected.entries.begin(), expected.entries.end(), [&](const LatticeAnswer::Entry& entry) {
+      const double t = static_cast<double>(entry.t_num) / static_cast<double>(entry.t_den);
+      return entry.cell == cell && (exact(ray) ? hit.t == t : std::abs(hit.t - t) * longest < 0x1p-13);
+    });
   }
 
  private:
+  using Cell = std::array<std::int64_t, 3>;
+
+  static double random_side(Random& random) {
+    constexpr std::array<double, 6> kSides = {0.1, 0.3, 1.0 / 3, 7.7, 0.01, 1};
+    return kSides[static_cast<std::size_t>(random.below(6))];
+  }
+  // Decimals, multiples of the side, or any number.
+  static dvec3 random_base(Random& random, double side) {
+    const int kind = random.below(4);
+    dvec3 base;
+    for (int i = 0; i < 3; ++i) {
+      base[i] = kind == 0   ? 0
+                : kind == 1 ? 0.1 * (random.below(20'001) - 10'000)
+                : kind == 2 ? side * (random.below(1'000'001) - 500'000)
+                            : random.uniform(-1e4, 1e4);
+    }
+    return base;
+  }
+
+  // Returns whether the cell is solid.
+  bool enter(const Cell& cell, std::int64_t num, std::int64_t den, LatticeAnswer& answer) const {
+    if (!solid(cell)) return false;
+    answer.entries.push_back(
+        {num, den, {static_cast<int>(cell[0]), static_cast<int>(cell[1]), static_cast<int>(cell[2])}});
+    return true;
+  }
+
+  // Enters the cells around planes that are crossed at once, in any order; behind(axes) is the cell that has those
+  // still ahead. Returns whether no order leads past all solid ones.
+  template <class Behind>
+  bool enter_around(const Behind& behind, unsigned axes, std::int64_t num, std::int64_t den,
+                    LatticeAnswer& answer) const {
+    std::array<bool, 8> open{};
+    open[axes] = true;
+    for (unsigned ahead = axes; ahead != 0;) {
+      ahead = (ahead - 1) & axes;
+      bool reached = false;
+      for (unsigned axis = 1; axis < 8; axis *= 2)
+        reached = reached || ((axes & ~ahead & axis) != 0 && open[ahead | axis]);
+      open[ahead] = !enter(behind(ahead), num, den, answer) && reached;
+    }
+    return !open[0];
+  }
+
   static std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) {
     return static_cast<std::size_t>((z * kSide + y) * kSide + x);
   }
@@ -238,8 +314,11 @@ class VoxelSceneJudge {
   }
 
   std::vector<std::uint8_t> solid_;
+  bool rounded_;  // whether sides or places are
   double side_;
-  ivec3 corner_;
+  dvec3 base_;             // of the lattice in the world, in metres
+  ivec3 corner_;           // and from there, in voxels
+  std::vector<ivec3> at_;  // places of the objects on the lattice
   PlacedVoxels placed_;
 };
 

@@ -51,10 +51,12 @@ struct ScarpVoxelObject {
   uint none;
 };
 
-/// Rows of grid_from_world, VoxelRay::room, and a byte of VoxelTies (march/voxel/voxel_ray.h) for each frame of a ray.
+/// Rows of grid_from_world, VoxelRay::room of unplaced rays, voxels per metre, and a byte of VoxelTies
+/// (march/voxel/voxel_ray.h) for each frame of a ray.
 struct ScarpVoxelTurn {
   dvec3 rows[3];
   double room;
+  double per_metre;
   uint ties[16];
 };
 

@@ -47,12 +47,14 @@ struct LiveScene::State {
   // The scene's data derived from a field, and the number of objects that use it.
   struct Field {
     std::optional<WorldBox> box, extent;
+    double farthest_voxel = 0;
     bool batches = false, backdrop = false;
     bool special = false;  // Scene::find_special() depends on it
     std::uint32_t users = 0;
   };
   struct Object {
     WorldBox extent;
+    double farthest = 0;  // farthest_of()
     bool exists = false, changed = false;
     bool unbounded = false, batched = false;  // whether it is in these sets
     bool beside_tree = false, in_tree = false;
@@ -72,6 +74,7 @@ struct LiveScene::State {
   std::vector<std::uint32_t> choose_beside_tree();
   void update_tree(std::uint32_t object);
   void update_box();
+  void update_rooms();
 
   Scene scene;
   std::vector<Field> fields;
@@ -85,6 +88,8 @@ struct LiveScene::State {
 
   std::set<std::uint32_t> unbounded;
   std::set<std::pair<double, std::uint32_t>> batched;  // by size, the largest first, as in Scene
+  std::set<std::pair<double, std::uint32_t>> voxels;   // by farthest_of()
+  std::uint32_t placed_voxels = 0;                     // of them, those that are not in place
   BoxTreeEditor tree{scene.tree_};
 
   // Since the last update().
@@ -117,7 +122,7 @@ LiveScene::State::State(const Scene& from) : scene(from), objects(from.objects()
 void LiveScene::State::describe(std::uint32_t index) {
   const SceneField& field = *scene.fields_[index];
   Field& known = fields[index];
-  known.box = field.box(), known.extent = field.extent();
+  known.box = field.box(), known.extent = field.extent(), known.farthest_voxel = field.farthest_voxel();
   known.batches = field.likes_batches(), known.backdrop = field.is_backdrop();
   const bool nothing_there = known.backdrop && known.box && known.box->empty();
   known.special = !nothing_there && (!known.box || !known.extent || known.backdrop || height_field_of(field));
@@ -181,6 +186,7 @@ std::uint32_t LiveScene::Editor::add(const Scene& part, const Placement& placeme
   } else {
     state.objects.emplace_back(), state.boxes.emplace_back();
     state.scene.objects_.emplace_back(), state.scene.in_place_.emplace_back(), state.scene.frames_.emplace_back();
+    state.scene.rooms_.emplace_back();
   }
   state.scene.objects_[number] = object;
   state.objects[number].exists = true;
@@ -251,6 +257,10 @@ void LiveScene::State::update_boxes(std::uint32_t index) {
   Object& object = objects[index];
   const Placement& placement = scene.objects_[index].placement;
   const Field& field = fields[scene.objects_[index].field];
+  if (object.farthest > 0) {
+    voxels.erase({object.farthest, index});
+    placed_voxels -= !scene.in_place_[index];
+  }
   scene.in_place_[index] = placement.identity();
   scene.frames_[index] = frame_of(placement);
 
@@ -260,6 +270,11 @@ void LiveScene::State::update_boxes(std::uint32_t index) {
   box_shrunk = box_shrunk || (!object.extent.empty() && touches_side(object.extent, scene.box_));
   object.extent = in_world(field.extent);
   scene.box_ = around(scene.box_, object.extent);
+  object.farthest = farthest_of(placement, field.farthest_voxel, object.extent);
+  if (object.farthest > 0) {
+    voxels.emplace(object.farthest, index);
+    placed_voxels += !scene.in_place_[index];
+  }
 
   if (object.unbounded) unbounded.erase(index);
   if (object.batched) batched.erase({-half_area(boxes[index]), index});
@@ -302,9 +317,21 @@ void LiveScene::State::update_box() {
   for (const Object& object : objects) scene.box_ = around(scene.box_, object.extent);
 }
 
+// As Scene's constructor does.
+void LiveScene::State::update_rooms() {
+  const double before = scene.room_;
+  scene.room_ = voxels.size() > 1 || placed_voxels > 0 ? room_of_voxels(voxels.rbegin()->first) : 0;
+  if (scene.room_ == before) {
+    for (const std::uint32_t object : changed) scene.find_room(object);
+  } else {
+    for (std::uint32_t i = 0; i < objects.size(); ++i) scene.find_room(i);
+  }
+}
+
 void LiveScene::State::update() {
   update_fields();
   for (const std::uint32_t object : changed) update_boxes(object);
+  update_rooms();
   for (const std::uint32_t object : choose_beside_tree()) update_tree(object);
   for (const std::uint32_t object : changed) update_tree(object), objects[object].changed = false;
   changed.clear();

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scarp/base/error.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -39,6 +41,21 @@ WorldBox world_box(const Placement& placement, const WorldBox& box) {
     world = around(world, {p, p});
   }
   return world;
+}
+
+double farthest_of(const Placement& placement, double in_field, const WorldBox& extent) {
+  if (!(in_field > 0)) return 0;
+  return std::max(
+      {in_field * placement.scale, longest_of(placement.origin), longest_of(extent.low), longest_of(extent.high)});
+}
+
+// A placement rounds as much as a field's own objects do (VoxelObjects), so twice their 2^-48; and all objects have the
+// same room, because two that meet must agree which rays are on the plane between them.
+double room_of_voxels(double farthest) {
+  if (!(farthest > 0)) return 0;
+  int exponent = 0;
+  std::frexp(farthest, &exponent);
+  return std::ldexp(1, exponent - 47);
 }
 
 }  // namespace scarp

@@ -18,4 +18,11 @@ void require_placement(const Placement& placement, std::size_t object);
 /// The box around a placed field's box; empty if that is.
 WorldBox world_box(const Placement& placement, const WorldBox& box);
 
+/// The largest coordinate from which a ray's place in an object is computed, in metres of the world; `in_field`:
+/// SceneField::farthest_voxel(), `extent`: the object's box. 0 if `in_field` is: rounding does not matter then.
+double farthest_of(const Placement& placement, double in_field, const WorldBox& extent);
+/// The room in metres of rays in a scene with voxels whose farthest_of() is at most `farthest`: Ray::room times the
+/// scale of their object. A power of two, so that few moves of objects change it.
+double room_of_voxels(double farthest);
+
 }  // namespace scarp

@@ -15,6 +15,7 @@
 #include "scarp/base/kept_memory.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
+#include "scarp/march/ray_room.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
@@ -68,11 +69,18 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
   std::vector<WorldBox> boxes(objects_.size());
   std::vector<std::uint32_t> in_tree;
   std::vector<std::pair<double, std::uint32_t>> batched;  // by their count
+  int voxels = 0, placed_voxels = 0;
+  double farthest = 0;
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const auto& [field, material, placement, mask] = objects_[i];
     in_place_.push_back(placement.identity());
     frames_.push_back(frame_of(placement));
-    if (field_extents[field]) box_ = around(box_, world_box(placement, *field_extents[field]));
+    const WorldBox extent = field_extents[field] ? world_box(placement, *field_extents[field]) : WorldBox{};
+    box_ = around(box_, extent);
+    if (const double far = farthest_of(placement, fields_[field]->farthest_voxel(), extent); far > 0) {
+      farthest = std::max(farthest, far);
+      ++voxels, placed_voxels += !in_place_[i];
+    }
     if (!field_boxes[field]) {
       beside_tree_.push_back(i);
       continue;
@@ -89,7 +97,15 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     in_tree.erase(std::find(in_tree.begin(), in_tree.end(), i));
   }
   tree_ = BoxTree(boxes, std::move(in_tree));
+  if (voxels > 1 || placed_voxels > 0) room_ = room_of_voxels(farthest);
+  rooms_.resize(objects_.size());
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) find_room(i);
   find_special();
+}
+
+void Scene::find_room(std::uint32_t object) {
+  const bool voxels = room_ > 0 && field_of(object).farthest_voxel() > 0;
+  rooms_[object] = voxels ? ray_room(room_ / objects_[object].placement.scale) : std::uint16_t{0};
 }
 
 void Scene::watch_field(std::uint32_t index) {
@@ -304,7 +320,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
     if (!sees(rules, objects_[object])) continue;
     // Without earlier hits, free rays need no limit.
     std::span<const Ray> asked = rays;
-    if (any_hit || !in_place_[object] || !all_free(rays, from)) {
+    if (any_hit || !in_place_[object] || rooms_[object] != 0 || !all_free(rays, from)) {
       locals.resize(rays.size());
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const StartedRay ray(rays, from, i);

@@ -187,6 +187,7 @@ class Scene {
   void compare_edits(std::uint64_t edits) const;
   void require_memory() const;
   void find_special();
+  void find_room(std::uint32_t object);
   void find_sole();
   void find_terrain();
   SceneSurface placed_surface(std::uint32_t object, const FieldSurface& own, const dvec3& p,
@@ -231,6 +232,8 @@ class Scene {
   std::vector<SceneObject> objects_;
   std::vector<std::uint8_t> in_place_;      // per object: 1 if its placement is the identity
   std::vector<std::uint8_t> frames_;        // per object: Ray::frame of rays in its space
+  std::vector<std::uint16_t> rooms_;        // per object: Ray::room of rays in its space
+  double room_ = 0;                         // room_of_voxels(); 0 if fewer than two meet and none is placed
   std::vector<std::uint32_t> beside_tree_;  // objects that every ray is traced against, before the tree
   BoxTree tree_;                            // the other objects that are not empty
   WorldBox box_;

@@ -64,6 +64,7 @@ inline void Scene::make_local(const StartedRay& started, std::uint32_t object, c
     local = objects_[object].placement.field_from_world(started.ray);
     local.frame = frames_[object];
   }
+  local.room = rooms_[object];
   if (!started.own || started.ray.start_object != object) local.start = RayStart::free;
   if (!best) return;
   local.t_max = best.t;

@@ -84,6 +84,9 @@ class SceneField {
   /// Bounding box of everything that a picture should show; nullopt for an unbounded field. Walls of solid ground are
   /// unbounded, but the ground is not.
   virtual std::optional<WorldBox> extent() const { return box(); }
+  /// The largest coordinate in the field where its objects may meet those of other fields, for voxels; 0 for others.
+  /// Scenes derive Ray::room from it.
+  virtual double farthest_voxel() const { return 0; }
   /// Whether the field is only visible: it casts no shadow and is not ground.
   virtual bool is_backdrop() const { return false; }
   /// Whether any of its surfaces may mirror.

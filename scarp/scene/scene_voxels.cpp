@@ -31,6 +31,7 @@ class VoxelField final : public SceneField {
   std::string_view march() const override { return march_; }
   std::optional<WorldBox> box() const override { return objects_.reach(); }
   std::optional<WorldBox> extent() const override { return objects_.box(); }
+  double farthest_voxel() const override { return objects_.farthest(); }
 
   // A ray alone does not identify the voxel that it starts on: without `from` all rays are free.
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {

@@ -47,6 +47,7 @@ DeviceVoxelObjects placed_on(const Device& device, const DeviceVoxels& grids, co
     glsl::ScarpVoxelTurn& to = turns.emplace_back();
     for (int axis = 0; axis < 3; ++axis) to.rows[axis] = rows[axis];
     to.room = turn.room;
+    to.per_metre = turn.per_metre;
     for (std::size_t frame = 0; frame < turn.ties.size(); ++frame)
       to.ties[frame / 4] |= std::uint32_t{turn.ties[frame]} << (8 * (frame % 4));
   }

@@ -44,7 +44,9 @@ Hit hit_on(std::uint32_t part, const VoxelHit& found) {
 }  // namespace
 
 VoxelObjects::Turn::Turn(const glm::dmat3& world_from_grid_)
-    : grid_from_world(glm::inverse(world_from_grid_)), world_from_grid(world_from_grid_) {
+    : grid_from_world(glm::inverse(world_from_grid_)),
+      world_from_grid(world_from_grid_),
+      per_metre(length(grid_from_world[0])) {
   VoxelTies frame;
   for (std::uint8_t& ties : ties_by_frame)
     ties = static_cast<std::uint8_t>(VoxelTies(grid_from_world, frame).bits), ++frame.bits;
@@ -78,14 +80,16 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   }
   objects_.shrink_to_fit();
   in_tree_.shrink_to_fit();
-  // Where objects meet, no coordinate of a ray, a placement or a corner is larger than `farthest`. Their difference,
+  // Where objects meet, no coordinate of a ray, a placement or a corner is larger than `farthest_`. Their difference,
   // the three products of a row and the sums have less than 8 units of rounding, and as much again in the elements of
   // the inverse and in placements by readers, which are products: 2^-49; twice that covers both sides of a plane.
-  double farthest = 0;
+  // Scenes that place the field give its rays a room for all roundings (Ray::room).
   for (const WorldBox& box : boxes) box_ = around(box_, box);
-  for (const Object& object : objects_) farthest = std::max(farthest, largest(object.origin));
-  if (!boxes.empty()) farthest = std::max({farthest, largest(box_.low), largest(box_.high)});
-  for (Turn& turn : turns_) turn.room = std::ldexp(farthest, -48) * length(turn.grid_from_world[0]);
+  if (!boxes.empty()) {
+    farthest_ = std::max(largest(box_.low), largest(box_.high));
+    for (const Object& object : objects_) farthest_ = std::max(farthest_, largest(object.origin));
+  }
+  for (Turn& turn : turns_) turn.room = std::ldexp(farthest_, -48) * turn.per_metre;
   // Rays may hit voxels at the edges of a box that they miss by less than this (quantise()).
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Turn& turn = turns_[objects_[in_tree_[i]].turn];
@@ -116,7 +120,7 @@ struct VoxelObjects::Query {
       turn = object.turn;
       direction = VoxelDirection(to.grid_from_world * ray.direction, to.ties(ray));
     }
-    return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}, to.room};
+    return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}, to.room_of(ray)};
   }
   // Returns false for a ray that misses the object's box.
   bool quantise_at(std::uint32_t index, double t_max, const Hit* from, QuantisedRay& quantised) {
@@ -277,7 +281,8 @@ std::vector<VoxelObjects::Placed> VoxelObjects::placed() const {
 
 std::vector<VoxelObjects::PlacedTurn> VoxelObjects::turns() const {
   std::vector<PlacedTurn> turns;
-  for (const Turn& turn : turns_) turns.push_back({turn.grid_from_world, turn.ties_by_frame, turn.room});
+  for (const Turn& turn : turns_)
+    turns.push_back({turn.grid_from_world, turn.ties_by_frame, turn.room, turn.per_metre});
   return turns;
 }
 

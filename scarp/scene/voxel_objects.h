@@ -9,6 +9,7 @@
 // only fields and queries them ray by ray.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "scarp/march/hit_rules.h"
+#include "scarp/march/ray_room.h"
 #include "scarp/march/turned_box.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/field_contact.h"
@@ -98,6 +100,8 @@ class VoxelObjects {
 
   /// Bounding box of all solid voxels (or grids); empty if there are none.
   const WorldBox& box() const { return box_; }
+  /// The largest coordinate of all placements and of box(); 0 if no voxel is solid.
+  double farthest() const { return farthest_; }
   /// Bounding box of everything that rays may hit, which is slightly larger (kTouch in march/voxel/voxel_ray.h).
   const WorldBox& reach() const { return tree_.box(); }
   std::size_t objects() const { return objects_.size(); }
@@ -117,7 +121,8 @@ class VoxelObjects {
   struct PlacedTurn {
     glm::dmat3 grid_from_world;
     TiesByFrame ties;
-    double room;  ///< VoxelRay::room
+    double room;       ///< VoxelRay::room of rays without a room of their own
+    double per_metre;  ///< voxels per metre
   };
   std::vector<PlacedTurn> turns() const;
   const BoxTree& tree() const { return tree_; }
@@ -132,9 +137,11 @@ class VoxelObjects {
   struct Turn {
     glm::dmat3 grid_from_world, world_from_grid;
     TiesByFrame ties_by_frame;
-    double room = 0;  // VoxelRay::room
+    double per_metre;  // voxels per metre
+    double room = 0;   // VoxelRay::room without Ray::room
 
     explicit Turn(const glm::dmat3& world_from_grid_);
+    double room_of(const Ray& ray) const { return std::max(room, room_in_metres(ray.room) * per_metre); }
     VoxelTies ties(const Ray& ray) const {
       VoxelTies ties;
       ties.bits = ties_by_frame[ray.frame % ties_by_frame.size()];
@@ -158,6 +165,7 @@ class VoxelObjects {
   std::vector<std::uint32_t> in_tree_;  // objects that are not empty, in the order of the tree's numbers
   BoxTree tree_;
   WorldBox box_;
+  double farthest_ = 0;
   VoxelRounding rounding_;
 };
 

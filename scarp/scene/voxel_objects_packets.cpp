@@ -65,8 +65,10 @@ class VoxelObjects::PacketQuery {
   bool load() {
     packet_.steps = 0;
     aimed_ = alone_aimed_ = kNoTurn;
-    const auto other_frame = [&](const Ray& ray) { return ray.frame != rays_[0].frame; };
-    return load_voxel_packet(packet_, rays_) && std::none_of(rays_.begin(), rays_.end(), other_frame);
+    const auto placed_elsewhere = [&](const Ray& ray) {
+      return ray.frame != rays_[0].frame || ray.room != rays_[0].room;
+    };
+    return load_voxel_packet(packet_, rays_) && std::none_of(rays_.begin(), rays_.end(), placed_elsewhere);
   }
 
   bool ask_tree() {
@@ -96,6 +98,7 @@ class VoxelObjects::PacketQuery {
     const Object& object = scene_.objects_[index];
     const Turn& turn = scene_.turns_[object.turn];
     const VoxelTies ties = turn.ties(rays_[0]);
+    const double room = turn.room_of(rays_[0]);
     const VoxelTarget& target = scene_.targets_[object.model];
     const VoxelMarchEntry& march = scene_.models_[object.model]->march();
     std::uint64_t alone = march.simd ? 0 : open;
@@ -108,7 +111,7 @@ class VoxelObjects::PacketQuery {
     if (const std::uint64_t together = open & ~alone; together != 0) {
       if (aimed_ != object.turn) aim_voxel_packet(packet_, turn.grid_from_world, ties);
       aimed_ = object.turn;
-      meeting.met = march.packet(target, {turn.grid_from_world, object.origin, ties, turn.room}, packet_, together);
+      meeting.met = march.packet(target, {turn.grid_from_world, object.origin, ties, room}, packet_, together);
       for (std::size_t k = 0; k < packet_.hits; ++k) {
         const auto i = static_cast<std::size_t>(packet_.ray[k]);
         meeting.hit |= std::uint64_t{1} << i;
@@ -134,7 +137,7 @@ class VoxelObjects::PacketQuery {
                          rays_[i].t_min,
                          packet_.t_max[i],
                          start_voxel,
-                         turn.room};
+                         room};
       QuantisedRay quantised;
       if (!quantise(ray, directions_[i], target.box, quantised)) return;
       MarchStats stats;

@@ -245,6 +245,30 @@ TEST(LiveScene, KeepsItsHierarchyEfficient) {
   EXPECT_TRUE(cast(live.read().scene(), {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}));
 }
 
+// Cubes side by side at places that are rounded; Ray::room depends on where all of them are.
+TEST(LiveScene, ClosesSeamsOfMovedVoxels) {
+  VoxelGrid grid({1, 1, 1});
+  grid.fill(grid.box(), 1);
+  const Voxels cube(std::move(grid));
+  const glm::dmat3 half_turn({-1, 0, 0}, {0, -1, 0}, {0, 0, 1});
+  LiveScene live;
+  std::uint32_t first = 0, second = 0;
+  live.edit([&](LiveScene::Editor& edit) { first = edit.add(cube), second = edit.add(cube); });
+  for (const double far : {0.0, 4000.0, 0.0}) {
+    for (int k = 0; k < 100; ++k) {
+      const double side = 0.1;
+      const Placement left{.scale = side, .origin = {far + k * side, 0, 0}};
+      const Placement right{.turn = half_turn, .scale = side, .origin = {far + (k + 2) * side, side, 0}};
+      live.edit([&](LiveScene::Editor& edit) { edit.move(first, left), edit.move(second, right); });
+      const Ray ray{.origin = {far + (k + 1) * side, side / 2, 1}};
+      const LiveScene::Reading reading = live.read();
+      const Hit hit = cast(reading.scene(), ray);
+      ASSERT_TRUE(hit) << far << ' ' << k;
+      ASSERT_EQ(hit, cast(combine({{cube, left}, {cube, right}}), ray));
+    }
+  }
+}
+
 TEST(LiveScene, KeepsObjectNumbers) {
   LiveScene live(combine({{ball(1)}, {ball(1), {.origin = {10, 0, 0}}}, {ball(1), {.origin = {20, 0, 0}}}}));
   const auto object_at = [&](double x) {

@@ -106,6 +106,12 @@ SCARP_FN double scarp_turned(dvec3 row, dvec3 v) {
   return sum;
 }
 
+/// VoxelRay::room of a ray with Ray::room, in a grid with so many voxels per metre.
+SCARP_FN double scarp_voxel_room(double own, double per_metre, uint room) {
+  SCARP_PRECISE double placed = packDouble2x32(uvec2(0u, room << 16)) * per_metre;
+  return own < placed ? placed : own;
+}
+
 SCARP_GLSL_END
 
 #endif

@@ -59,8 +59,11 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
   bool met = true;
   [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
     precise dvec3 away = rays.rays[ray].origin - objects.of[index].origin;
-    double origin = scarp_turned(turns.of[query.turn].rows[axis], away), room = turns.of[query.turn].room;
-    if (scratch.of[ray].given[axis] == 0.0lf) origin = scarp_voxel_level(origin, room);
+    double origin = scarp_turned(turns.of[query.turn].rows[axis], away);
+    double room = scarp_voxel_room(turns.of[query.turn].room, turns.of[query.turn].per_metre, rays.rays[ray].room);
+    if (scratch.of[ray].given[axis] == 0.0lf)
+      origin = scarp_voxel_level(axis, origin, room, scratch.of[ray].back, grids.grids[grid].low[axis],
+                                 grids.grids[grid].high[axis]);
     scratch.of[ray].origin[axis] = origin;
     met = scarp_voxel_clip(axis, origin, scratch.of[ray].given[axis], scratch.of[ray].inverse[axis], room,
                            scratch.of[ray].speed[axis], scratch.of[ray].back, grids.grids[grid].low[axis],

@@ -185,7 +185,9 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     if (packet.slow) {
       down[i] = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.down[i] + o), hn::Zero(di)));
       const VD plane = hn::Floor(hn::Add(origin[i], hn::Set(dd, 0.5))), room = hn::Set(dd, stand.room);
-      const MD on_plane = hn::And(level, hn::Le(hn::Abs(hn::Sub(origin[i], plane)), room));
+      const VD border = ties.up(i) > 0 ? low : high;
+      const VD near_plane = hn::IfThenElse(hn::Eq(plane, border), hn::Add(room, room), room);
+      const MD on_plane = hn::And(level, hn::Le(hn::Abs(hn::Sub(origin[i], plane)), near_plane));
       origin[i] = hn::IfThenElse(on_plane, plane, origin[i]);
       // A level ray belongs to the voxel's upper side.
       const MD between = ties.up(i) > 0 ? hn::And(hn::Ge(origin[i], low), hn::Lt(origin[i], high))

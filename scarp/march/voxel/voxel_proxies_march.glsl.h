@@ -41,8 +41,16 @@ struct ProxyEntry {
   uint face;
 };
 
+// VoxelRay::room of the ray in the grid of the object.
+double scarp_proxy_room(uint pixel, VoxelObjects scene, uint object) {
+  VoxelTurns turns = VoxelTurns(scene.is.turns);
+  uint turn = VoxelObjectList(scene.is.objects).of[object].turn;
+  return scarp_voxel_room(turns.of[turn].room, turns.of[turn].per_metre, VoxelRaysAgain(push.rays).rays[pixel].room);
+}
+
 // One axis of the ray in the grid of the object.
-void scarp_proxy_axis(uint pixel, VoxelObjects scene, uint object, int axis, out double origin, out double given) {
+void scarp_proxy_axis(uint pixel, VoxelObjects scene, uint object, int axis, double room, uint ties, out double origin,
+                      out double given) {
   // Read again rather than kept, so that only one axis at a time is in registers.
   VoxelRaysAgain rays = VoxelRaysAgain(push.rays);
   VoxelObjectList objects = VoxelObjectList(scene.is.objects);
@@ -50,7 +58,7 @@ void scarp_proxy_axis(uint pixel, VoxelObjects scene, uint object, int axis, out
   given = scarp_turned(row, rays.rays[pixel].direction);
   precise dvec3 away = rays.rays[pixel].origin - objects.of[object].origin;
   origin = scarp_turned(row, away);
-  if (given == 0.0lf) origin = scarp_voxel_level(origin, VoxelTurns(scene.is.turns).of[objects.of[object].turn].room);
+  if (given == 0.0lf) origin = scarp_voxel_level(axis, origin, room, ties, voxel_grid.low[axis], voxel_grid.high[axis]);
 }
 
 // Returns false if the ray misses the box.
@@ -59,25 +67,25 @@ bool scarp_enter_proxy(uint pixel, VoxelObjects scene, uint object, out ScarpVox
   double per_longest = 0.0lf, origin, given;
   uint turn = VoxelObjectList(scene.is.objects).of[object].turn, frame = rays.rays[pixel].frame;
   uint ties = VoxelTurns(scene.is.turns).of[turn].ties[frame >> 2] >> (8u * (frame & 3u));
-  double room = VoxelTurns(scene.is.turns).of[turn].room;
+  double room = scarp_proxy_room(pixel, scene, object);
   uint back = ties & kScarpTieBits;
   dvec3 inverse;
   for (int axis = 0; axis < 3; ++axis) {
-    scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+    scarp_proxy_axis(pixel, scene, object, axis, room, ties, origin, given);
     back |= scarp_voxel_back(axis, given, ties);
     inverse[axis] = scarp_exact_inverse(given);
     double size = scarp_magnitude(inverse[axis]);
     if (axis == 0 || size < per_longest) per_longest = size;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+    scarp_proxy_axis(pixel, scene, object, axis, room, ties, origin, given);
     walk.speed[axis] = scarp_voxel_speed(given, per_longest);
     back |= scarp_voxel_inexact(given, per_longest, walk.speed[axis]);
   }
   ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[pixel].t_min, rays.rays[pixel].t_max, -1, false);
   bool met = true;
   for (int axis = 0; axis < 3; ++axis) {
-    scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+    scarp_proxy_axis(pixel, scene, object, axis, room, ties, origin, given);
     met = scarp_voxel_clip(axis, origin, given, inverse[axis], room, walk.speed[axis], back, voxel_grid.low[axis],
                            voxel_grid.high[axis], false, 0, clip) &&
           met;
@@ -85,7 +93,7 @@ bool scarp_enter_proxy(uint pixel, VoxelObjects scene, uint object, out ScarpVox
   met = met && clip.t <= clip.t_out;
   if (met) {
     for (int axis = 0; axis < 3; ++axis) {
-      scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+      scarp_proxy_axis(pixel, scene, object, axis, room, ties, origin, given);
       ScarpVoxelPlace at;
       met = scarp_voxel_place(axis, origin, given, walk.speed[axis], back, voxel_grid.low[axis], voxel_grid.high[axis],
                               false, 0, clip, at) &&

@@ -51,12 +51,15 @@ struct ScarpVoxelClip {
   bool comes_in;  ///< whether it enters after its start
 };
 
-/// The origin of a level ray: on the adjacent plane; `room` as VoxelRay::room.
-SCARP_FN scarp_real scarp_voxel_level(scarp_real origin, scarp_real room) {
+/// The origin of a level ray: on the adjacent plane; `room` as VoxelRay::room, twice as far at the side of the box that
+/// takes rays along it.
+SCARP_FN scarp_real scarp_voxel_level(int axis, scarp_real origin, scarp_real room, uint back, int low, int high) {
   SCARP_PRECISE scarp_real moved = origin + scarp_real(0.5f);
   scarp_real plane = floor(moved);
   SCARP_PRECISE scarp_real away = origin - plane;
-  return scarp_magnitude(away) <= room ? plane : origin;
+  scarp_real border = scarp_real((back >> uint(axis) & 1u) == 0u ? low : high);
+  SCARP_PRECISE scarp_real near = plane == border ? room + room : room;
+  return scarp_magnitude(away) <= near ? plane : origin;
 }
 
 /// Returns false if the ray misses the box. `room`: VoxelRay::room. `back` is

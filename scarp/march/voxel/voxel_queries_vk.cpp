@@ -75,7 +75,7 @@ DeviceBuffer filled(const Device& device, std::span<const T> from, const std::st
 
 constexpr std::size_t kMaxNodes = std::size_t{1} << 28;  // a word of the stack holds a node and four bits
 
-constexpr glsl::ScarpVoxelTurn kNoTurn{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0, {}};
+constexpr glsl::ScarpVoxelTurn kNoTurn{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0, 1, {}};
 
 // One box around a grid. Its sides are integers, which are exact in float; half a voxel exceeds the rounding errors.
 glsl::ScarpBoxNode node_around(const glsl::ScarpVoxelGrid& grid) {

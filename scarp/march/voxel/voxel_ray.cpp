@@ -22,12 +22,13 @@ std::int64_t rounded_up(double units) {
   return down + (static_cast<double>(down) < units ? 1 : 0);
 }
 
-// The origin of a level ray: the adjacent plane. Others are not in the box.
+// The origin of a level ray: the adjacent plane. Others are not in the box. At `border`, the side of the box that takes
+// rays along it, twice as far: the box in front may already have given up a ray that its own rounding puts nearer.
 constexpr double kFarthest = 1 << 20;  // beyond all boxes
-double on_plane(double origin, double room) {
+double on_plane(double origin, double room, int border) {
   if (!(origin > -1 && origin < kFarthest)) return origin;
   const double plane = static_cast<int>(origin + 1.5) - 1;
-  return std::abs(origin - plane) <= room ? plane : origin;
+  return std::abs(origin - plane) <= (plane == border ? 2 * room : room) ? plane : origin;
 }
 
 }  // namespace
@@ -98,7 +99,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
     double& origin = from[axis];
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     if (!kPlain && ray_direction.given[axis] == 0) {
-      origin = on_plane(origin, ray.room);
+      origin = on_plane(origin, ray.room, step > 0 ? low : high);
       if (!(step > 0 ? origin >= low && origin < high : origin > low && origin <= high)) return false;
       continue;
     }

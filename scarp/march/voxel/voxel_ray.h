@@ -47,7 +47,8 @@ struct VoxelRay {
   /// neighbour of the voxel that was hit, and cannot hit that voxel again.
   std::optional<ivec3> start_voxel{};
   /// Bound of the rounding in `origin` and in the grid's placement, in voxels. A ray along a plane counts as on it
-  /// within this distance, and a slow ray (kSlow) enters the box this much earlier.
+  /// within this distance, within twice as much at the side of the box to which rays along it belong, and a slow ray
+  /// (kSlow) enters the box this much earlier.
   double room = 0.0;
 };
 

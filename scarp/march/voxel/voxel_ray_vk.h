@@ -51,7 +51,8 @@ inline PreparedVoxelRay prepared_voxel_ray(const Ray& given, const Hit* from) {
                      is_number_of_devices(ray.t_min) && is_end_of_devices(ray.t_max);
   prepared.left = !prepared.marches;
   prepared.ray = {
-      ray.origin, ray.direction, ray.t_min, ray.t_max, glsl::kScarpNoPart, {}, ray.frame % (1u << VoxelTies::kBits), 0};
+      ray.origin, ray.direction, ray.t_min, ray.t_max, glsl::kScarpNoPart, {}, ray.frame % (1u << VoxelTies::kBits),
+      ray.room};
   if (from) {
     prepared.ray.part = from->part;
     prepared.ray.start = from->voxel + normal_of(from->face);

@@ -17,7 +17,7 @@ struct ScarpVoxelRay {
   uint part;    ///< the object whose voxel it starts beside; kScarpNoPart: none
   ivec3 start;  ///< that voxel
   uint frame;   ///< Ray::frame
-  uint none;
+  uint room;    ///< Ray::room
 };
 const uint kScarpNoPart = 0xffffffffu;
 

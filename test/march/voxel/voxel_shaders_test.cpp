@@ -84,7 +84,8 @@ struct ShaderRay {
       walk.speed[axis] = glsl::scarp_voxel_speed(ray.direction[axis], per_longest);
       walk.back |= glsl::scarp_voxel_back(axis, ray.direction[axis], ties.bits) |
                    glsl::scarp_voxel_inexact(ray.direction[axis], per_longest, walk.speed[axis]);
-      if (ray.direction[axis] == 0) origin[axis] = glsl::scarp_voxel_level(origin[axis], ray.room);
+      if (ray.direction[axis] == 0)
+        origin[axis] = glsl::scarp_voxel_level(axis, origin[axis], ray.room, walk.back, box.low[axis], box.high[axis]);
     }
     for (int axis = 0; axis < 3; ++axis) {
       met = glsl::scarp_voxel_clip(axis, origin[axis], ray.direction[axis], inverse[axis], ray.room, walk.speed[axis],

@@ -263,7 +263,7 @@ TEST(VoxelBatchLayout, MatchesTheShaders) {
   EXPECT_TRUE(has_struct(
       kVoxelShader, {offsetof(ScarpVoxelRay, origin), offsetof(ScarpVoxelRay, direction),
                      offsetof(ScarpVoxelRay, t_min), offsetof(ScarpVoxelRay, t_max), offsetof(ScarpVoxelRay, part),
-                     offsetof(ScarpVoxelRay, start), offsetof(ScarpVoxelRay, frame), offsetof(ScarpVoxelRay, none)}));
+                     offsetof(ScarpVoxelRay, start), offsetof(ScarpVoxelRay, frame), offsetof(ScarpVoxelRay, room)}));
   EXPECT_TRUE(has_struct(
       kVoxelShader, {offsetof(ScarpVoxelHit, t), offsetof(ScarpVoxelHit, voxel), offsetof(ScarpVoxelHit, part),
                      offsetof(ScarpVoxelHit, face), offsetof(ScarpVoxelHit, status), offsetof(ScarpVoxelHit, steps),
