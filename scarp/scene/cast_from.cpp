@@ -18,11 +18,11 @@ constexpr std::int64_t kFanRaysPerPiece = 8192;
 
 bool finite(const dvec3& v) { return std::isfinite(v.x + v.y + v.z); }
 
-void require_sound(const Terrain& terrain, const dvec3& eye, double t_min, double t_max) {
-  const HeightField& field = terrain.field();
+void require_sound(const HeightTarget& terrain, const dvec3& eye, double t_min, double t_max) {
+  const HeightField& field = *terrain.field;
   if (const auto* memory = field.memory(); memory && memory->expired())
     throw Error("terrain: the owner of its samples no longer exists");
-  if (terrain.pyramid().edits() != field.edits())
+  if (terrain.pyramid->edits() != field.edits())
     throw Error("terrain: its field was edited elsewhere (build the terrain again)");
   if (!finite(eye)) throw Error("fan: its eye is not finite");
   if (!std::isfinite(t_min) || !(t_max >= t_min))
@@ -44,12 +44,11 @@ void for_each_strip(int columns, int rows, const Body& body) {
 
 // direction(column, row) makes the rays of one strip after the other.
 template <class Direction>
-void cast_made(const Terrain& terrain, Fan fan, FanAnswers& answers, const Direction& direction) {
+void cast_made(const HeightTarget& terrain, Fan fan, FanAnswers& answers, const Direction& direction) {
   require_sound(terrain, fan.origin, fan.t_min, fan.t_max);
   if (answers.columns != fan.columns || answers.rows != fan.rows)
     throw Error(fmt::format("fan: {} x {} rays, room for {} x {} answers", fan.columns, fan.rows, answers.columns,
                             answers.rows));
-  const HeightTarget target = terrain.target();
   const auto rows = static_cast<std::size_t>(fan.rows);
   for_each_strip(fan.columns, fan.rows, [&](int begin, int end) {
     std::vector<float> dx(rows * kFanStrip), dy(dx.size()), dz(dx.size());
@@ -67,7 +66,7 @@ void cast_made(const Terrain& terrain, Fan fan, FanAnswers& answers, const Direc
         }
       }
       part.columns = width;
-      closest_hits_max_mip_fan(target, part, strip.hits());
+      closest_hits_max_mip_fan(terrain, part, strip.hits());
       const auto copy = [&](const auto& from, auto& to) {
         for (int row = 0; row < fan.rows; ++row) {
           std::copy_n(from.begin() + row * kFanStrip, width,
@@ -100,7 +99,7 @@ void cast_from(const Terrain& terrain, const PinholeCamera& camera, FanAnswers& 
   fan.columns = camera.columns, fan.rows = camera.rows;
   fan.t_min = camera.t_min, fan.t_max = camera.t_max;
   const double pixel = 2 * camera.tan_half_width / std::max(camera.columns, 1);
-  cast_made(terrain, fan, answers, [&](int column, int row) {
+  cast_made(terrain.target(), fan, answers, [&](int column, int row) {
     return forward + pixel * (column + 0.5 - 0.5 * camera.columns) * right +
            pixel * (0.5 * camera.rows - row - 0.5) * up;
   });
@@ -117,21 +116,23 @@ void cast_from(const Terrain& terrain, const Scanner& scanner, FanAnswers& answe
     turns.emplace_back(std::sin(azimuth), std::cos(azimuth));
   }
   for (const double elevation : scanner.elevations) tilts.emplace_back(std::sin(elevation), std::cos(elevation));
-  cast_made(terrain, fan, answers, [&](int column, int row) {
+  cast_made(terrain.target(), fan, answers, [&](int column, int row) {
     const dvec2 turn = turns[static_cast<std::size_t>(column)], tilt = tilts[static_cast<std::size_t>(row)];
     return dvec3(turn.x * tilt.y, turn.y * tilt.y, tilt.x);
   });
 }
 
-void cast_from(const Terrain& terrain, const Fan& fan, const FanHits& hits) {
+void cast_from(const Terrain& terrain, const Fan& fan, const FanHits& hits) { cast_from(terrain.target(), fan, hits); }
+
+void cast_from(const HeightTarget& terrain, const Fan& fan, const FanHits& hits) {
+  if (!terrain.field || !terrain.pyramid) throw Error("fan: its terrain has no field or no pyramid");
   require_sound(terrain, fan.origin, fan.t_min, fan.t_max);
   if (fan.columns < 0 || fan.rows < 0) throw Error(fmt::format("fan: {} x {} rays", fan.columns, fan.rows));
   const bool any = fan.columns > 0 && fan.rows > 0;
   if (any && (!fan.dx || !fan.dy || !fan.dz || !hits.t || !hits.col || !hits.row || !hits.u || !hits.v))
     throw Error("fan: an array is missing (only FanHits::status may be null)");
-  const HeightTarget target = terrain.target();
   for_each_strip(fan.columns, fan.rows,
-                 [&](int begin, int end) { closest_hits_max_mip_fan(target, fan, hits, begin, end); });
+                 [&](int begin, int end) { closest_hits_max_mip_fan(terrain, fan, hits, begin, end); });
 }
 
 }  // namespace scarp

@@ -61,5 +61,7 @@ void cast_from(const Terrain& terrain, const Scanner& scanner, FanAnswers& answe
 /// As above, for directions of the caller: hits are laid out as the rays. Rays without a direction (zero, NaN or
 /// infinite) miss.
 void cast_from(const Terrain& terrain, const Fan& fan, const FanHits& hits);
+/// As above, for the terrain of a scene (Scene::fan_target()).
+void cast_from(const HeightTarget& terrain, const Fan& fan, const FanHits& hits);
 
 }  // namespace scarp

@@ -142,11 +142,7 @@ LidarScan::LidarScan(const Scene& scene, Lidar lidar, LidarWay way) : scene_(sce
     turns_.push_back(sine_cosine(lidar_.first_azimuth + i * lidar_.azimuth_step));
   for (const double elevation : lidar_.elevations) tilts_.push_back(sine_cosine(elevation));
   for (const double offset : lidar_.azimuth_offsets) turn_offsets_.push_back(sine_cosine(offset));
-  const HeightField* heights = scene.only_heights();
-  if (way == LidarWay::automatic && still_ && heights && scene.only_field() && !scene.on_device() &&
-      scene.only_field()->march() == "max-mip") {
-    terrain_.emplace(*heights);  // shares its samples
-  }
+  if (way == LidarWay::automatic && still_) terrain_ = scene.fan_target();
 }
 
 double LidarScan::time_of(std::int64_t column) const {

@@ -122,10 +122,10 @@ class LidarScan {
   Lidar lidar_;
   std::int64_t columns_ = 0;
   bool still_ = true;
-  std::vector<std::size_t> by_slope_;  // channels in rising order of elevation
-  std::vector<dvec2> turns_, tilts_;   // sine and cosine of the columns' azimuths and of the elevations
-  std::vector<dvec2> turn_offsets_;    // of the channels' azimuth offsets
-  std::optional<Terrain> terrain_{};   // for fans
+  std::vector<std::size_t> by_slope_;      // channels in rising order of elevation
+  std::vector<dvec2> turns_, tilts_;       // sine and cosine of the columns' azimuths and of the elevations
+  std::vector<dvec2> turn_offsets_;        // of the channels' azimuth offsets
+  std::optional<HeightTarget> terrain_{};  // of the scene, for fans
 };
 
 }  // namespace scarp

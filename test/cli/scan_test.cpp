@@ -60,10 +60,20 @@ class Scan : public testing::Test {
   std::string flat() const {
     return grid("flat.asc", [](int, int) { return 100.0; });
   }
-  std::string hills() const {
-    return grid("hills.asc", [](int col, int row) {
-      return 100 + 20 * std::sin(0.11 * col) * std::cos(0.09 * row) + 2 * std::sin(0.9 * col + row);
-    });
+  static double hill(int col, int row) {
+    return 100 + 20 * std::sin(0.11 * col) * std::cos(0.09 * row) + 2 * std::sin(0.9 * col + row);
+  }
+  // By the edges between nodes: 20 * 0.11 + 4 * sin(0.45), and less on the other axis.
+  static constexpr double kSteepestEdge = 4;
+  std::string hills() const { return grid("hills.asc", hill); }
+  // Between the nodes of hills(), which are written in hundredths.
+  static std::optional<double> height_of_hills(double x, double y) {
+    const double col = (x - 1000) / 10, row = (2000 + 10 * (kSide - 1) - y) / 10;
+    if (!(col >= 0 && col < kSide - 1 && row >= 0 && row < kSide - 1)) return {};
+    const int c = static_cast<int>(col), r = static_cast<int>(row);
+    const auto node = [&](int a, int b) { return std::round(100 * hill(c + a, r + b)) / 100; };
+    const double u = col - c, v = row - r;
+    return (1 - v) * ((1 - u) * node(0, 0) + u * node(1, 0)) + v * ((1 - u) * node(0, 1) + u * node(1, 1));
   }
   std::string scanner(const std::string& place, const std::string& more = "",
                       const std::string& elevations = "[5, -10, -30]") const {
@@ -174,8 +184,11 @@ TEST_F(Scan, MarchesAgree) {
   for (std::size_t i = 0; i < fan.size(); ++i) {
     EXPECT_EQ(fan[i].at("column"), judge[i].at("column"));
     EXPECT_EQ(fan[i].at("channel"), judge[i].at("channel"));
-    for (const char* column : {"range", "x", "y", "z"})
-      EXPECT_NEAR(number(fan[i], column), number(judge[i], column), 5e-3) << i << " " << column;
+    const auto at = [](const Row& row) { return dvec3(number(row, "x"), number(row, "y"), number(row, "z")); };
+    const double range = number(judge[i], "range");
+    EXPECT_TRUE(
+        test::is_one_hit(at(fan[i]), at(judge[i]), range, test::room_above(range, kSteepestEdge, 10), height_of_hills))
+        << i;
   }
 }
 
