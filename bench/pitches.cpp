@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench pitches`: cameras that look down by 0 to 90 degrees, their rays by fans, by batches, and by the choice
-// between both, as pictures ask them (render/frame/camera_fan.h).
+// between both, as pictures ask them (render/frame/camera_fan.h); and in one call that finds the fan by itself
+// (march/height/fan_batch.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/height/max_mip_simd.h"
+#include "scarp/march/height/queries.h"
 
 namespace scarp::bench {
 namespace {
@@ -69,6 +71,16 @@ std::vector<Ray> camera_rays(const HeightField& field, const View& view, double 
   return rays;
 }
 
+// Calls body(i, place) for the rays of a picture in the order of its rows.
+template <class Body>
+void for_each_in_rows(int width, int height, const Body& body) {
+  std::size_t place = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x, ++place)
+      body(static_cast<std::size_t>((x / kSide * height + y) * kSide + x % kSide), place);
+  }
+}
+
 void by_batch(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits) {
   for (std::size_t first = 0; first < rays.size(); first += kSide * kSide) {
     const std::size_t count = std::min<std::size_t>(kSide * kSide, rays.size() - first);
@@ -106,23 +118,31 @@ void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
   const HeightTarget target{&ground.field, &pyramid};
   const int width = options.width / kSide * kSide, height = options.height;
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{
-      {"view", "down", "batch Mrays/s", "fan", "choice", "choice / better", "fan's unknown %", "choice's %"}};
+  std::vector<std::vector<std::string>> lines{{"view", "down", "batch Mrays/s", "fan", "choice", "choice / better",
+                                               "one call", "fan's unknown %", "choice's %"}};
   for (const View& view : kViews) {
     for (int down = 0; down <= 90; down += options.step) {
       const std::vector<Ray> rays = camera_rays(ground.field, view, down * kPi / 180, width, height);
       std::vector<Hit> truth(rays.size()), hits(rays.size());
-      std::vector<double> seconds[3];
-      double unknown[3] = {0, 0, 0};
-      for (int pass = 0; pass < 3 * options.repeats; ++pass) {
-        const int way = pass % 3;
+      std::vector<Ray> in_rows(rays.size());
+      for_each_in_rows(width, height, [&](std::size_t i, std::size_t place) { in_rows[place] = rays[i]; });
+      constexpr int kWays = 5;
+      std::vector<double> seconds[kWays];
+      double unknown[kWays] = {};
+      for (int pass = 0; pass < kWays * options.repeats; ++pass) {
+        const int way = pass % kWays;
         take_vector_stats();
         const Stopwatch watch;
         if (way == 0) by_batch(target, rays, truth);
-        if (way > 0) by_fan(target, rays, height, way == 1, hits);
+        if (way == 1 || way == 2) by_fan(target, rays, height, way == 1, hits);
+        if (way == 3) by_batch(target, in_rows, hits);
+        if (way == 4) closest_hits(target, in_rows, hits);
         seconds[way].push_back(watch.cpu_s());
-        if (way > 0 && hits != truth)
-          throw Error(fmt::format("pitches: {} at {} degrees: hits differ", view.name, down));
+        bool same = (way != 1 && way != 2) || hits == truth;
+        if (way > 2)
+          for_each_in_rows(width, height,
+                           [&](std::size_t i, std::size_t place) { same = same && hits[place] == truth[i]; });
+        if (!same) throw Error(fmt::format("pitches: {} at {} degrees: hits differ", view.name, down));
         const FanStats stats = take_fan_stats();
         unknown[way] = 100 * static_cast<double>(stats.from_start) / static_cast<double>(rays.size());
       }
@@ -131,11 +151,12 @@ void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
       row["view"] = view.name, row["down"] = down;
       row["batch_mrays"] = rate(0), row["fan_mrays"] = rate(1), row["choice_mrays"] = rate(2);
       row["choice_of_better"] = rate(2) / std::max(rate(0), rate(1));
+      row["rows_mrays"] = rate(3), row["call_mrays"] = rate(4);
       row["fan_unknown"] = unknown[1], row["choice_unknown"] = unknown[2];
-      lines.push_back({view.name, short_number(row["down"]), short_number(row["batch_mrays"]),
-                       short_number(row["fan_mrays"]), short_number(row["choice_mrays"]),
-                       short_number(row["choice_of_better"]), short_number(row["fan_unknown"]),
-                       short_number(row["choice_unknown"])});
+      lines.push_back(
+          {view.name, short_number(row["down"]), short_number(row["batch_mrays"]), short_number(row["fan_mrays"]),
+           short_number(row["choice_mrays"]), short_number(row["choice_of_better"]), short_number(row["rows_mrays"]),
+           short_number(row["call_mrays"]), short_number(row["fan_unknown"]), short_number(row["choice_unknown"])});
       rows.push_back(std::move(row));
     }
   }

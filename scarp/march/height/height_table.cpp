@@ -48,6 +48,7 @@ constexpr HeightMarchEntry max_mip() {
        .description = "hierarchical walk through a maximum mipmap; closed-form hit in the bilinear cell"},
       true, false);
   entry.own_any_hit = true;
+  entry.fans = true;
   entry.by_rules = march_max_mip_by_rules;
   entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings&) {
     return occluded_max_mip(target, ray);

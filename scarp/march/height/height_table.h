@@ -41,6 +41,7 @@ struct HeightMarchEntry : MarchEntry {
   HeightOcclusion occluded = nullptr;
   HeightMarchBatch batch = nullptr;  ///< in vectors if `simd`
   HeightOcclusionBatch occluded_batch = nullptr;
+  bool fans = false;  ///< batches of one origin are answered by fan_batch.h where that is faster
   /// The closest of the hits that count; null: the march has hits from above only, and takes no filter.
   HeightMarchByRules by_rules = nullptr;
 };

@@ -10,6 +10,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/prefetch.h"
+#include "scarp/march/height/fan_batch.h"
 #include "scarp/march/height/ground_order.h"
 
 namespace scarp {
@@ -89,6 +90,9 @@ void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::sp
                   const HeightMarchEntry& march, const MarchSettings& settings) {
   require(target, HeightPart::none);
   require_same_length(rays.size(), hits.size());
+  if (march.fans) {
+    if (const auto fan = fan_batch(target, rays)) return closest_hits_in_fan(target, *fan, rays, hits);
+  }
   if (march.simd && rays.size() >= kFewForVectors) {
     return in_vectors(*target.field, rays, hits, [&](std::span<const Ray> some, std::span<Hit> answers) {
       march.batch(target, some, answers, settings);

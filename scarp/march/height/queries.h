@@ -6,7 +6,8 @@
 //
 // One call traces all rays, on all threads. Large batches of unordered rays over large fields are traced in the order
 // of the ground below their origins, so that consecutive rays use nearby memory; ground_order.h defines when. Marches
-// with SIMD code (max_mip_simd.h) use it for batches, with bit-identical results.
+// with SIMD code (max_mip_simd.h) use it for batches, with bit-identical results. max-mip follows rays of one origin
+// that stand in rows or columns together (fan_batch.h), as a camera's or a scanner's do.
 #pragma once
 
 #include <cstdint>

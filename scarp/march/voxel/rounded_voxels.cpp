@@ -26,9 +26,9 @@ struct InnerBox {
 
 // Parts of a voxel's surface that are rounded off. Each eighth of the voxel, on the high side of the axes whose bits
 // are set, has its own inner box.
-class Shape {
+class RoundedShape {
  public:
-  Shape(const VoxelGrid& grid, const ivec3& voxel, const VoxelRounding& rounding)
+  RoundedShape(const VoxelGrid& grid, const ivec3& voxel, const VoxelRounding& rounding)
       : voxel_(voxel), radius_(rounding.radius) {
     std::array<std::array<bool, 2>, 3> open{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -82,7 +82,7 @@ class Shape {
 dvec3 from_inner_box(const InnerBox& box, const dvec3& p) { return p - glm::clamp(p, box.low, box.high); }
 
 // The first t of [begin, end], in the voxel's cube, at which the ray is within the radius of the inner box.
-std::optional<double> enter(const Shape& shape, const VoxelRay& ray, double begin, double end) {
+std::optional<double> enter(const RoundedShape& shape, const VoxelRay& ray, double begin, double end) {
   const double square = shape.radius() * shape.radius();
   // Between the planes of the inner boxes and of the middle the ray is in one eighth, and outside along the same axes.
   std::array<double, 11> cuts{begin};
@@ -173,7 +173,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
     if (stats) stats->steps += part.steps;
     if (!hit) break;
     if (hit.face == VoxelFace::inside && came_by) hit.face = *came_by;
-    const Shape shape(*target.grid, hit.voxel, rounding);
+    const RoundedShape shape(*target.grid, hit.voxel, rounding);
     if (const auto t = enter(shape, ray, hit.t, std::max(hit.t, leaving(hit.voxel, ray).t))) {
       if (*t > ray.t_max) break;
       const bool later = *t > hit.t;
@@ -192,7 +192,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
 dvec3 rounded_normal(const VoxelGrid& grid, const ivec3& voxel, VoxelFace face, const dvec3& point,
                      const VoxelRounding& rounding) {
   if (face == VoxelFace::inside) return dvec3(0.0);
-  const dvec3 away = from_inner_box(Shape(grid, voxel, rounding).box_at(point), point);
+  const dvec3 away = from_inner_box(RoundedShape(grid, voxel, rounding).box_at(point), point);
   // On the part of a face that a rounded neighbour leaves open.
   if (length(away) < rounding.radius - kOffRay) return dvec3(normal_of(face));
   return normalize(away);

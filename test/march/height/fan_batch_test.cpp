@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Batches of one origin are recognised, and answered as single rays are, to the bit.
+#include "scarp/march/height/fan_batch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "march/height/spiteful.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/queries.h"
+
+namespace scarp::test {
+namespace {
+
+constexpr int kWidth = 40, kHeight = 30;
+constexpr double kPi = std::numbers::pi;
+
+Ray ray_along(const dvec3& eye, const dvec3& direction) {
+  Ray ray;
+  ray.origin = eye, ray.direction = direction;
+  return ray;
+}
+
+// Rows of pixels from above down, of a camera turned by these angles.
+std::vector<Ray> camera(const dvec3& eye, double heading, double down, double roll, bool unit) {
+  const dvec3 level(std::sin(heading), std::cos(heading), 0), aside(level.y, -level.x, 0);
+  const dvec3 forward = std::cos(down) * level - std::sin(down) * dvec3(0, 0, 1);
+  const dvec3 up = std::sin(down) * level + std::cos(down) * dvec3(0, 0, 1);
+  const dvec3 x = std::cos(roll) * aside + std::sin(roll) * up, y = std::cos(roll) * up - std::sin(roll) * aside;
+  std::vector<Ray> rays;
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      const dvec3 d =
+          forward + 2.0 / kWidth * (col + 0.5 - kWidth / 2) * x - 2.0 / kWidth * (row + 0.5 - kHeight / 2) * y;
+      rays.push_back(ray_along(eye, unit ? normalize(d) : d));
+    }
+  }
+  return rays;
+}
+
+// A turn of a scanner: in rows of one elevation, or in firings of all elevations.
+std::vector<Ray> turn(const dvec3& eye, bool firings) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    const int column = firings ? i / kHeight : i % kWidth, row = firings ? i % kHeight : i / kWidth;
+    const double azimuth = 2 * kPi * column / kWidth, elevation = 0.2 - 1.2 * row / kHeight;
+    const double flat = std::cos(elevation);
+    rays.push_back(ray_along(eye, {flat * std::sin(azimuth), flat * std::cos(azimuth), std::sin(elevation)}));
+  }
+  return rays;
+}
+
+// Bit for bit; members of a miss are not set.
+testing::AssertionResult is(const Hit& hit, const Hit& expected, std::size_t ray) {
+  const bool same = hit.status == expected.status &&
+                    (!expected || (hit.t == expected.t && hit.cell == expected.cell && hit.u == expected.u &&
+                                   hit.v == expected.v && hit.height == expected.height && hit.wall == expected.wall));
+  if (same) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "ray " << ray << ": t " << hit.t << " instead of " << expected.t;
+}
+
+void expect_single_answers(const HeightTarget& target, const std::vector<Ray>& rays) {
+  std::vector<Hit> hits(rays.size());
+  closest_hits(target, rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(is(hits[i], march_max_mip(target, rays[i]), i));
+}
+
+HeightField hills() {
+  std::vector<float> samples;
+  for (int row = 0; row < 90; ++row) {
+    for (int col = 0; col < 110; ++col)
+      samples.push_back(static_cast<float>(10 * std::sin(0.2 * col) * std::cos(0.15 * row) + std::sin(1.7 * col)));
+  }
+  return HeightField::own(std::move(samples), 110, 90, {.cell_x = 2, .cell_y = 3});
+}
+
+TEST(FanBatch, FindsRowsOfCamerasAndScannersAndFirings) {
+  const HeightField field = hills();
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const dvec3 eye(101, 140, 12);
+  for (const double down : {-0.3, 0.0, 0.5, 1.2}) {
+    for (const double roll : {0.0, 0.3, kPi / 2}) {
+      for (const bool unit : {false, true}) {
+        const auto batch = fan_batch(target, camera(eye, 0.7, down, roll, unit));
+        ASSERT_TRUE(batch) << down << " " << roll << " " << unit;
+        EXPECT_EQ(batch->run, static_cast<std::size_t>(kWidth));
+        // Seen steeply from above, rows are as good as columns.
+        if (down < 1) {
+          EXPECT_EQ(batch->columns, roll > 1) << down << " " << roll;
+        }
+      }
+    }
+  }
+  const auto rows = fan_batch(target, turn(eye, false)), firings = fan_batch(target, turn(eye, true));
+  ASSERT_TRUE(rows && firings);
+  EXPECT_EQ(rows->run, static_cast<std::size_t>(kWidth));
+  EXPECT_FALSE(rows->columns);
+  EXPECT_EQ(firings->run, static_cast<std::size_t>(kHeight));
+  EXPECT_TRUE(firings->columns);
+}
+
+TEST(FanBatch, LeavesOtherBatchesAlone) {
+  const HeightField field = hills();
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const dvec3 eye(101, 140, 12);
+  const std::vector<Ray> rays = camera(eye, 0.7, 0.3, 0, true);
+  EXPECT_FALSE(fan_batch(target, {}));
+  EXPECT_FALSE(fan_batch(target, std::span(rays).first(200))) << "few";
+  EXPECT_FALSE(fan_batch(target, std::span(rays).first(kWidth))) << "one row";
+  EXPECT_FALSE(fan_batch(target, std::vector<Ray>(2000, rays[0]))) << "one direction";
+  EXPECT_FALSE(fan_batch(target, camera(eye, 0.7, kPi / 2, 0, true))) << "straight down";
+  EXPECT_FALSE(fan_batch(target, camera({101, 140, -50}, 0.7, 0.3, 0, true))) << "below the ground";
+  Random random(3);
+  std::vector<Ray> scattered = rays, elsewhere = rays;
+  std::shuffle(scattered.begin(), scattered.end(), random);
+  elsewhere.back().origin.z += 1;
+  EXPECT_FALSE(fan_batch(target, elsewhere));
+  const auto batch = fan_batch(target, scattered);
+  EXPECT_TRUE(!batch || batch->run != static_cast<std::size_t>(kWidth));
+  expect_single_answers(target, scattered);
+}
+
+TEST(FanBatch, AnswersAreThoseOfSingleRays) {
+  Random random(11);
+  std::vector<FieldKind> fields = spiteful_fields();
+  fields.push_back({"hills", [](Random&) { return hills(); }});
+  int followed = 0;
+  for (const FieldKind& kind : fields) {
+    const HeightField field = kind.make(random);
+    SCOPED_TRACE(kind.name);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    const double top = field.all_nodata() ? 0 : field.max_height(), tall = std::max(1.0, top - field.min_height());
+    const dvec3 eye(uniform(random, -0.3, 1.3) * field.width(), uniform(random, -0.3, 1.3) * field.depth(),
+                    top + uniform(random, -0.3, 1) * tall);
+    if (!std::isfinite(eye.z)) continue;
+    const double heading = uniform(random, 0, 2 * kPi), down = uniform(random, -0.2, kPi / 2);
+    for (std::vector<Ray> rays : {camera(eye, heading, down, uniform(random, -0.5, 0.5), true),
+                                  camera(eye, heading, 0.2, kPi / 2, false), turn(eye, true), turn(eye, false)}) {
+      // Over a field that wraps, ranges end.
+      if (field.wraps()) {
+        for (Ray& ray : rays) ray.t_max = 20 * field.width();
+      }
+      followed += fan_batch(target, rays).has_value();
+      expect_single_answers(target, rays);
+      // The end is missing, and some rays are of other kinds.
+      rays.resize(rays.size() - 7);
+      expect_single_answers(target, rays);
+      for (std::size_t i = 33; i + 1 < rays.size(); i += 97) {
+        switch (i % 5) {
+          case 0:
+            rays[i].t_max = uniform(random, 0, 2) * tall;
+            break;
+          case 1:
+            rays[i].t_min = 0.5 * tall;
+            break;
+          case 2:
+            rays[i].origin.x += 1;
+            break;
+          case 3:
+            rays[i].direction *= 0x1p-200;
+            break;
+          default:
+            rays[i].direction = -rays[i].direction;
+        }
+      }
+      expect_single_answers(target, rays);
+    }
+  }
+  EXPECT_GT(followed, 20);
+}
+
+}  // namespace
+}  // namespace scarp::test
