@@ -17,6 +17,7 @@
 #include "bench/voxel_scene_judge.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/voxel/voxel_packet.h"
 #include "scarp/scene/voxel_model.h"
 #include "scarp/scene/voxel_objects.h"
 

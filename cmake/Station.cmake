@@ -81,10 +81,12 @@ function(scarp_quick)
   endforeach()
 endfunction()
 
-# scarp_station(NAME SOURCES ... HEADERS ... STATIONS ... PUBLIC_LIBRARIES ... LIBRARIES ...)
+# scarp_station(NAME SOURCES ... HEADERS ... APP_HEADERS ... STATIONS ... PUBLIC_LIBRARIES ... LIBRARIES ...)
 # One library per station of the data's way: target scarp_NAME, exported as scarp::NAME. STATIONS are the stations it may see.
+# HEADERS are public: they are installed, and doc/library/versions.md applies. APP_HEADERS are not; app/ and bench/ include
+# them all the same. Headers in neither list are for stations and tests (test/house/public_headers.cmake).
 function(scarp_station name)
-  cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;STATIONS;PUBLIC_LIBRARIES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;APP_HEADERS;STATIONS;PUBLIC_LIBRARIES;LIBRARIES" ${ARGN})
   add_library(scarp_${name} ${arg_SOURCES})
   add_library(scarp::${name} ALIAS scarp_${name})
   set_target_properties(scarp_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
@@ -95,6 +97,8 @@ function(scarp_station name)
     set_target_properties(scarp_${name} PROPERTIES CXX_VISIBILITY_PRESET hidden)
   endif()
   target_sources(scarp_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
+  list(TRANSFORM arg_APP_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY SCARP_APP_HEADERS ${arg_APP_HEADERS})
   list(TRANSFORM arg_STATIONS PREPEND scarp_)
   target_link_libraries(scarp_${name} PUBLIC ${arg_STATIONS} ${arg_PUBLIC_LIBRARIES} PRIVATE ${arg_LIBRARIES})
   scarp_compile_options(scarp_${name})

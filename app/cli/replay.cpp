@@ -140,10 +140,8 @@ void replay(const std::string& path) {
 void add_replay(Program& program) {
   Command& command = program.add("replay", "Trace the rays of a dump with all marches; fail if exact marches disagree");
   const auto path = std::make_shared<std::string>();
-  command.add(path.get(), {.names = "FILE",
-                           .help = "ray dump of scarp-bench leaks or the tests (format: scarp/scene/file/ray_dump.h)",
-                           .files = "*",
-                           .required = true});
+  command.add(path.get(),
+              {.names = "FILE", .help = "ray dump of scarp-bench leaks or the tests", .files = "*", .required = true});
   command.runs([path] { replay(*path); });
 }
 

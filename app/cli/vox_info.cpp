@@ -10,6 +10,7 @@
 
 #include "app/cli/vox_input.h"
 #include "scarp/base/lattice_rotation.h"
+#include "scarp/scene/lattice_place.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/source/vdb_file.h"
 #include "scarp/source/vox_animation.h"

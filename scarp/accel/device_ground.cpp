@@ -10,6 +10,7 @@
 
 #include "scarp/accel/code_tables.h"
 #include "scarp/accel/max_pyramid.glsl.h"
+#include "scarp/accel/max_pyramid_vk.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/two_floats.h"
@@ -78,13 +79,17 @@ DeviceGround::DeviceGround(const Device& device, const HeightField& field, const
       pyramid_(device, entry_bytes(levels_), "the pyramid"),
       quads_(device, quad_bytes(levels_), "the quads"),
       header_(device, sizeof(glsl::GroundBuffers), "the ground's layout"),
-      passes_(device),
+      passes_(std::make_unique<PyramidPasses>(device)),
       commands_(device) {
   if (is_float(field)) codes_.emplace(device, 2 * 4 * std::uint64_t{glsl::kPyramidCodes}, "codes");
   set_range(code_range(field, reserve), field.sample_type());
   copy_samples(field, {0, 0, field.cols(), field.rows()});
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
 }
+
+DeviceGround::DeviceGround(DeviceGround&&) noexcept = default;
+DeviceGround& DeviceGround::operator=(DeviceGround&&) noexcept = default;
+DeviceGround::~DeviceGround() = default;
 
 void DeviceGround::set_range(const SampleRange& range, SampleType type) {
   range_ = range;
@@ -162,7 +167,7 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
   }
   upload(header_, 0, &ground, sizeof ground);
   if (levels_.empty()) return;
-  passes_.record(commands_, address(), codes_ ? codes_->address() : 0, field, changed);
+  passes_->record(commands_, address(), codes_ ? codes_->address() : 0, field, changed);
   commands_.run();
   download(header_, offsetof(glsl::GroundBuffers, spread), &ground.spread, sizeof ground.spread);
 }

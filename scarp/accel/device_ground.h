@@ -12,18 +12,21 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/accel/height_code.h"
-#include "scarp/accel/max_pyramid_vk.h"
+#include "scarp/accel/pyramid_levels.h"
 #include "scarp/field/height_field.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/memory.h"
 
 namespace scarp {
+
+class PyramidPasses;  // max_pyramid_vk.h
 
 /// A height field and its pyramid in device memory.
 class DeviceGround {
@@ -32,6 +35,9 @@ class DeviceGround {
   /// (stating the size) or is lost.
   DeviceGround(const Device& device, const HeightField& field,
                const std::optional<SampleRange>& reserve = std::nullopt);
+  DeviceGround(DeviceGround&&) noexcept;
+  DeviceGround& operator=(DeviceGround&&) noexcept;
+  ~DeviceGround();
 
   /// Updates the device after an edit of the same field: copies the samples around `changed` and recomputes the pyramid
   /// entries over it, as MaxPyramid::update() does. Rebuilds all entries if float samples leave the range of the codes.
@@ -61,7 +67,7 @@ class DeviceGround {
   glsl::GroundBuffers layout_{};
   DeviceBuffer samples_, pyramid_, quads_, header_;
   std::optional<DeviceBuffer> codes_;  // float samples only
-  PyramidPasses passes_;
+  std::unique_ptr<PyramidPasses> passes_;
   Commands commands_;
 };
 

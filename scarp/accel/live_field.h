@@ -13,20 +13,25 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <shared_mutex>
 
 #include "scarp/accel/max_pyramid.h"
-#include "scarp/base/turnstile.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
+
+class Turnstile;  // base/turnstile.h
 
 /// A height field and its pyramid, shared by readers and editors.
 class LiveField {
  public:
   /// Takes a field and builds its pyramid; `reserve` as in MaxPyramid. Afterwards only edit() may change the field.
   explicit LiveField(HeightField field, const std::optional<SampleRange>& reserve = std::nullopt);
+  ~LiveField();
+  LiveField(const LiveField&) = delete;
+  LiveField& operator=(const LiveField&) = delete;
 
   /// The field at one epoch. Edits wait while a Reading exists. A thread that holds one must not call edit() or read():
   /// it would wait for itself.
@@ -38,7 +43,7 @@ class LiveField {
 
    private:
     friend class LiveField;
-    explicit Reading(const LiveField& live) : live_(&live), held_(live.turnstile_.read()) {}
+    explicit Reading(const LiveField& live);
     const LiveField* live_;
     std::shared_lock<std::shared_mutex> held_;
   };
@@ -55,7 +60,7 @@ class LiveField {
   HeightField field_;
   MaxPyramid pyramid_;
   std::uint64_t epoch_ = 0;
-  mutable Turnstile turnstile_;
+  std::unique_ptr<Turnstile> turnstile_;
 };
 
 }  // namespace scarp

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <utility>
 
+#include "scarp/accel/block_planes.h"
 #include "scarp/accel/height_encode.h"
+#include "scarp/accel/relief_map.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/prefetch.h"
 
@@ -142,8 +145,16 @@ void build_coarser(const T* fine, const MaxPyramid::Level& finer, const CellBox&
 
 }  // namespace
 
-MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve)
-    : shared_(std::make_shared<Shared>()) {
+struct MaxPyramid::State : Shared {
+  BlockPlanes planes;
+  ReliefMap relief;
+};
+
+MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve) {
+  auto state = std::make_shared<State>();
+  planes_ = &state->planes;
+  relief_ = &state->relief;
+  shared_ = std::move(state);
   shared_->edits = field.edits();
   levels_ = pyramid_levels(field);
   if (levels_.empty()) return;
@@ -155,9 +166,15 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   std::fill_n(shared_->minima.get() + entries_, kSpareEntries, kNoMinimum);
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
-  shared_->planes.build(field, all_blocks(), reserve);
-  shared_->relief.build(field);
+  planes_->build(field, all_blocks(), reserve);
+  relief_->build(field);
 }
+
+std::size_t MaxPyramid::bytes() const {
+  return entries_ * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + relief_->bytes();
+}
+
+Blocks MaxPyramid::all_blocks() const { return {levels_, shared_->blocks.get(), minima(), code()}; }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
   shared_->cell_relief = 0;
@@ -168,14 +185,14 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
 void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
   shared_->edits = field.edits();
   if (levels_.empty()) return;
-  shared_->relief.update(field, changed);
+  relief_->update(field, changed);
   if (!is_in_range(field, shared_->range)) {
     set_range(field, shared_->range);
     build(field, {0, 0, field.cell_cols(), field.cell_rows()});
-    return shared_->planes.build(field, all_blocks(), shared_->range);
+    return planes_->build(field, all_blocks(), shared_->range);
   }
   for (const CellBox& part : parts_inside(field, changed)) build(field, part);
-  shared_->planes.update(field, all_blocks(), changed);
+  planes_->update(field, all_blocks(), changed);
 }
 
 void MaxPyramid::build(const HeightField& field, const CellBox& changed) {

@@ -22,13 +22,15 @@
 #include <optional>
 #include <vector>
 
-#include "scarp/accel/block_planes.h"
 #include "scarp/accel/height_code.h"
 #include "scarp/accel/pyramid_levels.h"
-#include "scarp/accel/relief_map.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
+
+class BlockPlanes;  // block_planes.h
+class ReliefMap;    // relief_map.h
+struct Blocks;
 
 /// A maximum and minimum pyramid. Copies are cheap: they share the levels and see one another's updates. A pyramid does
 /// not refer to the field it was built from. Only update() changes a pyramid, and must not run concurrently with
@@ -51,9 +53,7 @@ class MaxPyramid {
   int top_level() const { return static_cast<int>(levels_.size()); }
   /// Blocks of all levels.
   std::size_t entries() const { return entries_; }
-  std::size_t bytes() const {
-    return entries_ * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + shared_->relief.bytes();
-  }
+  std::size_t bytes() const;
 
   using Level = PyramidLevel;
   /// Levels 1, 2, ...; entries in rows from north to south, no padding. Three extra entries are allocated after the
@@ -64,8 +64,8 @@ class MaxPyramid {
   const std::uint32_t* blocks() const { return shared_->blocks.get(); }
   std::uint16_t maximum_code(std::ptrdiff_t entry) const { return static_cast<std::uint16_t>(blocks()[entry]); }
   const std::uint16_t* minima() const { return shared_->minima.get(); }
-  const BlockPlanes& planes() const { return shared_->planes; }
-  const ReliefMap& relief() const { return shared_->relief; }
+  const BlockPlanes& planes() const { return *planes_; }
+  const ReliefMap& relief() const { return *relief_; }
 
   /// Bounds of one block in sample units, level 1 .. top_level(): the minimum is -infinity if there is none, the
   /// maximum of a block of holes is that of code 0.
@@ -87,19 +87,22 @@ class MaxPyramid {
     std::uint64_t edits = 0;
     std::unique_ptr<std::uint32_t[]> blocks;
     std::unique_ptr<std::uint16_t[]> minima;
-    BlockPlanes planes;
-    ReliefMap relief;
   };
+
+  struct State;
 
   static constexpr std::size_t kSpareEntries = 3;
 
   void set_range(const HeightField& field, const std::optional<SampleRange>& reserve);
   void build(const HeightField& field, const CellBox& changed);
-  Blocks all_blocks() const { return {levels_, shared_->blocks.get(), minima(), code()}; }
+  Blocks all_blocks() const;
 
   std::vector<Level> levels_;
   std::size_t entries_ = 0;
   std::shared_ptr<Shared> shared_;
+  // In the shared state.
+  BlockPlanes* planes_;
+  ReliefMap* relief_;
 };
 
 }  // namespace scarp

@@ -9,8 +9,6 @@
 
 namespace scarp {
 
-using Triangle = std::array<dvec3, 3>;
-
 /// The point of a triangle closest to p, by the region of its plane in which p is.
 inline dvec3 closest_of_triangle(const dvec3& p, const Triangle& triangle) {
   const auto& [a, b, c] = triangle;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scarp/base/error.h"
+#include "scarp/march/closest_of.h"
 
 namespace scarp {
 namespace {

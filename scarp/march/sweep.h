@@ -12,7 +12,7 @@
 
 #include <optional>
 
-#include "scarp/march/closest_of.h"
+#include "scarp/base/vec.h"
 
 namespace scarp {
 

@@ -6,7 +6,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "scarp/march/closest_of.h"
+#include "scarp/base/vec.h"
 
 namespace scarp {
 

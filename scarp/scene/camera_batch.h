@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scarp/base/ray.h"
-#include "scarp/march/voxel/voxel_pictures_vk.h"
+#include "scarp/march/voxel/voxel_drawing.h"
 
 namespace scarp {
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/turnstile.h"
 #include "scarp/scene/box_tree_editor.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
@@ -98,6 +99,7 @@ struct LiveScene::State {
 
   std::uint64_t epoch = 0;
   std::atomic<std::int64_t> readings{0};
+  Turnstile turnstile;
 };
 
 LiveScene::State::State(const Scene& from) : scene(from), objects(from.objects().size()), boxes(objects.size()) {
@@ -352,7 +354,7 @@ LiveScene::LiveScene(const Scene& scene) : state_(std::make_unique<State>(scene)
 LiveScene::~LiveScene() { assert(state_->readings == 0 && "a Reading outlives its LiveScene"); }
 
 std::uint64_t LiveScene::edit(const std::function<void(Editor&)>& change) {
-  const auto alone = turnstile_.edit();
+  const auto alone = state_->turnstile.edit();
   Editor editor(*this);
   try {
     change(editor);
@@ -365,7 +367,7 @@ std::uint64_t LiveScene::edit(const std::function<void(Editor&)>& change) {
   return ++state_->epoch;
 }
 
-LiveScene::Reading::Reading(const LiveScene& live) : live_(&live), held_(live.turnstile_.read()) {
+LiveScene::Reading::Reading(const LiveScene& live) : live_(&live), held_(live.state_->turnstile.read()) {
   ++live.state_->readings;
 }
 LiveScene::Reading::Reading(Reading&& other) noexcept

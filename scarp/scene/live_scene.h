@@ -29,7 +29,6 @@
 #include <optional>
 #include <shared_mutex>
 
-#include "scarp/base/turnstile.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {
@@ -97,7 +96,6 @@ class LiveScene {
   struct State;
 
   std::unique_ptr<State> state_;
-  mutable Turnstile turnstile_;
 };
 
 }  // namespace scarp

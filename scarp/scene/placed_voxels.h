@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scarp/base/world_box.h"
-#include "scarp/march/voxel/rounded_voxels.h"
+#include "scarp/march/voxel/voxel_target.h"
 #include "scarp/scene/voxel_model.h"
 
 namespace scarp {

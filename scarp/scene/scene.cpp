@@ -19,6 +19,7 @@
 #include "scarp/march/usual_ray.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
+#include "scarp/scene/scene_back_end.h"
 #include "scarp/scene/scene_limits.h"
 
 namespace scarp {

@@ -25,10 +25,12 @@
 
 #include "scarp/base/edit_count.h"
 #include "scarp/scene/placement.h"
-#include "scarp/scene/scene_back_end.h"
 #include "scarp/scene/scene_field.h"
 
 namespace scarp {
+
+class SceneBackEnd;    // scene_back_end.h
+struct DeviceTerrain;  // scene_vk.h
 
 /// A field with its placement and material.
 struct SceneObject {

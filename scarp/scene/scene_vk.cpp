@@ -19,6 +19,7 @@
 #include "scarp/march/shape/shape_queries_vk.h"
 #include "scarp/scene/field_on_device.h"
 #include "scarp/scene/function_shadow.h"
+#include "scarp/scene/scene_back_end.h"
 #include "scarp/scene/scene_voxels_vk.h"
 
 namespace scarp {

@@ -12,8 +12,8 @@
 #include <memory>
 
 #include "scarp/accel/device_ground.h"
+#include "scarp/march/voxel/voxel_drawing.h"
 #include "scarp/scene/scene.h"
-#include "scarp/scene/voxel_sight_vk.h"
 #include "scarp/vk/device.h"
 
 namespace scarp {
@@ -25,7 +25,7 @@ namespace scarp {
 ///
 /// Fields made by scene_heights() with AnsweredBy::back_end build no acceleration structure for the CPU.
 ///
-/// `sight`: how voxels are drawn (voxel_sight_vk.h); null: by compute shaders.
+/// `sight`: how voxels are drawn (march/voxel/voxel_drawing.h); null: by compute shaders.
 Scene scene_on(const Device& device, const Scene& scene, std::shared_ptr<VoxelSight> sight = nullptr);
 
 /// A height field on its device, returned by Scene::device_terrain().

@@ -13,6 +13,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/voxel/voxel_pictures_vk.h"
 #include "scarp/scene/camera_batch.h"
 #include "scarp/scene/scene_limits.h"
 #include "scarp/scene/voxel_objects.h"

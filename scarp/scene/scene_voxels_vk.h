@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "scarp/accel/device_voxels.h"
+#include "scarp/march/voxel/voxel_drawing.h"
 #include "scarp/march/voxel/voxel_queries_vk.h"
 #include "scarp/scene/field_on_device.h"
 #include "scarp/scene/scene_field.h"
-#include "scarp/scene/voxel_sight_vk.h"
 
 namespace scarp {
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "scarp/base/error.h"
+#include "scarp/march/voxel/voxel_pictures_vk.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/scene_voxels_vk.h"
 #include "scarp/scene/voxel_objects.h"

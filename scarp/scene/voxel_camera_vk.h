@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Traces a camera's rays against voxels on a Vulkan device, with either method of drawing
-// (march/voxel/voxel_pictures_vk.h):
+// Traces a camera's rays against voxels on a Vulkan device, with either method of drawing (VoxelDrawing):
 //
 //   VoxelCamera camera(device, scene);                                   // a scene of one field, of voxels
 //   camera.look(VoxelDrawing::proxies, picture, rays, hits);             // a ray per pixel
@@ -10,8 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "scarp/march/voxel/voxel_pictures_vk.h"
+#include "scarp/march/voxel/voxel_drawing.h"
 #include "scarp/scene/scene.h"
+#include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 
 namespace scarp {
@@ -27,8 +27,8 @@ class VoxelCamera {
   VoxelCamera& operator=(VoxelCamera&&) noexcept;
   ~VoxelCamera();
 
-  /// Sets hits[i] to Scene::closest_hit(rays[i]), bit for bit. rays[i] is the ray of pixel i, row by row, as
-  /// DeviceVoxelPictures::draw() has it.
+  /// Sets hits[i] to Scene::closest_hit(rays[i]), bit for bit. rays[i] is the ray of pixel i, row by row, within
+  /// half a pixel of its middle.
   void look(VoxelDrawing way, const VoxelPicture& picture, std::span<const Ray> rays, std::span<Hit> hits,
             std::span<std::uint32_t> steps = {});
 

@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "scarp/scene/lattice_place.h"
+
 namespace scarp {
 
 std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size) {
@@ -35,7 +37,8 @@ VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector
       march_(&march),
       palette_(std::move(palette)),
       materials_(std::move(materials)),
-      extent_(extent) {
+      extent_(extent),
+      file_place_(std::make_shared<LatticePlace>(LatticeRotation{}, ivec3(0))) {
   switch (march.accelerator) {
     case VoxelAccelerator::spheres:
       built_.emplace<EmptySpheres>(grid_);
@@ -54,6 +57,8 @@ VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector
   }
   box_ = extent_ == Extent::grid ? grid_.box() : grid_.bounds();
 }
+
+void VoxelModel::set_file_place(const LatticePlace& place) { file_place_ = std::make_shared<LatticePlace>(place); }
 
 VoxelTarget VoxelModel::target() const {
   VoxelTarget target{&grid_, box_};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <variant>
 #include <vector>
 
@@ -14,10 +15,11 @@
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/base/edit_count.h"
 #include "scarp/march/voxel/voxel_table.h"
-#include "scarp/scene/lattice_place.h"
 #include "scarp/scene/voxel_material.h"
 
 namespace scarp {
+
+class LatticePlace;  // lattice_place.h
 
 /// Red, green, blue; sRGB.
 using VoxelColour = std::array<std::uint8_t, 3>;
@@ -48,13 +50,13 @@ class VoxelModel {
   /// The same grid, colours and materials with another march.
   VoxelModel marched_by(const VoxelMarchEntry& march) const {
     VoxelModel model(grid_, march, palette_, extent_, materials_);
-    model.set_file_place(file_place_);
+    model.file_place_ = file_place_;
     return model;
   }
 
   /// Position of the grid in the voxels of its file: readers crop grids and rotate their axes.
-  void set_file_place(const LatticePlace& place) { file_place_ = place; }
-  const LatticePlace& file_place() const { return file_place_; }
+  void set_file_place(const LatticePlace& place);
+  const LatticePlace& file_place() const { return *file_place_; }
 
   const VoxelGrid& grid() const { return grid_; }
   const VoxelMarchEntry& march() const { return *march_; }
@@ -98,7 +100,7 @@ class VoxelModel {
   std::vector<VoxelColour> palette_;
   std::vector<VoxelMaterial> materials_;
   Extent extent_;
-  LatticePlace file_place_{{}, ivec3(0)};
+  std::shared_ptr<const LatticePlace> file_place_;
   VoxelBox box_;
   EditCount edits_;
   std::variant<std::monostate, EmptySpheres, EmptyCubes, OctantCubes, BrickMasks> built_;  // what the march needs

@@ -13,6 +13,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/usual_ray.h"
+#include "scarp/march/voxel/rounded_voxels.h"
 #include "scarp/march/voxel/voxel_planes.h"
 #include "scarp/scene/coarse_voxels.h"
 

@@ -25,6 +25,7 @@
 #include "scarp/march/turned_box.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/field_contact.h"
+#include "scarp/scene/lattice_place.h"
 #include "scarp/scene/placed_voxels.h"
 
 namespace scarp {

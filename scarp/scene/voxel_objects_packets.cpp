@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/march/voxel/voxel_packet.h"
 #include "scarp/scene/voxel_objects.h"
 
 namespace scarp {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "scarp/vk/raii.h"
+#include "scarp/vk/raster.h"
 #include "scarp/vk/staging.h"
 #include "scarp/vk/timestamps.h"
 
@@ -157,10 +158,10 @@ void Commands::record_dispatch(const ComputePipeline& pipeline, const void* push
   });
 }
 
-void Commands::record_draw(const RasterTarget& target, std::span<const DrawCall> calls, float clear_depth) {
+void Commands::draw(const RasterTarget& target, std::initializer_list<DrawCall> calls, float clear_depth) {
   const RasterTarget::Impl& to = target.impl();
   for (const DrawCall& call : calls) require_fits(to, call);
-  guarded(impl_->device->name(), "recording '" + calls.front().pipeline->name() + "'", [&] {
+  guarded(impl_->device->name(), "recording '" + calls.begin()->pipeline->name() + "'", [&] {
     impl_->begin();
     const vk::raii::CommandBuffer& commands = impl_->commands;
     // Earlier passes may still read the images.
@@ -188,7 +189,7 @@ void Commands::record_draw(const RasterTarget& target, std::span<const DrawCall>
     }
     commands.endRenderPass();
     impl_->timestamps.end(commands, vk::PipelineStageFlagBits::eBottomOfPipe);
-    impl_->passes.push_back({calls.front().pipeline->name(), std::nullopt});
+    impl_->passes.push_back({calls.begin()->pipeline->name(), std::nullopt});
   });
 }
 

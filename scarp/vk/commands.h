@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -15,9 +14,11 @@
 #include "scarp/vk/device.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/pipeline.h"
-#include "scarp/vk/raster.h"
 
 namespace scarp {
+
+class RasterTarget;  // raster.h
+struct DrawCall;
 
 /// Timing of one dispatch or draw.
 struct PassTime {
@@ -44,9 +45,7 @@ class Commands {
   }
   /// Draws into a target in one pass. Clears colours to 0 and depths to `clear_depth` (0 is farthest) first. Executes
   /// `calls` (at least one) in order. Later passes see the result after a barrier().
-  void draw(const RasterTarget& target, std::initializer_list<DrawCall> calls, float clear_depth = 0) {
-    record_draw(target, {calls.begin(), calls.size()}, clear_depth);
-  }
+  void draw(const RasterTarget& target, std::initializer_list<DrawCall> calls, float clear_depth = 0);
   /// Copies an image of a target drawn in this run: colours 0, 1, ..., then depth. Rows from the top; 16 bytes (four
   /// floats) per colour pixel, 4 per depth pixel.
   void copy(const RasterTarget& from, std::uint32_t image, const DeviceBuffer& to);
@@ -67,7 +66,6 @@ class Commands {
 
  private:
   void record_dispatch(const ComputePipeline& pipeline, const void* push, std::uint32_t bytes, const Groups& groups);
-  void record_draw(const RasterTarget& target, std::span<const DrawCall> calls, float clear_depth);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

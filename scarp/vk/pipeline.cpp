@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "scarp/vk/raii.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 

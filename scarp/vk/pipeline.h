@@ -8,9 +8,10 @@
 #include <string>
 
 #include "scarp/vk/device.h"
-#include "scarp/vk/shader_program.h"
 
 namespace scarp {
+
+struct ShaderProgram;  // shader_program.h
 
 /// Push-constant size that every device supports.
 constexpr std::uint32_t kMaxPushBytes = 128;

@@ -4,7 +4,7 @@
 # itself on planted text. To cover more text, add one line to one of these lists.
 cmake_minimum_required(VERSION 3.25)
 
-set(documents README.md CHANGELOG.md CONTRIBUTING.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md doc/dev/decisions/*.md .github/*.md
+set(documents README.md CHANGELOG.md APICHANGES.md CONTRIBUTING.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md doc/dev/decisions/*.md .github/*.md
     .github/ISSUE_TEMPLATE/*.md)
 # folders whose code is checked, subfolders included
 set(code_folders scarp app bench test examples)

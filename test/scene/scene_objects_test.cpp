@@ -12,6 +12,7 @@
 
 #include "base/refusal.h"
 #include "scarp/base/error.h"
+#include "scarp/scene/scene_back_end.h"
 
 namespace scarp {
 namespace {

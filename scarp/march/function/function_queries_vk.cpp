@@ -15,6 +15,7 @@
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 #include "scarp/march/sampling_entries.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 namespace {

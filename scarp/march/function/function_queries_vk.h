@@ -19,7 +19,6 @@
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
-#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 

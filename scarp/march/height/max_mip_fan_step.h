@@ -7,6 +7,7 @@
 #define SCARP_MARCH_MAX_MIP_FAN_STEP_H
 #endif
 
+#include "scarp/accel/block_planes.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/march/height/max_mip_fan_lines.h"
 

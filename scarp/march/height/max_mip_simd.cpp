@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/accel/block_planes.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_resume.h"

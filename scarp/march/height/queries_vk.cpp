@@ -14,6 +14,7 @@
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 namespace {

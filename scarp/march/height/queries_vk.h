@@ -18,9 +18,10 @@
 #include "scarp/march/height/height_table.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
-#include "scarp/vk/shader_program.h"
 
 namespace scarp {
+
+struct ShaderProgram;  // vk/shader_program.h
 
 /// Cost of one ray on the device.
 struct DeviceRayCost {

@@ -12,6 +12,7 @@
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 #include "scarp/march/shape/shape_batch.glsl.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 namespace {

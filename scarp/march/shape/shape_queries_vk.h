@@ -18,7 +18,6 @@
 #include "scarp/march/shape/shape_table.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/memory.h"
-#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 

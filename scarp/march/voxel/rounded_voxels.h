@@ -19,17 +19,6 @@
 
 namespace scarp {
 
-/// Settings of rounded voxels.
-struct VoxelRounding {
-  double radius = 0;  ///< of edges and corners, in voxel sides: 0 (cubes) to 0.5 (a single voxel is a ball)
-  bool each = false;  ///< rounds every voxel separately
-
-  explicit operator bool() const { return radius > 0; }
-};
-
-/// Throws Error naming the setting out of range.
-void validate(const VoxelRounding& rounding);
-
 /// Returns the first rounded voxel that counts, using a march that finds the first solid one; without `accept` all
 /// count. `from`: the voxel on whose surface
 /// the ray starts and which it leaves, or null. The face is the one nearest to the surface normal; `inside` for a ray

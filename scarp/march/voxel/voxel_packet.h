@@ -64,10 +64,7 @@ struct VoxelStand {
 /// Call before marches, and again before rays traverse grids with another orientation.
 void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties = {});
 
-/// Marches the rays whose bits are set, as free rays, within [t_min, t_max]. Returns those that entered the box.
-using VoxelPacketMarch = std::uint64_t (*)(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                           std::uint64_t rays);
-
+/// The marches of packets (VoxelPacketMarch).
 std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                         std::uint64_t rays);
 std::uint64_t march_packet_voxel_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,

@@ -14,42 +14,15 @@
 //   where two objects may have hits of the same depth, compute answers the ray   voxel_proxies.comp
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "scarp/march/voxel/voxel_drawing.h"
 #include "scarp/march/voxel/voxel_queries_vk.h"
 
 namespace scarp {
-
-enum class VoxelDrawing : std::uint8_t { compute, proxies };
-
-struct VoxelDrawingName {
-  std::string_view name;
-  VoxelDrawing drawing;
-  std::string_view what;
-};
-/// Both methods, the default first.
-inline constexpr std::array<VoxelDrawingName, 2> kVoxelDrawings = {{
-    {"compute", VoxelDrawing::compute, "a hierarchy of boxes in a compute shader"},
-    {"proxies", VoxelDrawing::proxies, "boxes drawn as triangles whose fragments march"},
-}};
-
-/// The rays of a picture's pixels. The position (x, y), in pixels from the upper left corner, has the rays
-///
-///   origin + x origin_right + y origin_down + t (direction + x right + y down)
-///
-/// in perspective without origin_right and origin_down, else without right and down.
-struct VoxelPicture {
-  std::uint32_t width = 1, height = 1;
-  dvec3 origin{0.0}, origin_right{0.0}, origin_down{0.0};
-  dvec3 direction{0, 0, -1}, right{0.0}, down{0.0};
-
-  bool parallel() const { return origin_right != dvec3(0.0) || origin_down != dvec3(0.0); }
-};
 
 /// Draws voxel objects of a device. Not thread-safe.
 class DeviceVoxelPictures {

@@ -16,6 +16,7 @@
 
 #include "scarp/accel/device_voxels.h"
 #include "scarp/base/ray.h"
+#include "scarp/march/voxel/voxel_drawing.h"
 #include "scarp/march/voxel/voxel_table.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
@@ -57,11 +58,6 @@ class DeviceVoxelObjects {
   std::uint32_t march_, levels_, count_;
   double voxel_side_ = 0;
   DeviceBuffer objects_, turns_, nodes_, header_;
-};
-
-struct DeviceVoxelSettings {
-  std::uint32_t rays_at_once = 1 << 18;  ///< size of a slice: rays on the device at once, 1 to 4,000,000
-  bool words = false;                    ///< two 32-bit words instead of 64-bit integers, for tests
 };
 
 /// More results per ray; empty spans are not filled.

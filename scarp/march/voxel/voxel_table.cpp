@@ -9,6 +9,7 @@
 #include "scarp/march/voxel/voxel_cubes_jump.h"
 #include "scarp/march/voxel/voxel_exhaustive.h"
 #include "scarp/march/voxel/voxel_octants.h"
+#include "scarp/march/voxel/voxel_packet.h"
 #include "scarp/march/voxel/voxel_planes.h"
 #include "scarp/march/voxel/voxel_spheres.h"
 

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "scarp/march/march_entry.h"
-#include "scarp/march/voxel/voxel_packet.h"
 #include "scarp/march/voxel/voxel_target.h"
 
 namespace scarp {

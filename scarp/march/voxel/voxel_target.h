@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Targets and signatures of voxel marches.
+// Targets and signatures of voxel marches, and how voxels are rounded.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "scarp/field/voxel_grid.h"
@@ -13,6 +14,8 @@ class EmptySpheres;
 class EmptyCubes;
 class OctantCubes;
 class BrickMasks;
+struct VoxelPacket;  // voxel_packet.h
+struct VoxelStand;
 
 /// A grid with its accelerators. Accelerators may be null for marches that do not need them.
 struct VoxelTarget {
@@ -25,6 +28,17 @@ struct VoxelTarget {
   const BrickMasks* bricks = nullptr;
 };
 
+/// Settings of rounded voxels (rounded_voxels.h).
+struct VoxelRounding {
+  double radius = 0;  ///< of edges and corners, in voxel sides: 0 (cubes) to 0.5 (a single voxel is a ball)
+  bool each = false;  ///< rounds every voxel separately
+
+  explicit operator bool() const { return radius > 0; }
+};
+
+/// Throws Error naming the setting out of range.
+void validate(const VoxelRounding& rounding);
+
 /// Returns whether a voxel counts; a ray goes through one that does not as if it were empty.
 using VoxelFilter = std::function<bool(const VoxelHit&)>;
 
@@ -33,5 +47,9 @@ using VoxelMarch = VoxelHit (*)(const VoxelTarget& target, const QuantisedRay& r
 
 /// Returns whether there is one within the ray's range.
 using VoxelOcclusion = bool (*)(const VoxelTarget& target, const QuantisedRay& ray);
+
+/// Marches the rays whose bits are set, as free rays, within [t_min, t_max]. Returns those that entered the box.
+using VoxelPacketMarch = std::uint64_t (*)(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                           std::uint64_t rays);
 
 }  // namespace scarp

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "scarp/scene/file/voxel_memory.h"
+#include "scarp/scene/lattice_place.h"
 
 namespace scarp {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sweeps of spheres and capsules over height fields, and overlaps of boxes, against all triangles.
 #include "scarp/march/height/ground_contact.h"
+#include "scarp/march/closest_of.h"
 
 #include <gtest/gtest.h>
 

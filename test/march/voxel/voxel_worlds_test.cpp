@@ -11,6 +11,7 @@
 #include "march/instruction_sets.h"
 #include "march/voxel/spiteful_voxels.h"
 #include "scarp/accel/brick_masks.h"
+#include "scarp/march/voxel/voxel_packet.h"
 #include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::test {

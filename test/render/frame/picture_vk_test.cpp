@@ -25,6 +25,7 @@
 #include "render/terrain.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/render/frame/layers.h"
+#include "scarp/scene/scene_back_end.h"
 #include "scarp/scene/scene_vk.h"
 #include "vk/device_under_test.h"
 

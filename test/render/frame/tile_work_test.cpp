@@ -11,6 +11,7 @@
 
 #include "render/terrain.h"
 #include "scarp/base/error.h"
+#include "scarp/scene/scene_back_end.h"
 
 namespace scarp {
 namespace {
