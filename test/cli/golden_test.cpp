@@ -64,6 +64,27 @@ std::vector<Golden> goldens() {
   return all;
 }
 
+// The pictures that doc/user shows are those of its commands.
+TEST(DocumentPictures, AreThoseOfTheirCommands) {
+  if (!fs::exists(kJacksboro))
+    GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
+  const test::Scratch scratch;
+  const fs::path root = SCARP_SOURCE_DIR, folder = scratch.path("images");
+  fs::create_directory(folder);
+  const std::string command = fmt::format("cd '{}' && '{}/doc/gallery.sh' '" SCARP_PROGRAM "' '{}' quick >log 2>&1",
+                                          folder.string(), root.string(), kJacksboro);
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  int pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".png") continue;
+    ++pictures;
+    SCOPED_TRACE(entry.path().filename().string());
+    test::expect_golden(entry.path().string(), root / "doc" / "images" / entry.path().filename(), kAnyDifference,
+                        (fs::path(SCARP_FAILED_IMAGES) / entry.path().stem()).string());
+  }
+  EXPECT_GE(pictures, 15);
+}
+
 class GoldenPicture : public testing::TestWithParam<Golden> {};
 
 std::vector<std::string> arguments_of(const Golden& wanted, const std::string& picture) {
