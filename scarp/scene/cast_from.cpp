@@ -16,6 +16,9 @@ namespace {
 constexpr int kFanStrip = 16;  // columns that are walked together
 constexpr std::int64_t kFanRaysPerPiece = 8192;
 
+// With the seam of cast(): rays beside a border meet what they meet there.
+HeightTarget target_of(const Terrain& terrain) { return terrain.scene().fan_target().value(); }
+
 bool finite(const dvec3& v) { return std::isfinite(v.x + v.y + v.z); }
 
 void require_sound(const HeightTarget& terrain, const dvec3& eye, double t_min, double t_max) {
@@ -99,7 +102,7 @@ void cast_from(const Terrain& terrain, const PinholeCamera& camera, FanAnswers& 
   fan.columns = camera.columns, fan.rows = camera.rows;
   fan.t_min = camera.t_min, fan.t_max = camera.t_max;
   const double pixel = 2 * camera.tan_half_width / std::max(camera.columns, 1);
-  cast_made(terrain.target(), fan, answers, [&](int column, int row) {
+  cast_made(target_of(terrain), fan, answers, [&](int column, int row) {
     return forward + pixel * (column + 0.5 - 0.5 * camera.columns) * right +
            pixel * (0.5 * camera.rows - row - 0.5) * up;
   });
@@ -116,13 +119,15 @@ void cast_from(const Terrain& terrain, const Scanner& scanner, FanAnswers& answe
     turns.emplace_back(std::sin(azimuth), std::cos(azimuth));
   }
   for (const double elevation : scanner.elevations) tilts.emplace_back(std::sin(elevation), std::cos(elevation));
-  cast_made(terrain.target(), fan, answers, [&](int column, int row) {
+  cast_made(target_of(terrain), fan, answers, [&](int column, int row) {
     const dvec2 turn = turns[static_cast<std::size_t>(column)], tilt = tilts[static_cast<std::size_t>(row)];
     return dvec3(turn.x * tilt.y, turn.y * tilt.y, tilt.x);
   });
 }
 
-void cast_from(const Terrain& terrain, const Fan& fan, const FanHits& hits) { cast_from(terrain.target(), fan, hits); }
+void cast_from(const Terrain& terrain, const Fan& fan, const FanHits& hits) {
+  cast_from(target_of(terrain), fan, hits);
+}
 
 void cast_from(const HeightTarget& terrain, const Fan& fan, const FanHits& hits) {
   if (!terrain.field || !terrain.pyramid) throw Error("fan: its terrain has no field or no pyramid");

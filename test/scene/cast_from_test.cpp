@@ -107,6 +107,36 @@ TEST(CastFrom, TakesDirectionsOfTheCallerOnAllThreads) {
   expect_as_cast(ground, answers, fan.origin, fan.t_max, direction);
 }
 
+// There the width of the seam decides.
+TEST(CastFrom, EyesBesideTheBorderHitWhereTheirRaysDo) {
+  int hits = 0;
+  for (const double cell : {10.0, 7.7, 0.1}) {
+    const Terrain ground = terrain({.cell_x = cell, .cell_y = cell});
+    for (const double beside : {0.0, 1e-9, -1e-9, 1e-11, -1e-11}) {
+      for (const double over : {1e-9, 0.0, -1e-9, -20.0, 1.0}) {
+        const double along = 60.3 * cell, height = ground.height(0, along).value() + over;
+        Scanner scanner{.eye = {beside * cell, along, height}, .columns = 40, .azimuth_step = 2 * kPi / 40};
+        scanner.elevations = {-1.57, -0.9, -0.3, -0.01, 0, 0.2, 1.1, kPi / 2};
+        FanAnswers answers(scanner.columns, static_cast<int>(scanner.elevations.size()));
+        cast_from(ground, scanner, answers);
+        for (int i = 0; i < answers.columns * answers.rows; ++i) {
+          const double azimuth = i % answers.columns * scanner.azimuth_step;
+          const double elevation = scanner.elevations[static_cast<std::size_t>(i / answers.columns)];
+          const double flat = std::cos(elevation);
+          Ray ray;
+          ray.origin = scanner.eye;
+          ray.direction = dvec3(vec3(dvec3(flat * std::sin(azimuth), flat * std::cos(azimuth), std::sin(elevation))));
+          const Hit hit = cast(ground, ray);
+          hits += static_cast<bool>(hit);
+          ASSERT_EQ(answers.status[static_cast<std::size_t>(i)], hit.status)
+              << "cell " << cell << ", eye " << beside << " cells beside the border, " << over << " over it, ray " << i;
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 5000);
+}
+
 TEST(CastFrom, RefusesWhatIsUnsound) {
   const Terrain ground = terrain(), endless = terrain({.wrap = Wrap::periodic});
   PinholeCamera camera{.eye = {100, 100, 50}, .columns = 4, .rows = 3};
