@@ -119,7 +119,7 @@ void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
   const int width = options.width / kSide * kSide, height = options.height;
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"view", "down", "batch Mrays/s", "fan", "choice", "choice / better",
-                                               "one call", "fan's unknown %", "choice's %"}};
+                                               "batch of rows", "one call", "fan's unknown %", "choice's %"}};
   for (const View& view : kViews) {
     for (int down = 0; down <= 90; down += options.step) {
       const std::vector<Ray> rays = camera_rays(ground.field, view, down * kPi / 180, width, height);
@@ -172,6 +172,10 @@ void add_pitches(cli::Program& program) {
       run_pitches);
   command.add(&o.field.size,
               {.names = "--size", .help = "samples per side of the procedural DEM", .range = {64, 1 << 14}});
+  command.add(
+      &o.width,
+      {.names = "--width", .help = "columns, down to a multiple of 32", .unit = "pixels", .range = {32, 1 << 13}});
+  command.add(&o.height, {.names = "--height", .help = "rows", .unit = "pixels", .range = {1, 1 << 13}});
   add_repeats_option(command, o.repeats, "timed passes of each");
   command.add(&o.step, {.names = "--step", .help = "step of the pitch", .unit = "degrees", .range = {1, 90}});
 }

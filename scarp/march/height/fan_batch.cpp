@@ -12,6 +12,7 @@
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/height/max_mip_simd.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -23,11 +24,16 @@ constexpr std::int64_t kFanRaysPerPiece = 2048;
 constexpr std::size_t kRaysPerGroup = 1 << 19;  // whose sights, 4 MiB, a thread keeps memory for
 // Sine of 85 degrees. Half of the rays of a camera that looks straight down inherit nothing from one another.
 constexpr double kStraightDown = 0.996;
-constexpr double kSameSlope = 1e-9;  // of rays of a scanner's row, relative
+// Slopes of a scanner's row differ by less, relative: their directions may be floats, off by 3 roundings of 2^-24.
+constexpr double kSameSlope = 0x1p-22;
+// Longer ones would need more memory than a group of rays has.
+constexpr std::size_t kLongestRun = kRaysPerGroup / kStripColumns;
+// Lines of the grid that take a column as long as a batch takes for one ray (doc/dev/decisions/march.md).
+constexpr double kLinesPerRow = 8;
 
 // Directions as floats lose nothing that fans promise.
 bool is_plain(const dvec3& d) {
-  const double longest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  const double longest = longest_of(d);
   return longest > 0x1p-60 && longest < 0x1p60;
 }
 
@@ -58,6 +64,19 @@ std::size_t first_run(std::span<const Ray> rays) {
 // The share of its length by which a step is vertical.
 double rise(const dvec3& step) { return std::abs(step.z) / std::max(length(step), 0x1p-1000); }
 
+// About the number of lines that a column with these ends crosses over ground that may be as high as its rays.
+double lines_of(const HeightField& field, double z, const dvec3& a, const dvec3& b) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  double begin = kFar, end = 0;
+  for (const dvec3& d : {a, b}) {
+    const double fall = -slope(d);
+    begin = std::min(begin, fall > 0 ? std::max(z - field.max_height(), 0.0) / fall : kFar);
+    end = std::max(end, fall > 0 ? (z - field.min_height()) / fall : kFar);
+  }
+  const double cell = std::min(field.settings().cell_x, field.settings().cell_y);
+  return begin < end ? std::min(end - begin, std::hypot(field.width(), field.depth())) / cell : 0;
+}
+
 }  // namespace
 
 std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays) {
@@ -68,7 +87,7 @@ std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ra
     if (!starts_at(rays[i], origin) || !is_plain(rays[i].direction)) return {};
   }
   FanBatch batch;
-  batch.run = first_run(rays.first(n / 2 + 1));
+  batch.run = first_run(rays.first(std::min(n / 2, kLongestRun) + 1));
   if (batch.run < kLeastRun) return {};
   const dvec3& first = rays[0].direction;
   batch.columns = rise(rays[1].direction - first) > rise(rays[batch.run].direction - first);
@@ -80,6 +99,10 @@ std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ra
   fan.columns = static_cast<int>(batch.columns ? runs : batch.run);
   fan.rows = static_cast<int>(batch.columns ? batch.run : runs);
   if (!looks_by_fan(target, fan)) return {};
+  const bool from_above = origin.z > target.field->max_height();
+  if (from_above &&
+      fan.rows * kLinesPerRow < lines_of(*target.field, origin.z, first, rays[runs * batch.run - 1].direction))
+    return {};
   return batch;
 }
 

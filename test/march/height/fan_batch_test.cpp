@@ -96,12 +96,19 @@ TEST(FanBatch, FindsRowsOfCamerasAndScannersAndFirings) {
       }
     }
   }
-  const auto rows = fan_batch(target, turn(eye, false)), firings = fan_batch(target, turn(eye, true));
-  ASSERT_TRUE(rows && firings);
-  EXPECT_EQ(rows->run, static_cast<std::size_t>(kWidth));
-  EXPECT_FALSE(rows->columns);
-  EXPECT_EQ(firings->run, static_cast<std::size_t>(kHeight));
-  EXPECT_TRUE(firings->columns);
+  // Callers may have made directions in float.
+  for (const bool floats : {false, true}) {
+    for (const bool firings : {false, true}) {
+      std::vector<Ray> rays = turn(eye, firings);
+      if (floats) {
+        for (Ray& ray : rays) ray.direction = dvec3(vec3(ray.direction));
+      }
+      const auto batch = fan_batch(target, rays);
+      ASSERT_TRUE(batch) << floats << firings;
+      EXPECT_EQ(batch->run, static_cast<std::size_t>(firings ? kHeight : kWidth)) << floats << firings;
+      EXPECT_EQ(batch->columns, firings) << floats << firings;
+    }
+  }
 }
 
 TEST(FanBatch, LeavesOtherBatchesAlone) {
@@ -116,6 +123,11 @@ TEST(FanBatch, LeavesOtherBatchesAlone) {
   EXPECT_FALSE(fan_batch(target, std::vector<Ray>(2000, rays[0]))) << "one direction";
   EXPECT_FALSE(fan_batch(target, camera(eye, 0.7, kPi / 2, 0, true))) << "straight down";
   EXPECT_FALSE(fan_batch(target, camera({101, 140, -50}, 0.7, 0.3, 0, true))) << "below the ground";
+  // From above, few rows that cross many lines take longer together.
+  const HeightField wide = HeightField::own(std::vector<float>(3001 * 5, 1.0f), 3001, 5, {});
+  const MaxPyramid of_wide(wide);
+  EXPECT_FALSE(fan_batch({&wide, &of_wide}, camera({1, 2, 40}, kPi / 2, 0.3, 0, true))) << "few rows";
+  EXPECT_TRUE(fan_batch(target, camera({101, 140, 40}, 0.7, 0.3, 0, true))) << "few lines";
   Random random(3);
   std::vector<Ray> scattered = rays, elsewhere = rays;
   std::shuffle(scattered.begin(), scattered.end(), random);
