@@ -19,7 +19,7 @@ measured() {
 
 "$scarp" generate --size 2048 --seed 1 --wavelength 512 -o small.tif >/dev/null 2>&1
 {
-  echo "# machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(nproc) cores, Linux $(uname -r), $(gdalinfo --version)"
+  echo "# machine: $(sed -n '/^model name/{s/.*: //p;q}' /proc/cpuinfo), $(nproc) cores, Linux $(uname -r), $(gdalinfo --version)"
   echo "# command: large_raster.sh SCARP $side"
   echo "# date: $(date -u +%FT%TZ)"
   echo "type,layout,compression,side,decimated_side,scarp_s,scarp_cpu_s,scarp_mb,translate_s,translate_cpu_s,translate_mb,decimated_s,decimated_cpu_s,ratio,cpu_ratio"

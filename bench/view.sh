@@ -52,7 +52,7 @@ latencies() {
 }
 
 {
-  echo "# machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(nproc) cores, Linux $(uname -r), load $(cut -d' ' -f1 /proc/loadavg)"
+  echo "# machine: $(sed -n '/^model name/{s/.*: //p;q}' /proc/cpuinfo), $(nproc) cores, Linux $(uname -r), load $(cut -d' ' -f1 /proc/loadavg)"
   echo "# command: view.sh SCARP $sides"
   echo "# date: $(date -u +%FT%TZ)"
   echo "side,first_s,first_rows,full_s,idle_percent,rest_ms,rest_most_ms,turn_ms,turn_most_ms,turn_fps,turn_rows,converged_s,render_s,same,mb"
@@ -118,7 +118,7 @@ latencies() {
     xdotool key Escape
     wait $view_pid
     view_pid=''
-    command=$(sed -n 's/^scarp render/render/p' commands | head -1)
+    command=$(sed -n 's/^scarp render/render/p' commands | sed -n 1p)
     before=$EPOCHREALTIME
     # shellcheck disable=SC2086
     "$scarp" $command >/dev/null 2>&1

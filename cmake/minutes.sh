@@ -18,11 +18,11 @@ for preset in clone/build/demo release dev tsan; do
   # start, end, time stamp, output: of each output the last line counts.
   awk -F'\t' -v preset="${preset##*/}" 'NR > 1 && $4 ~ /\.o$/ { took[$4] = ($2 - $1) / 1000 }
     END { for (file in took) printf "%7.1f  %s: %s\n", took[file], preset, file }' "$log"
-done | sort -rn | head -n 10 | sed -e 's|CMakeFiles/||' -e 's|\.dir/|: |' -e 's|\.cxx\.o$||' -e 's|\.o$||'
+done | sort -rn | sed -n -e '11,$ d' -e 's|CMakeFiles/||' -e 's|\.dir/|: |' -e 's|\.cxx\.o$||' -e 's|\.o$||'
 
 echo "== slowest tests (wall seconds)"
 for preset in release dev tsan; do
   log="$build/$preset/Testing/Temporary/LastTest.log"
   [[ -f "$log" ]] && recent "$log" || continue
   awk -v preset="$preset" '/^[0-9]+\/[0-9]+ Testing: / { name = $3 } /^Test time = / { printf "%7.1f  %s: %s\n", $4, preset, name }' "$log"
-done | sort -rn | head -n 10
+done | sort -rn | sed -n '1,10 p'

@@ -18,7 +18,7 @@ seconds() {
   local i
   for i in 1 2 3; do
     "$scarp" render "$@" --look height --size $large -o "$scratch/large.png" | sed -n 's/.* render \([0-9.]*\) s.*/\1/p'
-  done | sort -n | head -1
+  done | sort -n | sed -n 1p
 }
 
 # row TABLE NAME RANGE OPTIONS...: prints a table row. Reads `field` (input options) and `judged` (whether to render

@@ -42,7 +42,7 @@ strip -o "$tree/lib/loader/libvulkan.so.1" "$loader"
 if [[ $validation == --validation ]]; then
   layer=/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json
   [[ -e $layer ]] || fail "no validation layer (Debian: vulkan-validationlayers)"
-  name=$(sed -n 's/.*"library_path": *"\(.*\)".*/\1/p' "$layer" | head -n 1)
+  name=$(sed -n 's/.*"library_path": *"\(.*\)".*/\1/p' "$layer" | sed -n 1p)
   library=$name
   [[ $library == /* ]] || library=$(PATH="$PATH:/sbin" system_library "$name")
   [[ -n $library ]] || library=$(gcc -print-file-name="$name")
