@@ -184,7 +184,7 @@ struct Rim {
     const double last = end;
     double reached = begin;
     RimSide to = std::exchange(at, {});
-    if (!clip_to_heights(ray, ground.lowest(), ground.highest(), begin, end)) return false;
+    if (!clip_to_heights(field, ray, ground.lowest(), ground.highest(), begin, end)) return false;
     Side& side = to.side;
     bool first = true;
     for (RimStretch s : stretches(begin, end, box)) {

@@ -6,15 +6,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "scarp/march/height/rounding.h"
 
 namespace scarp {
 
 /// Limits a time range to the part in which the ray is between two heights, in sample units, with a margin far beyond
-/// rounding. Returns whether any is left.
-inline bool clip_to_heights(const GridRay& ray, double low, double high, double& begin, double& end) {
-  const double room = (high - low) + 0x1p-40 * (std::abs(ray.origin.z) + std::abs(low) + std::abs(high));
+/// rounding_of_clearance(), so that its side where it comes in is known. Returns whether any is left.
+inline bool clip_to_heights(const HeightField& field, const GridRay& ray, double low, double high, double& begin,
+                            double& end) {
+  const double offset = std::abs(field.settings().offset) / field.settings().scale;
+  const double upright = std::abs(ray.origin.z) + std::abs(low) + std::abs(high) + offset;
+  const double room = (high - low) + 0x1p-40 * upright + std::numeric_limits<double>::min();
   const double z = ray.origin.z, dz = ray.direction.z;
   if (dz == 0) return begin <= end && z >= low - room && z <= high + room;
   const double a = (low - room - z) / dz, b = (high + room - z) / dz;
@@ -29,7 +33,7 @@ enum class RimLines : std::uint8_t { all, borders };
 /// that its height there is not known to kQuickRim.
 inline bool lingers_at_line(const HeightField& field, const GridRay& ray, double low, double high, double begin,
                             double end, double seam, RimLines lines = RimLines::all) {
-  if (!clip_to_heights(ray, low, high, begin, end)) return false;
+  if (!clip_to_heights(field, ray, low, high, begin, end)) return false;
   const double relief = field.max_sample() - field.min_sample();
   const auto lingers = [&](int axis) {
     const double d = ray.direction[axis], along = std::abs(ray.direction[1 - axis]);

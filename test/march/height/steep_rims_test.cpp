@@ -302,6 +302,28 @@ TEST(SteepRims, AreNotHitFromBelow) {
   }
 }
 
+// Rays that rise along the border from below ground whose zero is far from the samples: rounding counts from that zero.
+TEST(SteepRims, AreNotHitFromBelowWithAnOffset) {
+  const std::vector<std::int16_t> flat(12);
+  for (const double offset : {1000.0, -1e6}) {
+    for (const double cell : {1.0, 0.1, 7.7}) {
+      const HeightField field =
+          HeightField::own(flat, 4, 3, {.cell_x = cell, .cell_y = cell, .scale = 0.1, .offset = offset});
+      SteepRays alone(field), in_a_scene(field, kSeamOfScenes);
+      for (const double lean : leans()) {
+        for (SteepRays* rays : {&alone, &in_a_scene}) {
+          rays->expect_none({{0, 1.3 * cell, offset - 1}, {lean, 0, 1}});
+          rays->expect_none({{3 * cell, 1.3 * cell, offset - 1}, {lean, 0, 1}});
+          rays->expect_none({{1.3 * cell, 0, offset - 1}, {0, lean, 1}});
+          rays->expect_none({{1.3 * cell, 2 * cell, offset - 1}, {lean, lean, 1}});
+        }
+      }
+      alone.check();
+      in_a_scene.check();
+    }
+  }
+}
+
 // Nodes at col * cell are on the rim although their coordinates are rounded.
 TEST(SteepRims, HaveHeightsAtTheirNodes) {
   constexpr int kCols = 300, kRows = 8;
