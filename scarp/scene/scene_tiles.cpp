@@ -330,7 +330,9 @@ class Tiles final : public SceneField {
     if (field.all_nodata()) return true;
     const double lowest = along(ray.origin.z, ray.direction.z, ray.direction.z < 0 ? span.end : span.begin);
     const double highest = field.max_height();
-    return lowest - highest > 0x1p-40 * (std::abs(ray.origin.z) + std::abs(lowest) + std::abs(highest));
+    // Products below the least normal number are rounded by more than their share.
+    const double rounding = 0x1p-40 * (std::abs(ray.origin.z) + std::abs(lowest) + std::abs(highest));
+    return lowest - highest > rounding + std::numeric_limits<double>::min();
   }
 
   // As HeightField::shading_normal(), with the heights of adjacent tiles at the borders.

@@ -161,14 +161,15 @@ class Ground {
     const double heights = std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) +
                            std::abs(dz_ * t) + std::abs(to.offset) / to.scale;
     const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t) + field_.rows();
-    return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
+    const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
+    return std::min(most, 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample())) + 8 * least);
   }
 
   // The same for the times of lines: a quotient for the origin, a difference and a quotient.
   double rounding_of_time(double t) const {
     const double speed = std::max(std::abs(dx_), std::abs(dy_));
     const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
-    return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
+    return speed > 0 ? std::min(std::numeric_limits<double>::max(), 4 * 0x1p-53 * places / speed) : 0;
   }
 
   // How far below a rim a ray may reach it and still touch it: the rounding of its clearance, plus the change of the
@@ -260,7 +261,7 @@ class Ground {
       if (start && dy_ == 0 && within(row, rows) != start->row) continue;
       // Pieces are whole up to the lines that end them, wherever the range ends: a hit does not depend on that.
       const Span over_row = common({range.begin, kInfinity}, strip(oy_, dy_, row, 1));
-      if (over_row.empty() || over_row.begin > range.end) continue;
+      if (over_row.empty() || over_row.begin > range.end || std::isinf(over_row.begin)) continue;
       // Columns that the ray can touch in this row, one more on either side for rounding.
       const Span over_cols = touched(ox_, dx_, common(range, over_row), cols);
       for (double col = over_cols.begin; col <= over_cols.end; ++col) {
@@ -405,10 +406,12 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
     const double rounding = ground.rounding(p.span.begin);
+    // Where its height overflows, the ray is far from all ground.
+    if (!std::isfinite(p.c)) continue;
     const auto meet_wall = [&] {
       Hit hit = ground.hit(p, 0);
       hit.wall = true;
-      return found(hit);
+      return std::isfinite(hit.height) && found(hit);
     };
     // A ray that reached the wall behind a rim from below the rim, and stayed there, hits the wall.
     const bool came_below = std::exchange(below_rim, false) && side == Side::below;

@@ -109,6 +109,9 @@ struct Rim {
     return !(height(t) > ground.highest() + room) && (wall || !(height(t) < ground.lowest() - room));
   }
 
+  // Whether the height of a hit at t is not finite: walls have no lower end, but the place on them must be a number.
+  bool overflows(double t) const { return !std::isfinite(ground.metres(height(t))); }
+
   // Whether the ray must be followed along rims, cell by cell, in this time.
   bool slow(double begin, double end) const {
     return lingers_at_line(field, ray, ground.lowest(), ground.highest(), begin, end, seam);

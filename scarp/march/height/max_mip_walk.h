@@ -543,7 +543,7 @@ class Walk {
     const double risen = std::exchange(below_rim_, false) ? rounding_of_clearance(t_in_) : 0.0;
     side_ = (risen > 0 ? in > risen : in >= 0) || on_rim ? Side::above : Side::below;
     if (side_ == Side::above) return false;
-    if (solid_ && (begun_ || from_outside_)) return answer(0.0, true);
+    if (solid_ && (begun_ || from_outside_)) return rim(grid_ray()).overflows(t_in_) || answer(0.0, true);
     if (!begun_ && answer_.status == HitStatus::miss) answer_.status = HitStatus::below;
     return false;
   }

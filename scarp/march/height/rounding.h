@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scarp/field/height_field.h"
 
@@ -15,13 +16,16 @@ namespace scarp {
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t, double relief) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   constexpr double kRoundings = 16;  // numerics.md counts 11
+  // Products below 2^-1022 are rounded by half of the least number instead.
+  constexpr double kSubnormal = kRoundings / 2 * std::numeric_limits<double>::denorm_min();
   const double low = field.min_sample(), high = field.max_sample();
   const double sideways = std::abs(ray.origin.x) + std::abs(ray.direction.x * t) + std::abs(ray.origin.y) +
                           std::abs(ray.direction.y * t) + field.rows();
   const double upright = std::abs(ray.origin.z) + std::abs(ray.direction.z * t) +
                          std::max(std::abs(low), std::abs(high)) +
                          std::abs(field.settings().offset) / field.settings().scale;
-  return kRoundings * kUnit * (upright + sideways * relief);
+  // Finite, so that a height that overflows is not within rounding of the ground.
+  return std::min(std::numeric_limits<double>::max(), kRoundings * kUnit * (upright + sideways * relief) + kSubnormal);
 }
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t) {
   return rounding_of_clearance(field, ray, t, field.max_sample() - field.min_sample());

@@ -34,6 +34,7 @@ constexpr double kOff = kMostLean * kMostHeight / kLeastCell * kMostRelief;
 std::vector<double> leans() {
   std::vector<double> all{0, kCosineOf90, 1e-16, 1e-18, 1e-20, 1e-300};
   for (int power = 0; power <= 970; power += 97) all.push_back(std::ldexp(kMostLean, -power));
+  for (const double subnormal : {0x1p-1020, 0x1.8p-1022, 0x1.8p-1023, 5e-324}) all.push_back(subnormal);
   const std::size_t count = all.size();
   for (std::size_t i = 1; i < count; ++i) all.push_back(-all[i]);
   return all;
@@ -455,6 +456,25 @@ TEST(SteepRims, KeepHitsAtTheEndOfTheRange) {
         ASSERT_FALSE(ray.t_max >= ray.t_min && march_max_mip(target, ray)) << i << " " << j;
       }
     }
+  }
+}
+
+// Rays over a hole come to its rim after 10^307 units of t, far above or below all ground.
+TEST(SteepRims, MissWhatOverflows) {
+  constexpr int kSide = 24;
+  Random random(15);
+  std::vector<float> samples(kSide * kSide);
+  for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 5));
+  for (const double cell : {1.0, 0.1, 7.7, 1.0 / 3}) {
+    const HeightField field = with_hole(samples, kSide, cell, Surface::bilinear, false, false);
+    SteepRays rays(field);
+    for (int i = 0; i < 1000; ++i) {
+      const auto place = [&] { return whole(random, 9, 14) + (whole(random, 0, 1) ? 0 : uniform(random, 0, 1)); };
+      const auto lean = [&] { return std::ldexp(uniform(random, -1, 1), -whole(random, 1018, 1080)) * cell; };
+      const dvec3 d(lean(), whole(random, 0, 1) ? 0 : lean(), (whole(random, 0, 1) ? 1 : -1) * uniform(random, 1, 8));
+      rays.expect_none({{place() * cell, place() * cell, 10}, d});
+    }
+    rays.check();
   }
 }
 
