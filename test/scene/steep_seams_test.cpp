@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
@@ -207,6 +208,64 @@ concept HasQuery = requires(S&& scene) {
   std::forward<S>(scene).query(SceneRules{});
 };
 static_assert(HasQuery<Scene&> && HasQuery<const Scene&> && !HasQuery<Scene>);
+
+// Tiles with holes and flat parts, of heights from 0 to 100, or flat at 0.
+TerrainTiles tiles_with_holes(Random& random, double cell, int side) {
+  const HeightFieldSettings ground{.cell_x = cell, .cell_y = cell, .nodata = -1};
+  TiledTerrain terrain({2, 2, side, side, ground});
+  const int most = whole(random, 0, 2) * 50, samples = 2 * side + 1;
+  std::vector<std::int16_t> all(static_cast<std::size_t>(samples * samples));
+  for (std::int16_t& sample : all)
+    sample = static_cast<std::int16_t>(whole(random, 0, 4) == 0 ? -1 : whole(random, 0, most));
+  terrain.edit([&](auto& editor) {
+    for (int tile = 0; tile < 4; ++tile) {
+      std::vector<std::int16_t> own;
+      for (int row = 0; row <= side; ++row) {
+        for (int col = 0; col <= side; ++col) {
+          const int at = (tile / 2 * side + row) * samples + tile % 2 * side + col;
+          own.push_back(all[static_cast<std::size_t>(at)]);
+        }
+      }
+      editor.put({tile % 2, tile / 2}, HeightField::own(own, side + 1, side + 1, ground));
+    }
+  });
+  return terrain.read();
+}
+
+// Where the range ends changes no hit, in tiles and where they are placed: it counts at its end, and none comes before.
+TEST(SteepSeams, HitTheSamePlaceWhereverTheRangeEnds) {
+  Random random(13);
+  int hits = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double cells[] = {1, 0.1, 7.7, 30.7}, cell = cells[i % 4];
+    const int side = whole(random, 1, 6);
+    const TerrainTiles tiles = tiles_with_holes(random, cell, side);
+    Placement outer;
+    if (i % 3 == 1) outer.origin = {1000.1, -500.3, 20};
+    if (i % 3 == 2) outer.turn = glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), dvec3(1, 2, 3)));
+    const Scene scene = i % 3 == 0 ? tiles.scene() : combine({{tiles.scene(), outer}});
+    for (int j = 0; j < 100; ++j) {
+      const dvec3 node(whole(random, 0, 2 * side) * cell, whole(random, 0, 2 * side) * cell, whole(random, 0, 100));
+      const auto lean = [&] { return std::ldexp(uniform(random, -1, 1), -whole(random, 0, 1074)); };
+      dvec3 d(lean() * cell, lean() * cell, whole(random, 0, 4) == 0 ? 1 : -1);
+      if (j % 3 == 0) d = {uniform(random, -1, 1) * cell, uniform(random, -1, 1) * cell, uniform(random, -50, 5)};
+      if (j % 5 == 0) d[whole(random, 0, 1)] = cell, d.z = whole(random, 0, 1) ? 0 : -lean();
+      const dvec3 from = node - uniform(random, 0, 20) * d;
+      Ray ray{outer.world_from_field(from), outer.turn * d};
+      const Hit hit = cast(scene, ray);
+      if (!hit) continue;
+      ++hits;
+      for (const double t_max : {hit.t, std::nextafter(hit.t, 1e300), 2 * hit.t, hit.t + 1}) {
+        ray.t_max = t_max;
+        ASSERT_EQ(cast(scene, ray), hit) << i << " " << j << " " << t_max;
+        ASSERT_TRUE(occluded(scene, ray)) << i << " " << j << " " << t_max;
+      }
+      ray.t_max = std::nextafter(hit.t, -1e300);
+      ASSERT_FALSE(ray.t_max >= 0 && (cast(scene, ray) || occluded(scene, ray))) << i << " " << j;
+    }
+  }
+  EXPECT_GT(hits, 10000);
+}
 
 }  // namespace
 }  // namespace scarp::test

@@ -257,11 +257,13 @@ class Ground {
       return wraps ? Span{first, last} : Span{std::clamp(first, -1.0, most), std::clamp(last, -1.0, most)};
     };
     const Span over_rows = touched(oy_, dy_, range, rows);
+    // A cell beside a node may begin before its row does, by rounding.
+    const double last = std::isinf(range.end) ? range.end : range.end + rounding_of_time(range.end);
     for (double row = over_rows.begin; row <= over_rows.end; ++row) {
       if (start && dy_ == 0 && within(row, rows) != start->row) continue;
       // Pieces are whole up to the lines that end them, wherever the range ends: a hit does not depend on that.
       const Span over_row = common({range.begin, kInfinity}, strip(oy_, dy_, row, 1));
-      if (over_row.empty() || over_row.begin > range.end || std::isinf(over_row.begin)) continue;
+      if (over_row.empty() || over_row.begin > last || std::isinf(over_row.begin)) continue;
       // Columns that the ray can touch in this row, one more on either side for rounding.
       const Span over_cols = touched(ox_, dx_, common(range, over_row), cols);
       for (double col = over_cols.begin; col <= over_cols.end; ++col) {
@@ -290,6 +292,13 @@ class Ground {
     take_ground_from_rims(found);
     std::stable_sort(found.begin(), found.end(), earlier);
     return found;
+  }
+
+  // A time behind the rims on which the ray is at t: over a field without wrap, the end of its way.
+  double beyond(double t) const {
+    const double speed = std::max(std::abs(dx_), std::abs(dy_));
+    if (!field_.wraps() || speed == 0) return field_.wraps() ? t : kInfinity;
+    return std::min(std::numeric_limits<double>::max(), t + (field_.cell_cols() + field_.cell_rows()) / speed);
   }
 
   // Times at which the ray's line is over the field: always, if the field has no border.
@@ -376,7 +385,20 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     ground.move_height(-*start);
     side = Side::above;
   }
-  const auto pieces = ground.pieces({ray.t_min, ray.t_max}, on_surface ? &ray.start_cell : nullptr);
+  auto pieces = ground.pieces({ray.t_min, ray.t_max}, on_surface ? &ray.start_cell : nullptr);
+  // Whether the ray comes from a rim to the ground does not depend on where the range ends.
+  const auto cut = [&](const Piece& p) { return p.rim && p.span.end >= ray.t_max; };
+  if (std::any_of(pieces.begin(), pieces.end(), cut))
+    pieces = ground.pieces({ray.t_min, ground.beyond(ray.t_max)}, nullptr);
+  // Whether rims, one after the other, lead from a piece to the ground.
+  const auto leads_to_ground = [&](std::size_t piece) {
+    double end = pieces[piece].span.end;
+    for (std::size_t i = piece + 1; i < pieces.size() && pieces[i].span.begin <= end; ++i) {
+      if (!pieces[i].rim) return true;
+      end = std::max(end, pieces[i].span.end);
+    }
+    return false;
+  };
   if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
   const Span inside = ground.inside_border();
   const double entry = std::max(ray.t_min, inside.begin);
@@ -387,6 +409,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
   const bool has_walls = field.settings().solid && from == Sides::above;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     Piece p = pieces[i];
+    if (p.span.begin > ray.t_max) break;
     // Rims of neighbours overlap: the ray has been followed up to here.
     if (p.rim && p.span.begin < reached && p.span.end > reached) p = p.part({reached, p.span.end});
     if (first && p.cell == ray.start_cell && p.span.begin <= start) {
@@ -436,9 +459,8 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     const auto depth = on_surface ? std::optional(rounding) : std::nullopt;
     // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece. A ray that does not
     // sink beside the rim reaches the surface behind the rim, if it gets there.
-    const bool goes_on = i + 1 < pieces.size() && pieces[i + 1].span.begin <= p.span.end;
     const bool waits = p.rim && p.last >= 0;
-    if (side == Side::above && !depth && p.c <= 0 && !(waits && goes_on) && !rises_to_rim) {
+    if (side == Side::above && !depth && p.c <= 0 && !(waits && leads_to_ground(i)) && !rises_to_rim) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
       outside = false;

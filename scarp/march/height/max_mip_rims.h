@@ -112,8 +112,9 @@ struct Rim {
   // Whether the height of a hit at t is not finite: walls have no lower end, but the place on them must be a number.
   bool overflows(double t) const { return !std::isfinite(ground.metres(height(t))); }
 
-  // Whether the ray must be followed along rims, cell by cell, in this time.
-  bool slow(double begin, double end) const {
+  // Whether the ray must be followed along rims, cell by cell, from this time on, wherever its range ends.
+  bool slow(double begin) const {
+    const double end = Wraps ? std::numeric_limits<double>::infinity() : std::min(x.exit_time(), y.exit_time());
     return lingers_at_line(field, ray, ground.lowest(), ground.highest(), begin, end, seam);
   }
 

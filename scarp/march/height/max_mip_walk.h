@@ -66,7 +66,7 @@ class Walk {
       if (Holes && side_ == Side::unknown && !below_rim_ && ground_.is_hole(col_, row_) && touches(t_in_)) return;
     }
     // Blocks do not have the rims of those beside them.
-    if (Holes && !strict_ && rim(grid_ray()).slow(t_in_, t_end_)) top_ = level_ = 0, slow_ = true;
+    if (Holes && !strict_ && rim(grid_ray()).slow(t_in_)) top_ = level_ = 0, slow_ = true;
     while (walk()) enter_next_copy();
     if (!Wraps) follow_border_on_exit();
   }
@@ -243,7 +243,7 @@ class Walk {
   // are mostly stopped by hills that are wider than a block.
   bool goes_under(double t) {
     if (Wraps || top_ < kProbeLevel) return false;
-    const Level& at = levels_[kProbeLevel - 1];
+    const MaxPyramid::Level& at = levels_[kProbeLevel - 1];
     const double t_last = dz_ > 0 ? std::min(t_end_, (ground_.highest() - z_) / dz_) : t_end_;
     const double t_per_cell = 1 / std::max(std::abs(x_.direction), std::abs(y_.direction));
     if (!(t_last - t > kShortWay * t_per_cell)) return false;
@@ -264,11 +264,11 @@ class Walk {
     return false;
   }
 
-  // Straight up or down: one cell, one height.
+  // Straight up or down: one cell, one height, wherever the range ends.
   void vertical() {
     ++stats.steps;
     if (Holes && ground_.is_hole(col_, row_)) {
-      follow_rim(t_in_, t_end_, {col_ - 1, col_ + 1, row_ - 1, row_ + 1});
+      follow_rim(t_in_, std::numeric_limits<double>::infinity(), {col_ - 1, col_ + 1, row_ - 1, row_ + 1});
       return;
     }
     ++stats.cell_tests;
@@ -311,29 +311,31 @@ class Walk {
       const bool through_x = tx <= ty;  // a tie: the line of constant column first
       const double t_line = through_x ? tx : ty;
       const double t_out = std::min(t_line, t_end);
-      // The ray's height is linear: lowest at one end of the block.
-      const double t_lowest = falling ? t_out : t_in, lowest_code = code_z + code_dz * t_lowest;
+      // The ray's height is linear: lowest at one end of the block. Over a block with holes the whole way counts, so
+      // that the end of the range does not decide whether the rim behind its first line is followed.
+      const double t_leave = std::min(t_line, t_exit);
+      const double t_lowest = falling ? Holes ? t_leave : t_out : t_in, lowest_code = code_z + code_dz * t_lowest;
       ++steps;
       if (level > 0) {
-        const Level& at = levels_[level - 1];
+        const MaxPyramid::Level& at = levels_[level - 1];
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const std::uint16_t maximum = ground_.maximum(entry);
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maximum, t_lowest))) {
           // There may be ground behind the line that it crossed, with a node that the ray passes.
           if (Holes && begun_ && side_ != Side::below && !below_rim_ &&
               passes_node(after_x_ ? y.at(t_in) : x.at(t_in), at_node[!after_x_]) &&
-              touches(rim(grid_ray()).node_time(t_in, !after_x_, t_out)))
+              touches(rim(grid_ray()).node_time(t_in, !after_x_, t_leave)))
             break;
           // With holes, the last cell may be one: the side is unknown at the next.
           if (!Holes) {
             side_ = Side::above;
-          } else if (!cuts_corner(through_x, t_in, t_out)) {
+          } else if (!cuts_corner(through_x, t_in, t_leave)) {
             side_ = Side::unknown;
           }
         } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), ground_.minimum(entry))) {
           if (lost(t_out)) break;
         } else {
-          if (ask == Ask::any && falling && side_ == Side::above && falls_under(ground_.minimum(entry), t_lowest)) {
+          if (ask == Ask::any && falling && side_ == Side::above && falls_under(ground_.minimum(entry), t_out)) {
             answer_.status = HitStatus::hit;
             break;
           }
@@ -365,7 +367,7 @@ class Walk {
         const CellHeights h = ground_.cell(col, row);
         const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
         // A hit does not depend on where the ray ends: its whole cell is tested.
-        const double t_leave = std::min(t_line, t_exit), t_low = falling ? t_leave : t_in, lowest = ray_height(t_low);
+        const double t_low = falling ? t_leave : t_in, lowest = ray_height(t_low);
         if (lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_low))) {
           side_ = Side::above;
         } else {
@@ -382,7 +384,7 @@ class Walk {
       if (!falling && lowest_code > highest_code) break;
       // The range is closed: the cell behind the line on which it ends may have the hit.
       if (!(t_line < t_end) && !(t_line == ray_.t_max && t_line < t_exit)) {
-        left = t_end < t_end_ || (Wraps && Holes && t_exit == t_end_);
+        left = t_end < t_end_ || (Wraps && t_exit == t_end_);
         // A line of constant column crossed together with the seam of the rows comes first, too.
         const bool another_column =
             static_cast<unsigned>(col + x.step) <= static_cast<unsigned>((x.cells - 1) >> level);
@@ -510,8 +512,7 @@ class Walk {
     return false;
   }
   [[gnu::noinline]] bool follow_border(double begin, double end, bool goes_in) {
-    const GridRay ray = grid_ray();
-    const auto beside = rim(ray);
+    const auto beside = rim(grid_ray());
     begin = std::max(begin, ray_.t_min);
     if (begin > ray_.t_max) return false;
     return beside.may_touch(begin, end) && follow_rim(begin, end, beside.cells_under(begin, end), false, goes_in);
@@ -669,11 +670,10 @@ class Walk {
     return !lists();
   }
 
-  using Level = MaxPyramid::Level;
   const HeightField& field_;
   double seam_, seam_step_;
   const WalkGround<T, UpsideDown> ground_;
-  const Level* levels_;
+  const MaxPyramid::Level* levels_;
   int top_;
   Axis x_, y_;
   double z_, dz_;  // ray height in sample units

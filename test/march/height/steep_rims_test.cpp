@@ -459,6 +459,111 @@ TEST(SteepRims, KeepHitsAtTheEndOfTheRange) {
   }
 }
 
+// A random field of the whole kind: cells, formats, surfaces, holes, walls and wraps; half of the flat ones at height
+// 0.
+HeightField field_of_any_kind(Random& random, bool wraps) {
+  const int cols = whole(random, 2, 8), rows = whole(random, 2, 8), most = whole(random, 0, 2) * 5;
+  const double cell[] = {1, 0.1, 0.7, 7.7, 1.0 / 3}, hole = whole(random, 0, 2) * 0.2;
+  const bool offset = whole(random, 0, 3) == 0;
+  const HeightFieldSettings settings{.cell_x = cell[whole(random, 0, 4)],
+                                     .cell_y = cell[whole(random, 0, 4)],
+                                     .scale = offset ? 0.1 : 1.0,
+                                     .offset = offset ? 1000.0 : 0.0,
+                                     .nodata = -1,
+                                     .surface = whole(random, 0, 1) ? Surface::bilinear : Surface::triangles,
+                                     .wrap = wraps ? Wrap::periodic : Wrap::none,
+                                     .solid = whole(random, 0, 3) == 0};
+  std::vector<std::int16_t> samples(static_cast<std::size_t>(cols * rows));
+  for (std::int16_t& sample : samples)
+    sample = static_cast<std::int16_t>(uniform(random, 0, 1) < hole ? -1 : whole(random, 0, most));
+  if (whole(random, 0, 1)) return HeightField::own(samples, cols, rows, settings);
+  return HeightField::own(std::vector<float>(samples.begin(), samples.end()), cols, rows, settings);
+}
+
+// Rays through a node of the field or past it by rounding, steep, along lines, level, or from anywhere. Without offset
+// and relief, some have heights below the least normal number.
+Ray ray_at_node(const HeightField& field, Random& random) {
+  const HeightFieldSettings& to = field.settings();
+  const int col = whole(random, 0, field.cols() - 1), row = whole(random, 0, field.rows() - 1);
+  const auto beside = [&] { return whole(random, 0, 2) ? 0.0 : whole(random, -2, 2) * 0x1p-53 * field.cols(); };
+  const dvec3 node((col + beside()) * to.cell_x, (field.rows() - 1 - row + beside()) * to.cell_y,
+                   whole(random, 0, 1) ? field.max_height() : uniform(random, field.min_height(), field.max_height()));
+  static const std::vector<double> all = leans();
+  const auto lean = [&] { return all[static_cast<std::size_t>(whole(random, 0, static_cast<int>(all.size()) - 1))]; };
+  Ray ray{.origin = {}, .direction = {lean() * to.cell_x, lean() * to.cell_y, whole(random, 0, 4) ? -1 : 1}};
+  double back = uniform(random, 0, 20);
+  switch (whole(random, 0, 3)) {
+    case 0:  // along a line, level or sinking
+      ray.direction[whole(random, 0, 1)] = whole(random, 0, 1) ? 1 : -1;
+      ray.direction.z = whole(random, 0, 1) ? lean() : -uniform(random, 0, 1);
+      break;
+    case 1:
+      ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -2, 0.5)};
+      break;
+    case 2:
+      if (field.min_height() != 0 || field.max_height() != 0) break;
+      ray = {{node.x, node.y, whole(random, 0, 20) * 5e-324},
+             {uniform(random, -1, 1), uniform(random, -1, 1), -whole(random, 0, 3) * 5e-324}};
+      if (whole(random, 0, 1)) ray.direction[whole(random, 0, 1)] = lean();
+      ray.origin -= dvec3(ray.direction.x, ray.direction.y, 0) * uniform(random, 0, 10);
+      return ray;
+    default:
+      break;
+  }
+  if (whole(random, 0, 3) == 0) back = std::round(back);
+  ray.origin = node - back * ray.direction;
+  return ray;
+}
+
+// Where the range ends changes no hit: it counts at its end, and none comes before it, in every query.
+void expect_same_hit_for_any_range(const HeightTarget& target, Ray ray, double longest) {
+  SCOPED_TRACE(testing::Message() << "from " << ray.origin.x << ", " << ray.origin.y << ", " << ray.origin.z
+                                  << " along " << ray.direction.x << ", " << ray.direction.y << ", " << ray.direction.z
+                                  << " over cells of " << target.field->settings().cell_x);
+  ray.t_max = longest;
+  for (const auto march : {+[](const HeightTarget&on, const Ray&of) { return march_max_mip(on, of); },
+                           +[](const HeightTarget&on, const Ray&of) { return march_exhaustive(on, of); }}) {
+    Ray cut = ray;
+    const Hit hit = march(target, ray);
+    if (!hit) continue;
+    ASSERT_TRUE(std::isfinite(hit.t) && std::isfinite(hit.height));
+    for (const double t_max : {hit.t, std::nextafter(hit.t, longest), hit.t + std::abs(hit.t), hit.t + 1}) {
+      cut.t_max = std::min(t_max, longest);
+      ASSERT_EQ(march(target, cut), hit) << t_max;
+    }
+    cut.t_max = std::nextafter(hit.t, -1e300);
+    if (cut.t_max >= cut.t_min) ASSERT_FALSE(march(target, cut)) << hit.t;
+  }
+  const Hit hit = march_max_mip(target, ray);
+  if (!hit) return;
+  ray.t_max = hit.t;
+  Hit batch;
+  std::uint8_t blocked = 0;
+  closest_hits(target, {&ray, 1}, {&batch, 1});
+  occluded(target, {&ray, 1}, {&blocked, 1});
+  ASSERT_EQ(batch, hit);
+  ASSERT_TRUE(blocked && occluded_max_mip(target, ray));
+  ray.t_max = std::nextafter(hit.t, -1e300);
+  if (ray.t_max >= ray.t_min) ASSERT_FALSE(occluded_max_mip(target, ray));
+}
+
+TEST(SteepRims, HitTheSamePlaceWhereverTheRangeEnds) {
+  Random random(14);
+  for (int i = 0; i < cases(3000, 600, 60); ++i) {
+    const bool wraps = i % 4 == 0;
+    const HeightField field = field_of_any_kind(random, wraps);
+    if (field.all_nodata()) continue;
+    const MaxPyramid pyramid(field);
+    const double seams[] = {0, 0x1p-30, kSeamOfScenes};
+    const HeightTarget target{&field, &pyramid, 0, wraps ? 0 : seams[i % 3]};
+    for (int j = 0; j < 100; ++j) {
+      const Ray ray = ray_at_node(field, random);
+      expect_same_hit_for_any_range(target, ray, wraps ? 40 : std::numeric_limits<double>::infinity());
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
 // Rays over a hole come to its rim after 10^307 units of t, far above or below all ground.
 TEST(SteepRims, MissWhatOverflows) {
   constexpr int kSide = 24;
