@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/source/procedural_dem.h"
+#include "scarp/source/raster/procedural_dem.h"
 #ifdef SCARP_BENCH_GDAL
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/read_raster.h"
+#include "scarp/source/raster/read_raster.h"
 #endif
 
 namespace scarp::bench {

@@ -18,7 +18,7 @@
 #include "scarp/base/parallel.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/procedural_dem.h"
+#include "scarp/source/raster/procedural_dem.h"
 #ifdef SCARP_BENCH_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"
 #include "scarp/scene/scene_vk.h"

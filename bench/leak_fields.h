@@ -13,7 +13,7 @@
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/field/height_field.h"
 #include "scarp/march/height/height_target.h"
-#include "scarp/source/procedural_dem.h"
+#include "scarp/source/raster/procedural_dem.h"
 
 namespace scarp::bench {
 

@@ -19,8 +19,8 @@
 #include "scarp/base/error.h"
 #include "scarp/output/raster_map.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/procedural_dem.h"
-#include "scarp/source/read_raster.h"
+#include "scarp/source/raster/procedural_dem.h"
+#include "scarp/source/raster/read_raster.h"
 
 namespace scarp::bench {
 namespace {

@@ -30,7 +30,7 @@
 #include "scarp/analysis/visible_lines.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/source/procedural_dem.h"
+#include "scarp/source/raster/procedural_dem.h"
 
 namespace scarp::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include "scarp/scarp.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/read_raster.h"
+#include "scarp/source/raster/read_raster.h"
 
 namespace scarp {
 

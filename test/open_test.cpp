@@ -10,7 +10,7 @@
 #include "base/refusal.h"
 #include "scarp/scarp.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/raster_options.h"
+#include "scarp/source/raster/raster_options.h"
 
 namespace scarp {
 namespace {

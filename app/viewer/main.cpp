@@ -7,7 +7,7 @@
 
 #include "app/cli/command_line.h"
 #include "app/cli/commands.h"
-#include "app/cli/view_options.h"
+#include "app/cli/options/view_options.h"
 #include "app/viewer/opening.h"
 #include "app/viewer/viewer.h"
 #include "scarp/base/parallel.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/cli/commands.h"
-#include "app/cli/kept_inputs.h"
+#include "app/cli/options/kept_inputs.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 

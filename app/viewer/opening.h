@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/view_options.h"
+#include "app/cli/options/view_options.h"
 
 namespace scarp::viewer {
 

@@ -11,7 +11,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/scene/voxel_entry.h"
-#include "scarp/source/coordinates.h"
+#include "scarp/source/raster/coordinates.h"
 
 namespace scarp::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/places.h"
+#include "app/cli/options/places.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/scene/scene.h"
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "app/cli/device_option.h"
+#include "app/cli/options/device_option.h"
 #include "app/viewer/film_size.h"
 #include "scarp/base/error.h"
 #include "scarp/march/function/function_table.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/render_stage.h"
+#include "app/cli/picture/render_stage.h"
 #include "app/viewer/controls.h"
 #include "app/viewer/opening.h"
 #include "app/viewer/picture_worker.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/cli/mesh_options.h"
+#include "app/cli/options/mesh_options.h"
 #include "app/viewer/film_size.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/cli/places.h"
+#include "app/cli/options/places.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/opening.h"
 #include "scarp/render/frame/film.h"

@@ -20,7 +20,7 @@ struct LocalSun {
   UtcTime time{};
   bool refraction = false;
   /// Sets x and y to longitude and latitude in degrees (WGS 84) of the nodes (first_col + i, row), from several threads
-  /// at once (NodePlaces, scarp/source/node_places.h). Fields of one column or row need those beside it, too.
+  /// at once (NodePlaces, scarp/source/raster/node_places.h). Fields of one column or row need those beside it, too.
   std::function<void(int row, int first_col, std::span<dvec3> places)> places{};
 };
 

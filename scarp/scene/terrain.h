@@ -23,7 +23,7 @@
 namespace scarp {
 
 struct FieldOptions;   // scarp/scene/file/from_raster.h
-struct RasterOptions;  // scarp/source/raster_options.h
+struct RasterOptions;  // scarp/source/raster/raster_options.h
 
 /// A height field with its pyramid. Copies are cheap and share their state, edits included. Thread-safe for queries,
 /// but not during set_samples() and samples_changed(); to edit while other threads query, use LiveScene
@@ -52,7 +52,7 @@ class Terrain {
   /// georeference. Throws Error naming the file if it is missing, damaged, rotated or not a raster. In scarp::scarp,
   /// built with GDAL.
   static Terrain open(const std::string& path);
-  /// As above, with options: `raster` (scarp/source/raster_options.h) for band, window, nodata, ...; `field`
+  /// As above, with options: `raster` (scarp/source/raster/raster_options.h) for band, window, nodata, ...; `field`
   /// (scarp/scene/file/from_raster.h) for exaggeration, surface, wrap, ...
   static Terrain open(const std::string& path, const RasterOptions& raster, const FieldOptions& field);
   /// Takes a height field and builds its pyramid. georeference() returns `georeference`.

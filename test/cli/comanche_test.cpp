@@ -17,7 +17,7 @@
 #include "scarp/output/png.h"
 #ifdef SCARP_OPENEXR
 #include "scarp/output/exr.h"
-#include "scarp/source/exr_raster.h"
+#include "scarp/source/raster/exr_raster.h"
 #endif
 
 namespace scarp {

@@ -20,7 +20,7 @@
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/height/height_table.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 namespace scarp {
 namespace {

@@ -9,7 +9,7 @@
 #include "cli/spiteful_checks.h"
 #include "cli/spiteful_files.h"
 #include "scarp/base/error.h"
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 namespace scarp {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "cli/program.h"
 #include "output/read_png.h"
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 namespace scarp {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as a binvox file: voxels that survive a round trip, or an Error of one line.
-#include "scarp/source/binvox.h"
+#include "scarp/source/voxel/binvox.h"
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as the form of a volume, as the header of one, and as its samples: parsed, or rejected with an Error of one
 // line; nothing is read out of bounds.
-#include "scarp/source/dense_volume.h"
+#include "scarp/source/voxel/dense_volume.h"
 
 #include <string>
 #include <string_view>

@@ -7,7 +7,7 @@
 
 #include "fuzz/fuzz.h"
 #include "scarp/base/error.h"
-#include "scarp/source/pose_table.h"
+#include "scarp/source/table/pose_table.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using scarp::fuzz::require;

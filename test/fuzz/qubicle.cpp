@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as a Qubicle file: voxels inside their parts, or an Error of one line.
-#include "scarp/source/qubicle.h"
+#include "scarp/source/voxel/qubicle.h"
 
 #include <string_view>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any text as --raw: accepted values are in range and survive a round trip, the rest is rejected.
-#include "scarp/source/raw_format.h"
+#include "scarp/source/raster/raw_format.h"
 
 #include <cstdlib>
 

@@ -6,7 +6,7 @@
 
 #include "fuzz/fuzz.h"
 #include "scarp/base/error.h"
-#include "scarp/source/ray_table.h"
+#include "scarp/source/table/ray_table.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
-#include "scarp/source/ray_table.h"
+#include "scarp/source/table/ray_table.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

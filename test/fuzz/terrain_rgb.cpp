@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as pixels of three and of four bands: every sample is a whole number of 24 bits, or NaN where alpha is 0.
-#include "scarp/source/terrain_rgb.h"
+#include "scarp/source/raster/terrain_rgb.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as a .vox file: a document that survives a round trip, or an Error of one line.
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 #include <string>
 #include <string_view>
 
 #include "fuzz/fuzz.h"
 #include "scarp/base/error.h"
-#include "scarp/source/vox_animation.h"
-#include "scarp/source/vox_scene.h"
+#include "scarp/source/voxel/vox_animation.h"
+#include "scarp/source/voxel/vox_scene.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include "fuzz/fuzz.h"
 #include "scarp/base/error.h"
-#include "scarp/source/voxel_parts.h"
+#include "scarp/source/voxel/voxel_parts.h"
 
 namespace scarp::fuzz {
 

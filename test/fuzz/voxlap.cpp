@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as the formats of Voxlap: voxels inside their parts, or an Error of one line.
-#include "scarp/source/voxlap.h"
+#include "scarp/source/voxel/voxlap.h"
 
 #include <string_view>
 

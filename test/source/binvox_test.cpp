@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // binvox files and volumes of numbers.
-#include "scarp/source/binvox.h"
+#include "scarp/source/voxel/binvox.h"
 
 #include <gtest/gtest.h>
 
 #include "base/refusal.h"
-#include "scarp/source/dense_volume.h"
+#include "scarp/source/voxel/dense_volume.h"
 
 namespace scarp {
 namespace {

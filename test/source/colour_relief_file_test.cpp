@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/colour_relief_file.h"
+#include "scarp/source/table/colour_relief_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

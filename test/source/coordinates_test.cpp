@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/coordinates.h"
+#include "scarp/source/raster/coordinates.h"
 
 #include <cmath>
 #include <numbers>

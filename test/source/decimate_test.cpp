@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/decimate.h"
+#include "scarp/source/raster/decimate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/exr_raster.h"
+#include "scarp/source/raster/exr_raster.h"
 
 #include <ImfArray.h>
 #include <ImfChannelList.h>

@@ -17,7 +17,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/gdal_errors.h"
-#include "scarp/source/read_raster.h"
+#include "scarp/source/raster/read_raster.h"
 
 namespace scarp::test {
 

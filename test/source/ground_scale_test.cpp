@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ground lengths against geodesics (Karney's, in PROJ's geodesic.h) and PROJ's own point scales.
-#include "scarp/source/ground_scale.h"
+#include "scarp/source/raster/ground_scale.h"
 
 #include <geodesic.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/mesh_file.h"
+#include "scarp/source/mesh/mesh_file.h"
 
 #include <gtest/gtest.h>
 

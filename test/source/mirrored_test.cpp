@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/mirrored.h"
+#include "scarp/source/raster/mirrored.h"
 
 #include <gtest/gtest.h>
 

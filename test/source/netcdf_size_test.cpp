@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/netcdf_size.h"
+#include "scarp/source/raster/netcdf_size.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

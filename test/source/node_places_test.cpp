@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/node_places.h"
+#include "scarp/source/raster/node_places.h"
 
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/npy.h"
+#include "scarp/source/raster/npy.h"
 
 #include <cmath>
 #include <cstdint>

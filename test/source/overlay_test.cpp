@@ -2,7 +2,7 @@
 // Images over a raster.
 #include <cmath>
 
-#include "scarp/source/colour_image.h"
+#include "scarp/source/raster/colour_image.h"
 #include "source/files.h"
 
 namespace scarp {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/pose_table.h"
+#include "scarp/source/table/pose_table.h"
 
 #include <gtest/gtest.h>
 

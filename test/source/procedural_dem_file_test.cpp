@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/procedural_dem_file.h"
+#include "scarp/source/raster/procedural_dem_file.h"
 
 #include "full_disk.h"
 #include "source/files.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/procedural_dem.h"
+#include "scarp/source/raster/procedural_dem.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/ramp_file.h"
+#include "scarp/source/table/ramp_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

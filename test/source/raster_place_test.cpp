@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "scarp/source/map_extent.h"
+#include "scarp/source/raster/map_extent.h"
 #include "source/files.h"
 
 namespace scarp {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/raw_format.h"
+#include "scarp/source/raster/raw_format.h"
 
 #include <gtest/gtest.h>
 

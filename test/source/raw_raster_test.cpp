@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/raw_raster.h"
+#include "scarp/source/raster/raw_raster.h"
 
 #include <cmath>
 #include <limits>

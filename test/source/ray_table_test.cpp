@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/ray_table.h"
+#include "scarp/source/table/ray_table.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/terrain_rgb.h"
+#include "scarp/source/raster/terrain_rgb.h"
 
 #include <gtest/gtest.h>
 

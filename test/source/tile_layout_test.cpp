@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/tile_layout.h"
+#include "scarp/source/raster/tile_layout.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include "base/refusal.h"
 #include "scarp/base/error.h"
-#include "scarp/source/vox_animation.h"
-#include "scarp/source/vox_material.h"
-#include "scarp/source/vox_scene.h"
+#include "scarp/source/voxel/vox_animation.h"
+#include "scarp/source/voxel/vox_material.h"
+#include "scarp/source/voxel/vox_scene.h"
 
 namespace scarp {
 namespace {

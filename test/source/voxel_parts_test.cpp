@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Qubicle and Voxlap files, byte by byte from the descriptions of their formats.
-#include "scarp/source/voxel_parts.h"
+#include "scarp/source/voxel/voxel_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "base/refusal.h"
-#include "scarp/source/qubicle.h"
-#include "scarp/source/voxlap.h"
+#include "scarp/source/voxel/qubicle.h"
+#include "scarp/source/voxel/voxlap.h"
 
 namespace scarp {
 namespace {

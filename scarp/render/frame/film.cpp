@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scarp/render/surface/colour.glsl.h"
+#include "scarp/render/light/colour.glsl.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp {

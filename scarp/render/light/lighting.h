@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "scarp/render/frame/film.h"
 #include "scarp/render/light/light.h"
 #include "scarp/render/light/light_settings.h"
 #include "scarp/render/light/sample_pattern.h"

@@ -4,7 +4,7 @@
 #ifndef SCARP_RENDER_SKY_GLSL_H
 #define SCARP_RENDER_SKY_GLSL_H
 
-#include "scarp/render/surface/colour.glsl.h"
+#include "scarp/render/light/colour.glsl.h"
 
 SCARP_GLSL_BEGIN
 

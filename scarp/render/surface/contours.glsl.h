@@ -3,7 +3,7 @@
 #ifndef SCARP_RENDER_CONTOURS_GLSL_H
 #define SCARP_RENDER_CONTOURS_GLSL_H
 
-#include "scarp/render/surface/colour.glsl.h"
+#include "scarp/render/light/colour.glsl.h"
 
 SCARP_GLSL_BEGIN
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "scarp/base/error.h"
-#include "scarp/render/surface/colour.glsl.h"
+#include "scarp/render/light/colour.glsl.h"
 #include "scarp/render/surface/ramp_tables.h"
 
 namespace scarp {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scarp/base/vec.h"
-#include "scarp/source/ramp_file.h"
+#include "scarp/source/table/ramp_file.h"
 
 namespace scarp {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/scene/placed_voxels.h"
-#include "scarp/source/voxel_parts.h"
+#include "scarp/source/voxel/voxel_parts.h"
 
 namespace scarp {
 

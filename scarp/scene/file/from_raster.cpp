@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "scarp/base/error.h"
-#include "scarp/source/mirrored.h"
+#include "scarp/source/raster/mirrored.h"
 
 namespace scarp {
 

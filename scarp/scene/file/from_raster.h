@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/field/height_field.h"
-#include "scarp/source/raster.h"
+#include "scarp/source/raster/raster.h"
 
 namespace scarp {
 

@@ -4,7 +4,7 @@
 
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/placed_voxels.h"
-#include "scarp/source/vdb_file.h"
+#include "scarp/source/voxel/vdb_file.h"
 
 namespace scarp {
 

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "scarp/scene/placed_voxels.h"
-#include "scarp/source/binvox.h"
-#include "scarp/source/dense_volume.h"
+#include "scarp/source/voxel/binvox.h"
+#include "scarp/source/voxel/dense_volume.h"
 
 namespace scarp {
 

@@ -15,7 +15,7 @@
 #include "scarp/scene/file/voxel_memory.h"
 #include "scarp/scene/lattice_place.h"
 #include "scarp/scene/ordered_pattern.h"
-#include "scarp/source/vox_material.h"
+#include "scarp/source/voxel/vox_material.h"
 
 namespace scarp {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/scene/placed_voxels.h"
-#include "scarp/source/vox_scene.h"
+#include "scarp/source/voxel/vox_scene.h"
 
 namespace scarp {
 

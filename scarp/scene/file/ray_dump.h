@@ -25,7 +25,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/height_field.h"
-#include "scarp/source/procedural_dem.h"
+#include "scarp/source/raster/procedural_dem.h"
 
 namespace scarp {
 

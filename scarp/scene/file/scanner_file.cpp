@@ -14,7 +14,7 @@
 #include "scarp/base/error.h"
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_schema.h"
-#include "scarp/source/pose_table.h"
+#include "scarp/source/table/pose_table.h"
 
 namespace scarp {
 namespace {

@@ -14,9 +14,9 @@
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
 #include "scarp/scene/file/shape_json.h"
-#include "scarp/source/mesh_file.h"
-#include "scarp/source/procedural_dem.h"
-#include "scarp/source/read_raster.h"
+#include "scarp/source/mesh/mesh_file.h"
+#include "scarp/source/raster/procedural_dem.h"
+#include "scarp/source/raster/read_raster.h"
 #ifdef SCARP_EMBREE
 #include "scarp/scene/mesh/scene_mesh.h"
 #endif

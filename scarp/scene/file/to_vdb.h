@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/field/voxel_grid.h"
-#include "scarp/source/vdb_file.h"
+#include "scarp/source/voxel/vdb_file.h"
 
 namespace scarp {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/field/voxel_grid.h"
-#include "scarp/source/vox_file.h"
+#include "scarp/source/voxel/vox_file.h"
 
 namespace scarp {
 

@@ -7,7 +7,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/scene/box_tree.h"
-#include "scarp/source/mesh_file.h"
+#include "scarp/source/mesh/mesh_file.h"
 
 namespace scarp {
 

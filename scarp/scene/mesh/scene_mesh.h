@@ -18,7 +18,7 @@
 
 #include "scarp/scene/placement.h"
 #include "scarp/scene/scene_field.h"
-#include "scarp/source/mesh_file.h"
+#include "scarp/source/mesh/mesh_file.h"
 
 namespace scarp {
 

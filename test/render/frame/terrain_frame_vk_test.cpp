@@ -27,7 +27,7 @@
 #include "scarp/render/frame/picture.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
 #include "scarp/scene/scene_vk.h"
-#include "scarp/source/ramp_file.h"
+#include "scarp/source/table/ramp_file.h"
 #include "test/vk/spirv_layout.h"
 #include "vk/device_under_test.h"
 

@@ -11,8 +11,8 @@
 
 #include "scarp/base/error.h"
 #include "scarp/render/frame/film.h"
+#include "scarp/render/light/colour.glsl.h"
 #include "scarp/render/light/light.h"
-#include "scarp/render/surface/colour.glsl.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/ramp_tables.h"
 

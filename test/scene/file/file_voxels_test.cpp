@@ -11,8 +11,8 @@
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/scene.h"
 #include "scarp/scene/voxel_entry.h"
-#include "scarp/source/qubicle.h"
-#include "scarp/source/voxlap.h"
+#include "scarp/source/voxel/qubicle.h"
+#include "scarp/source/voxel/voxlap.h"
 
 namespace scarp {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "scarp/base/error.h"
-#include "scarp/source/binvox.h"
+#include "scarp/source/voxel/binvox.h"
 
 namespace scarp {
 namespace {

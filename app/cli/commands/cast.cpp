@@ -1,0 +1,499 @@
+// SPDX-License-Identifier: MIT
+// `scarp cast`: intersects the rays of a table with any input of `scarp render`.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/commands/scan.h"
+#include "app/cli/options/device_option.h"
+#include "app/cli/options/field_options.h"
+#include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/march_options.h"
+#include "app/cli/options/open_input.h"
+#include "app/cli/options/places.h"
+#include "app/cli/options/raster_options.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/progress.h"
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/queries.h"
+#include "scarp/output/hit_table.h"
+#include "scarp/scene/scene.h"
+#include "scarp/scene/voxel_entry.h"
+#include "scarp/source/raster/coordinates.h"
+#include "scarp/source/table/ray_table.h"
+
+namespace scarp::cli {
+namespace {
+
+// Rays are traced and written in pieces: a table of any length needs memory for its rays, not for its hits.
+constexpr std::size_t kPiece = 1 << 16;
+
+constexpr std::string_view kRasterCrs = "--raster-crs";
+constexpr std::string_view kFirstHit = "marches of other fields return the first hit only";
+
+// Below the options in the help.
+constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
+  x,y,z                 origin
+  dx,dy,dz              direction; its length is the unit of t
+  or tx,ty,tz           target instead of a direction: t is 1 there, and the ray ends there
+  t_min,t_max           optional range of t (0 to infinity; 0 to 1 with a target)
+  start_col,start_row   optional cell of the terrain on whose surface the ray starts
+  others                copied to the hits
+Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with
+fields of these names.
+
+Coordinates (--crs), also of --mesh-at; z is always in metres:
+  local    metres east and north of the south-west sample, or of the origin of the scene
+  map      units of the raster's CRS, for dx,dy as well; dz in metres
+  lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
+
+Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row, position u,v in
+the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For inputs other than terrain also
+object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.
+
+Scanner (--scanner), JSON: elevations, azimuths, rate, and a pose or a path of poses; optional:
+turns, range, noise, mounting, time_offsets, azimuth_offsets (doc/user/scanners.md). Points: time,
+column, channel, azimuth, elevation, range, x,y,z, object. LAS is version 1.4, point format 6.)";
+
+struct CastOptions : InputOptions {
+  std::string rays, output, coordinates;
+  ScanOptions scan;
+  bool any = false, all = false;
+  int threads = 0;
+  std::vector<std::string> typed;  // the values of the options
+};
+
+using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
+
+// The march's function for all hits, null if they are not requested.
+AllHits all_hits_of(const CastOptions& options) {
+  if (!options.all) return nullptr;
+  if (!options.device.empty()) {
+    throw Error(fmt::format("--all --device {}: devices return only the first hit of a ray (leave one of the two out)",
+                            options.device));
+  }
+  const std::string_view march = march_of(options, InputKind::terrain);
+  if (march == "max-mip") return all_hits_max_mip;
+  if (march == "exhaustive") return all_hits_exhaustive;
+  throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march));
+}
+
+// Raster readers mention --crs, which selects the coordinates of the rays here.
+std::string in_words_of_cast(std::string text) {
+  constexpr std::string_view kTheirs = "--crs";
+  for (std::size_t at = 0; (at = text.find(kTheirs, at)) != std::string::npos; at += kRasterCrs.size()) {
+    text.replace(at, kTheirs.size(), kRasterCrs);
+  }
+  return text;
+}
+
+OpenedInput open(const CastOptions& options, InputKind kind) {
+  try {
+    return open_input(kind, options);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(kind == InputKind::terrain ? in_words_of_cast(error.what()) : error.what());
+  }
+}
+
+// Only rasters have a georeference. z of rays and hits is that of the field, exaggerated in all coordinates.
+Places places_of(const CastOptions& options, const OpenedInput& input) {
+  const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
+                                  : input.georeference.present ? Coordinates::map
+                                                               : Coordinates::local;
+  return {{input.path, input.georeference, input.cols, input.rows}, coordinates, 1};
+}
+
+// Returns how far in metres a ray from the surface starts above or below it. Throws Error, without file and line,
+// unless it starts over its cell or one of the cells around it: a rounded hit on a border is over one of these.
+double off_surface(const Ray& ray, const HeightField& field) {
+  const GridRay grid = field.grid_from_world(ray);
+  const dvec3 at = grid.origin + grid.direction * ray.t_min;
+  const ivec3 cell(ray.start_cell.col, ray.start_cell.row, 0), count(field.cell_cols(), field.cell_rows(), 0);
+  double place[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    place[axis] = at[axis] - cell[axis];
+    if (field.wraps()) place[axis] -= count[axis] * std::round((place[axis] - 0.5) / count[axis]);
+    if (!(place[axis] >= -1 && place[axis] <= 2)) {
+      throw Error(
+          fmt::format("it starts at column {:.10g}, row {:.10g} of the samples, which is not in the cell of start_col "
+                      "{} and start_row {}, nor next to it",
+                      at.x, at.y, cell.x, cell.y));
+    }
+  }
+  const CellHeights heights = *field.cell_heights(ray.start_cell);
+  const double u = std::clamp(place[0], 0.0, 1.0), v = std::clamp(place[1], 0.0, 1.0);
+  return std::abs(ray.at(ray.t_min).z -
+                  field.height_from_sample(height_in_cell(field.settings().surface, heights, u, v)));
+}
+
+// Checks all rays. Those that start on a surface start on the only terrain of the scene; returns a note if one starts
+// farther above or below it than the side of a cell.
+std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
+  constexpr std::string_view kPrefix = "ray: ";
+  double farthest = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays[i].start == RayStart::on_surface && !scene.terrain()) {
+      throw Error(
+          fmt::format("{}: start_col and start_row name a cell, and the scene is not one terrain (leave them empty)",
+                      table.where(i)));
+    }
+    rays[i].start_object = scene.terrain_object();
+    try {
+      validate(rays[i], scene);
+      if (rays[i].start == RayStart::on_surface) farthest = std::max(farthest, off_surface(rays[i], *scene.terrain()));
+    } catch (const Error& error) {
+      // Here the ray has a name.
+      std::string_view text = error.what();
+      if (text.starts_with(kPrefix)) text.remove_prefix(kPrefix.size());
+      throw Error(fmt::format("{}: {}", table.where(i), text));
+    }
+  }
+  if (farthest == 0) return {};
+  const HeightFieldSettings& cells = scene.terrain()->settings();
+  if (farthest <= std::min(cells.cell_x, cells.cell_y)) return {};
+  return fmt::format(
+      "rays with start_col and start_row start on the surface, but z is up to {:.3g} m away from it; it counts as the "
+      "height of the surface there",
+      farthest);
+}
+
+// A note with the bounds of the scene, for rays that hit nothing: the table may be in other coordinates. Empty if a ray
+// starts above the scene, or the scene is unbounded.
+std::string place_of(const Scene& scene, std::span<const Ray> rays, const Places& places) {
+  const WorldBox box = ground_box(scene);
+  const auto over = [&](const Ray& ray) {
+    return ray.origin.x >= box.low.x && ray.origin.x <= box.high.x && ray.origin.y >= box.low.y &&
+           ray.origin.y <= box.high.y;
+  };
+  const std::string bounds = places.bounds_text(scene);
+  if (bounds.empty() || std::any_of(rays.begin(), rays.end(), over)) return {};
+  const std::string place = fmt::format("in {} coordinates {}", name_of(places.frame().coordinates()), bounds);
+  return scene.only_heights()
+             ? fmt::format("nothing was hit, and no ray begins over the raster: {}; are the rays in these (--crs)?",
+                           place)
+             : fmt::format("nothing was hit, and no ray begins over the scene: {}", place);
+}
+
+// Traces rays and writes their hits, piece by piece.
+class Caster {
+ public:
+  // `all` finds all hits and needs a scene of one height field; null: nearest hits only. `materials`: number of
+  // materials of the scene file.
+  Caster(AllHits all, const Scene& scene, std::size_t materials, const CoordinateFrame& frame, const RayTable& table,
+         HitTable& out)
+      : scene_(scene), frame_(frame), table_(table), out_(out), all_(all), materials_(materials) {
+    if (all_ == all_hits_max_mip) pyramid_.emplace(*scene.only_heights());
+  }
+
+  void blocked(std::size_t first, std::span<const Ray> rays) {
+    std::vector<std::uint8_t> answers(rays.size());
+    timed([&] { scene_.occluded(rays, answers); });
+    hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
+    count_below(rays, answers);
+    out_.add(static_cast<std::int64_t>(first), answers);
+  }
+
+  void hits(std::size_t first, std::span<const Ray> rays) {
+    std::vector<std::vector<Hit>> found(rays.size());
+    if (all_) {
+      constexpr std::int64_t kGrain = 256;
+      const HeightTarget target{scene_.only_heights(), pyramid_ ? &*pyramid_ : nullptr};
+      timed([&] {
+        parallel_for(static_cast<std::int64_t>(rays.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+            const HitStatus status = all_(target, rays[i], found[i]);
+            if (found[i].empty()) found[i].emplace_back().status = status;
+          }
+        });
+      });
+    } else {
+      std::vector<Hit> closest(rays.size());
+      timed([&] { scene_.closest_hits(rays, closest); });
+      for (std::size_t i = 0; i < rays.size(); ++i) found[i] = {closest[i]};
+    }
+    write(first, rays, found);
+  }
+
+  std::size_t hits() const { return hits_; }
+  /// Returns the number of rays that start below ground and never emerge; hits() also counts those that enter below
+  /// ground through the border.
+  std::size_t below() const { return below_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  template <class Work>
+  void timed(const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  // Counts rays that are not blocked because they are below ground. Only rays that start below the height of the ground
+  // are traced again: nearly all start above.
+  void count_below(std::span<const Ray> rays, std::span<const std::uint8_t> blocked) {
+    std::vector<Ray> low;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (blocked[i]) continue;
+      const dvec3 begin = rays[i].at(rays[i].t_min);
+      const auto ground = scene_.height(begin.x, begin.y);
+      if (ground && begin.z < *ground) low.push_back(rays[i]);
+    }
+    if (low.empty()) return;
+    std::vector<Hit> closest(low.size());
+    scene_.closest_hits(low, closest);
+    below_ += static_cast<std::size_t>(
+        std::count_if(closest.begin(), closest.end(), [](const Hit& hit) { return hit.status == HitStatus::below; }));
+  }
+
+  void write(std::size_t first, std::span<const Ray> rays, const std::vector<std::vector<Hit>>& found) {
+    std::vector<HitRow> rows;
+    std::vector<dvec3> positions;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      for (const Hit& hit : found[i]) {
+        HitRow& row = rows.emplace_back();
+        row.ray = static_cast<std::int64_t>(first + i);
+        row.hit = hit;
+        if (hit.status == HitStatus::below) ++below_;
+        if (!hit) continue;
+        ++hits_;
+        const SceneSurface surface = scene_.surface(rays[i], hit);
+        row.normal = frame_.normal_from_local(surface.normal);
+        row.kind = *find_hit_kind(scene_.field_of(hit.object).kind());
+        row.hit.voxel = file_voxel(scene_, hit).value_or(hit.voxel);
+        if (surface.material < materials_) row.material = surface.material;
+        dvec3& at = positions.emplace_back(rays[i].at(hit.t));
+        if (scene_.only_field() && row.kind != HitKind::voxels) at.z = hit.height;
+      }
+    }
+    const auto failed = frame_.from_local(positions);
+    std::size_t next = 0;
+    for (HitRow& row : rows) {
+      if (!row.hit) continue;
+      if (failed == next) {
+        throw Error(fmt::format("{}: its hit is at a place that has no longitude and latitude; use --crs map",
+                                table_.where(static_cast<std::size_t>(row.ray))));
+      }
+      row.position = positions[next++];
+    }
+    out_.add(rows);
+  }
+
+  const Scene& scene_;
+  const CoordinateFrame& frame_;
+  const RayTable& table_;
+  HitTable& out_;
+  AllHits all_;
+  std::size_t materials_;
+  std::optional<MaxPyramid> pyramid_;  // for all hits
+  std::size_t hits_ = 0, below_ = 0;
+  double seconds_ = 0;
+};
+
+// A note about the results; empty if they need none.
+std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays, const Scene& scene,
+                       const Places& places) {
+  if (rays.empty()) return "the table of rays has a header alone: 0 rays, and no rows in the output";
+  if (any && caster.below() > 0) {
+    return fmt::format(
+        "{} of {} rays start below ground and never emerge; they are reported as not blocked (without --any: as "
+        "'below'); check their heights",
+        caster.below(), rays.size());
+  }
+  if (caster.hits() > 0) return {};
+  std::size_t below = caster.below();
+  if (any) {
+    // Rays from beside the ground are below it where they enter through its border.
+    std::vector<Hit> hits(std::min(rays.size(), kPiece));
+    scene.closest_hits(rays.first(hits.size()), hits);
+    below = static_cast<std::size_t>(
+        std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.status == HitStatus::below; }));
+  }
+  if (below == 0) return place_of(scene, rays, places);
+  return fmt::format(
+      "nothing was hit: {} of {} rays start below ground, or enter it through its border, and never emerge; check "
+      "their "
+      "heights",
+      below, rays.size());
+}
+
+// The input with the mesh of --mesh.
+struct WholeInput {
+  OpenedInput input;  // its scene is in `scene`
+  Places places;
+  Scene scene;
+  std::vector<std::string> notes;
+};
+
+WholeInput open_whole(const CastOptions& options, InputKind kind) {
+  const MeshInput mesh(options.mesh);
+  OpenedInput input = open(options, kind);
+  keep_inputs(options.output, input.files);
+  std::vector<std::string> notes;
+  for (const std::string& note : input.notes) notes.push_back(in_words_of_cast(note));
+  Places places = places_of(options, input);
+  if (kind == InputKind::terrain) {
+    if (const std::string note = no_ground_note(*input.scene.only_heights()); !note.empty()) notes.push_back(note);
+  }
+  stop_if_interrupted();
+  Scene scene = mesh.with_mesh(std::move(input.scene), places);
+  notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());
+  return {std::move(input), std::move(places), std::move(scene), std::move(notes)};
+}
+
+void run_table(const CastOptions& options, InputKind kind, AllHits all) {
+  const RayTable table = read_rays(options.rays);
+  const bool terrain = kind == InputKind::terrain && options.mesh.file.empty();
+  HitTable out(options.output,
+               options.any ? TableKind::blocked
+               : terrain   ? TableKind::hits
+                           : TableKind::scene_hits,
+               table.carried);
+  WholeInput whole = open_whole(options, kind);
+  std::vector<std::string>& notes = whole.notes;
+  const Places& places = whole.places;
+  const CoordinateFrame& frame = places.frame();
+  std::vector<Ray> rays = rays_in_local(table, frame);
+  if (std::string note = check(table, rays, whole.scene); !note.empty()) notes.push_back(std::move(note));
+  stop_if_interrupted();
+
+  const SceneOnDevice there = scene_on_device(options.device, whole.scene);
+  const Scene& scene = there.scene;
+  const std::string& device = there.device;
+  Caster caster(all, scene, whole.input.document ? whole.input.document->materials.size() : 0, frame, table, out);
+  const Progress progress = terminal_progress("cast");
+  for (std::size_t first = 0; first < rays.size(); first += kPiece) {
+    const std::size_t count = std::min(kPiece, rays.size() - first);
+    const std::span<const Ray> piece = std::span(rays).subspan(first, count);
+    if (options.any) {
+      caster.blocked(first, piece);
+    } else {
+      caster.hits(first, piece);
+    }
+    if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
+  }
+  out.commit();
+  // Last: on failure only one line is printed.
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
+    fmt::print(stderr, "note: {}\n", note);
+  if (::isatty(STDERR_FILENO) != 0) {
+    constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
+    fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
+               options.any ? "blocked" : "hits", caster.seconds(),
+               static_cast<double>(rays.size()) / std::max(caster.seconds(), kTick_s) * 1e-6,
+               device.empty() ? "" : ", on " + device);
+  }
+}
+
+void run_scanner(const CastOptions& options, InputKind kind) {
+  check_scan_output(options.scan, options.output);
+  ScannerFile scanner = read_scanner(options.scan.scanner);
+  keep_inputs(options.output, scanner.files);
+  const WholeInput whole = open_whole(options, kind);
+  const SceneOnDevice there = scene_on_device(options.device, whole.scene);
+  run_scan(options.scan, std::move(scanner), {there.scene, whole.places, whole.input.georeference}, options.output,
+           whole.notes, there.device);
+}
+
+void run(CastOptions options, const Command& command) {
+  if (options.output == "-") options.output.clear();
+  if (options.rays.empty() && options.scan.scanner.empty())
+    throw WrongUsage("--rays FILE or --scanner FILE is required (see 'scarp cast --help')");
+  const InputKind kind = kind_of_input(command, options);
+  command.require_effect({kind, {}, march_of(options, kind)});
+  const AllHits all = all_hits_of(options);  // refuses before files are read
+  validate(options.march_settings);
+  if (!options.coordinates.empty()) {
+    try {
+      find_coordinates(options.coordinates);
+    } catch (const Error&) {
+      throw Error(
+          fmt::format("--crs '{}': expected local, map or lonlat, the coordinates of the rays; the CRS of the "
+                      "raster is named with {}",
+                      options.coordinates, kRasterCrs));
+    }
+  }
+  keep_inputs(options.output, options.typed);
+  const ThreadLimit limit(options.threads);
+  // The reader of the table may close the pipe, as `head` does: the program then ends silently, as others do.
+  if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
+  if (options.scan.scanner.empty()) {
+    run_table(options, kind, all);
+  } else {
+    run_scanner(options, kind);
+  }
+}
+
+}  // namespace
+
+void add_cast(Program& program) {
+  Command& command =
+      program.add("cast", "Intersect rays of a table with terrain, voxels, a mesh, a scene or a function");
+  const auto options = std::make_shared<CastOptions>();
+  CastOptions& o = *options;
+  add_raster_inputs(command, o.inputs, kEveryFile, false);
+  command.add(&o.rays, {.names = "--rays",
+                        .value = "FILE",
+                        .help = "table of rays: .csv or .npy",
+                        .files = "csv npy",
+                        .note = "-: CSV from standard input",
+                        .fallback = "none",
+                        .common = true});
+  add_scan_options(command, o.scan);
+  add_output_option(command, o.output,
+                    "table of hits: .csv or .npy; points of a scanner also .ply or .las; -: CSV to standard output",
+                    "csv npy ply las", false);
+  add_coordinates_option(command, o.coordinates,
+                         {.names = "--crs",
+                          .help = "coordinates of rays, scanners, hits and --mesh-at",
+                          .fallback = "map; local for inputs without a georeference",
+                          .common = true});
+  command.add(&o.any, {.names = "--any",
+                       .help = "occlusion only: columns ray,blocked (1, or 0; 0 also for rays that start below ground)",
+                       .common = true,
+                       .excludes = {"--scanner"}});
+  command.add(&o.all, {.names = "--all",
+                       .help = "all hits of each ray in order of t",
+                       .common = true,
+                       .inputs = {kTerrain, kFirstHit, kFirstHit},
+                       .excludes = {"--any", "--mesh", "--scanner"}});
+  add_march_option(command, o.march);
+  add_device_option(command, o.device);
+  add_threads_option(command, o.threads);
+  add_field_options(command, o.field, BeyondBorders::wraps);
+  add_march_options(command, o.march_settings);
+  add_mesh_options(command, o.mesh, "--crs");
+  add_vox_options(command, o.vox);
+  add_vox_rounding_options(command, o.vox_look);
+  add_function_options(command, o.function, {}, o.march, o.march_settings);
+  add_raster_options(command, o.raster, std::string(kRasterCrs));
+  command.footer(kTables);
+  command.example("scarp cast dem.tif --rays rays.csv -o hits.csv");
+  command.example("scarp cast dem.tif --rays rays.npy --crs local --any -o blocked.npy");
+  command.example("scarp cast city.vox --rays rays.csv");
+  command.example("scarp cast dem.tif --scanner lidar.json -o points.las");
+  command.runs([options, &command] {
+    options->typed = command.typed_values();
+    run(*options, command);
+  });
+}
+
+}  // namespace scarp::cli

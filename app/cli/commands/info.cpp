@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// `scarp info`: describes a raster, a voxel model, a mesh, a scene or a terrain function, as Scarp reads it.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/commands/function_info.h"
+#include "app/cli/options/open_input.h"
+#include "app/cli/options/raster_options.h"
+#include "app/cli/options/scene_input.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/progress.h"
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/base/error.h"
+#include "scarp/scene/file/from_raster.h"
+#include "scarp/source/raster/map_extent.h"
+#include "scarp/source/raster/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions : InputOptions {
+  bool json = false;
+};
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+Json json_of(const std::optional<MapBounds>& b) { return b ? Json{b->west, b->south, b->east, b->north} : Json(); }
+
+// Bounds of the samples and of the outer edges, on the map and in degrees.
+Json extent_of(const Georeference& geo, int cols, int rows) {
+  if (!geo.present) return {};
+  const MapExtent extent = map_extent(geo, cols, rows);
+  return {{"samples", json_of(extent.samples)},
+          {"edges", json_of(extent.edges)},
+          {"samples_lonlat", json_of(extent.samples_lonlat)},
+          {"edges_lonlat", json_of(extent.edges_lonlat)}};
+}
+
+// All information in one structure, from which the text and the JSON are generated.
+Json describe(const InfoOptions& options) {
+  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
+  stop_if_interrupted();
+  const Georeference geo = raster.georeference;
+  Json info;
+  info["path"] = raster.path;
+  info["kind"] = name_of(InputKind::terrain);
+  info["cols"] = raster.cols;
+  info["rows"] = raster.rows;
+  info["file_type"] = raster.file_type;
+  info["crs"] = geo.crs_name.empty() ? Json() : Json(geo.crs_name);
+  info["georeferenced"] = geo.present;
+  info["map_from_node"] = geo.map_from_node;
+  info["bounds"] = extent_of(geo, raster.cols, raster.rows);
+  info["cell_size_m"] = {geo.cell_x_m, geo.cell_y_m};
+  info["cell_size_found"] = geo.cell_size_found;
+  info["grid_north_azimuth_deg"] = geo.grid_north_azimuth * kDegrees;
+  info["vertical_unit"] = raster.vertical_unit.empty() ? Json() : Json(raster.vertical_unit);
+  info["scale"] = raster.scale;
+  info["offset"] = raster.offset;
+  info["nodata"] = raster.nodata ? Json(*raster.nodata) : Json();
+  std::vector<std::string> notes = std::move(raster.notes);
+
+  const HeightField field = height_field_from(std::move(raster));
+  stop_if_interrupted();
+  const double samples = static_cast<double>(field.cols()) * field.rows();
+  const double sample_bytes = field.sample_type() == SampleType::float32 ? 4 : 2;
+  info["nodata_count"] = field.nodata_count();
+  info["nodata_share"] = static_cast<double>(field.nodata_count()) / samples;
+  info["min_sample"] = field.min_sample();
+  info["max_sample"] = field.max_sample();
+  info["min_m"] = field.min_height();
+  info["max_m"] = field.max_height();
+  info["width_m"] = field.width();
+  info["depth_m"] = field.depth();
+  info["slope_bound"] = slope_bound(field);
+  info["sample_type"] = name_of(field.sample_type());
+  info["bytes_per_sample"] = sample_bytes + static_cast<double>(MaxPyramid(field).bytes()) / samples;
+  if (const std::string note = no_ground_note(field); !note.empty()) notes.push_back(note);
+  info["notes"] = notes;
+  return info;
+}
+
+std::string text_of(const Json& info) {
+  const auto number = [&](const char* key) { return info[key].get<double>(); };
+  const auto text = [&](const char* key, const char* otherwise) {
+    return info[key].is_null() ? otherwise : info[key].get<std::string>();
+  };
+  std::string out;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    out += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("file", text("path", ""));
+  line("size", fmt::format("{} x {} samples, {:.6g} x {:.6g} m", info["cols"].get<int>(), info["rows"].get<int>(),
+                           number("width_m"), number("depth_m")));
+  line("CRS", text("crs", "none"));
+  line("cell",
+       fmt::format("{:.6g} x {:.6g} m", info["cell_size_m"][0].get<double>(), info["cell_size_m"][1].get<double>()));
+  line("", text("cell_size_found", ""));
+  if (const Json& bounds = info["bounds"]; !bounds.is_null()) {
+    const auto bounds_lines = [&](std::string_view name, const char* key) {
+      const auto edges_of = [](const Json& b) {
+        const auto at = [&](std::size_t i) { return b[i].get<double>(); };
+        // Millimetres of projected maps, and of degrees.
+        return fmt::format("west {:.10g}, south {:.10g}, east {:.10g}, north {:.10g}", at(0), at(1), at(2), at(3));
+      };
+      const Json &own = bounds[key], &degrees = bounds[std::string(key) + "_lonlat"];
+      line(name, edges_of(own) + (own == degrees ? " (degrees)" : ""));
+      if (!degrees.is_null() && own != degrees) line("", edges_of(degrees) + " (degrees)");
+    };
+    bounds_lines("samples", "samples");
+    bounds_lines("outer edges", "edges");
+  }
+  line("units", fmt::format("{}; metres = sample x {:.10g} + {:.10g}",
+                            text("vertical_unit", "not stated, metres assumed"), number("scale"), number("offset")));
+  line("nodata", info["nodata_count"].get<std::int64_t>() == 0
+                     ? "no holes"
+                     : fmt::format("{} samples ({:.3g} %), marked by {}", info["nodata_count"].get<std::int64_t>(),
+                                   100 * number("nodata_share"),
+                                   info["nodata"].is_null() ? "NaN" : fmt::format("{}", number("nodata"))));
+  line("heights", fmt::format("{:.6g} to {:.6g} m (samples {:.8g} to {:.8g})", number("min_m"), number("max_m"),
+                              number("min_sample"), number("max_sample")));
+  line("slope bound",
+       fmt::format("{:.4g} ({:.1f} degrees)", number("slope_bound"), std::atan(number("slope_bound")) * kDegrees));
+  line("type", fmt::format("{} (in the file {}), {:.2f} bytes each with the pyramid", text("sample_type", ""),
+                           text("file_type", ""), number("bytes_per_sample")));
+  for (const Json& note : info["notes"]) line("note", note.get<std::string>());
+  return out;
+}
+
+void run(const InfoOptions& options, const Command& command) {
+  const InputKind kind = kind_of_input(command, options);
+  command.require_effect({kind});
+  const auto print = [&](const Json& info, auto text) {
+    // File names may hold any bytes; JSON may not.
+    fmt::print("{}", options.json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text(info));
+  };
+  switch (kind) {
+    case InputKind::function:
+      return print(describe_function(options.function.function, options.function.extent), function_text_of);
+    case InputKind::scene:
+      return print(describe_scene(options.inputs.front()), scene_text_of);
+    case InputKind::voxels:
+      return print(describe_vox(options.inputs.front(), options.vox), vox_text_of);
+    case InputKind::mesh:
+      return print(describe_mesh(options.inputs.front(), options.mesh), mesh_text_of);
+    case InputKind::terrain:
+      return print(describe(options), text_of);
+  }
+}
+
+}  // namespace
+
+void add_info(Program& program) {
+  Command& command = program.add("info", "Describe an elevation model, voxels, a mesh, a scene or a terrain function");
+  const auto options = std::make_shared<InfoOptions>();
+  add_raster_inputs(command, options->inputs, kEveryFile, false);
+  add_json_option(command, options->json);
+  add_function_option(command, options->function, "side of the examined ground about (0, 0)");
+  add_raster_options(command, options->raster);
+  add_vox_options(command, options->vox);
+  add_mesh_up_option(command, options->mesh);
+  command.example("scarp info dem.tif");
+  command.runs([options, &command] { run(*options, command); });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// `scarp los`: lines of sight between points of an elevation model.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/map_input.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/options/sight_options.h"
+#include "app/cli/progress.h"
+#include "scarp/analysis/block_maxima.h"
+#include "scarp/analysis/line_of_sight.h"
+#include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
+#include "scarp/base/parallel.h"
+#include "scarp/source/whole_file.h"
+
+namespace scarp::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kOutput = R"(Output, one row or line per line of sight:
+  line          from 1
+  visible       1 or 0
+  distance      horizontal, metres
+  eye,target    heights above sea, metres
+  clearance     least height of the line above the ground, metres; negative if blocked
+  clearance_at  distance of that point from the observer
+  block_x,y     position of the first blocking ground, in --crs
+  block_height  height of that ground above sea, metres
+  block_at      its distance from the observer
+GeoJSON has longitude and latitude. With --parts each blocked line is two
+features, `visible` up to the obstruction and `blocked` beyond it.)";
+
+struct LosOptions : MapOptions {
+  SightPlaces places;
+  SightHeights heights;
+  bool parts = false;
+};
+
+struct Answer {
+  SightEnds ends;
+  LineOfSight line;
+};
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + '"';
+}
+
+std::string csv_of(const MapInput& input, const PlaceTable& table, const std::vector<Answer>& answers) {
+  std::string out;
+  for (const std::string& name : table.carried.names) out += quoted(name) + ",";
+  out += "line,visible,distance,eye,target,clearance,clearance_at,block_x,block_y,block_height,block_at\n";
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    for (std::size_t k = 0; k < table.carried.names.size(); ++k) out += quoted(table.carried.at(i, k)) + ",";
+    const LineOfSight& line = answers[i].line;
+    out += fmt::format("{},{:d},{:.10g},{:.10g},{:.10g},", i + 1, line.visible, line.distance, line.eye, line.target);
+    out += std::isfinite(line.clearance)
+               ? fmt::format("{:.10g},{:.10g}", line.clearance, line.clearance_along * line.distance)
+               : ",";
+    if (const auto& block = line.obstruction) {
+      const dvec2 at = input.place_of(block->col, block->row);
+      out += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g}\n", at.x, at.y, block->height, block->along * line.distance);
+    } else {
+      out += ",,,,\n";
+    }
+  }
+  return out;
+}
+
+std::string geojson_of(const MapInput& input, const PlaceTable& table, const std::vector<Answer>& answers, bool parts) {
+  const auto point = [&](double col, double row, double height) {
+    const dvec2 at = input.lonlat_of(col, row).value_or(input.place_of(col, row));
+    return Json{at.x, at.y, height};
+  };
+  Json features = Json::array();
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const auto& [ends, line] = answers[i];
+    Json properties;
+    for (std::size_t k = 0; k < table.carried.names.size(); ++k)
+      properties[table.carried.names[k]] = table.carried.at(i, k);
+    properties["line"] = i + 1;
+    properties["visible"] = line.visible;
+    properties["distance"] = line.distance;
+    properties["eye"] = line.eye;
+    properties["target"] = line.target;
+    properties["clearance"] = std::isfinite(line.clearance) ? Json(line.clearance) : Json();
+    const Json from = point(ends.from.col, ends.from.row, line.eye), to = point(ends.to.col, ends.to.row, line.target);
+    const auto add = [&](const Json& a, const Json& b, const Json& all) {
+      features.push_back(
+          {{"type", "Feature"}, {"properties", all}, {"geometry", {{"type", "LineString"}, {"coordinates", {a, b}}}}});
+    };
+    if (!line.obstruction) {
+      if (parts) properties["part"] = "visible";
+      add(from, to, properties);
+      continue;
+    }
+    const Obstruction& block = *line.obstruction;
+    const Json at = point(block.col, block.row, block.height);
+    properties["block"] = at;
+    properties["block_at"] = block.along * line.distance;
+    if (!parts) {
+      add(from, to, properties);
+      continue;
+    }
+    // The line itself at the position of the ground: straight between the ends.
+    const Json middle = point(block.col, block.row, line.eye + block.along * (line.target - line.eye));
+    properties["part"] = "visible";
+    add(from, middle, properties);
+    properties["part"] = "blocked";
+    add(middle, to, properties);
+  }
+  return Json{{"type", "FeatureCollection"}, {"features", std::move(features)}}.dump() + "\n";
+}
+
+bool is_json(const std::string& output) {
+  const std::string extension = extension_of(output);
+  return extension == ".geojson" || extension == ".json";
+}
+
+void run(LosOptions options, const Command& command) {
+  if (options.output == "-") options.output.clear();
+  command.require_effect({});
+  if (!options.output.empty() && !is_json(options.output) && extension_of(options.output) != ".csv")
+    throw Error(fmt::format("output '{}': expected .csv or .geojson", options.output));
+  keep_inputs(options.output, options.typed);
+  const ThreadLimit limit(options.threads);
+  const PlaceTable table = sight_places(options.places);
+  MapInput input(options);
+  keep_inputs(options.output, input.files());
+
+  std::vector<Answer> answers(table.rows.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) answers[i].ends = sight_ends(input, table, i, options.heights);
+  const SightCurvature curvature = input.curvature();
+  if (options.surface == "bilinear" && curvature.coefficient != 0)
+    throw Error("--surface bilinear: its rays are straight (add --cc 0)");
+  const std::optional<BilinearGround> bilinear = input.bilinear_ground(input.field());
+  const auto answer = [&](std::size_t i, const HeightField& field, const BlockMaxima* maxima) {
+    const auto& [from, to] = answers[i].ends;
+    try {
+      if (!bilinear) {
+        answers[i].line = line_of_sight(field, from, to, curvature, maxima);
+      } else if (maxima) {
+        answers[i].line = bilinear->line_of_sight(from, to);
+      } else {
+        answers[i].line = BilinearGround(field, *bilinear).line_of_sight(from, to);
+      }
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", table.rows[i].line > 0 ? table.where(i) : input.path(), error.what()));
+    }
+  };
+  const Progress progress = terminal_progress("los");
+  if (is_geographic(input.georeference())) {
+    // Each line on the plane of its own observer.
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const auto& [from, to] = answers[i].ends;
+      const double reach = std::hypot((to.col - from.col) * input.field().settings().cell_x,
+                                      (to.row - from.row) * input.field().settings().cell_y);
+      answer(i, input.field_at(from.col, from.row, reach), nullptr);
+      if (!progress(static_cast<double>(i + 1) / static_cast<double>(answers.size()))) throw Interrupted();
+    }
+  } else {
+    const BlockMaxima maxima(input.field());
+    constexpr std::int64_t kGrain = 64;
+    parallel_for(
+        static_cast<std::int64_t>(answers.size()), kGrain,
+        [&](std::int64_t begin, std::int64_t end) {
+          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            answer(i, input.field(), &maxima);
+        },
+        progress);
+  }
+  const std::string text =
+      is_json(options.output) ? geojson_of(input, table, answers, options.parts) : csv_of(input, table, answers);
+  if (options.output.empty()) {
+    fmt::print("{}", text);
+  } else {
+    write_whole_file(options.output, text);
+  }
+  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  std::size_t visible = 0;
+  for (const Answer& one : answers) visible += one.line.visible;
+  if (!options.output.empty())
+    fmt::print("{}: {} of {} lines visible; {}\n", options.output, visible, answers.size(), input.curvature_text());
+}
+
+}  // namespace
+
+void add_los(Program& program) {
+  Command& command = program.add("los", "Test lines of sight between points of an elevation model");
+  const auto options = std::make_shared<LosOptions>();
+  LosOptions& o = *options;
+  add_sight_places(command, o.places);
+  add_output_option(command, o.output, "result: .csv or .geojson; -: CSV to standard output", "csv geojson", false);
+  command.add(&o.parts, {.names = "--parts",
+                         .help = "split blocked lines in GeoJSON in two: up to the obstruction, and beyond it",
+                         .common = true,
+                         .rules = {needs("a .geojson output", [&o] { return is_json(o.output); })}});
+  add_sight_heights(command, o.heights);
+  add_surface_option(command, o.surface);
+  add_curvature_option(command, o.curvature);
+  add_map_options(command, o);
+  command.footer(kOutput);
+  command.example("scarp los dem.tif --from 692000,5143000,2 --to 698500,5149000,10");
+  command.example("scarp los dem.tif --lines links.csv --parts -o links.geojson");
+  command.runs([options, &command] {
+    options->typed = command.typed_values();
+    run(*options, command);
+  });
+}
+
+}  // namespace scarp::cli

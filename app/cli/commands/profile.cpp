@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// `scarp profile`: heights along a line, with the line of sight between its ends.
+#include "scarp/analysis/profile.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/map_input.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/options/sight_options.h"
+#include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
+#include "scarp/base/parallel.h"
+#ifdef SCARP_CAIRO
+#include "scarp/output/profile_figure.h"
+#endif
+#include "scarp/source/whole_file.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr const char* kColumns = R"(CSV, a row for each end and each crossing with a grid line:
+  distance  from the observer, metres
+  x,y       place, in --crs
+  ground    height above sea, metres
+  drop      metres by which the ground appears lower (curvature and refraction)
+  sight     height of the line of sight above sea, metres
+  visible   1 if the observer sees the ground there, else 0)";
+
+struct ProfileOptions : MapOptions {
+  std::string from, to, size = "1200x480";
+  SightHeights heights;
+};
+
+std::string csv_of(const MapInput& input, const std::vector<ProfilePoint>& points) {
+  std::string out = "distance,x,y,ground,drop,sight,visible\n";
+  for (const ProfilePoint& p : points) {
+    const dvec2 at = input.place_of(p.col, p.row);
+    out += fmt::format("{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:d}\n", p.distance, at.x, at.y,
+                       std::isfinite(p.ground) ? fmt::format("{:.10g}", p.ground) : "", p.drop, p.sight, p.visible);
+  }
+  return out;
+}
+
+#ifdef SCARP_CAIRO
+void draw(const MapInput& input, const ProfileOptions& options, const SightLine& line,
+          const std::vector<ProfilePoint>& points, const LineOfSight& sight) {
+  ProfileFigure figure;
+  const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, 200 to 8192 each");
+  for (const double n : size)
+    if (!(n >= 200 && n <= 8192 && n == std::floor(n)))
+      throw Error(fmt::format("--size '{}': expected WIDTHxHEIGHT in pixels, 200 to 8192 each", options.size));
+  figure.width = static_cast<int>(size[0]);
+  figure.height = static_cast<int>(size[1]);
+  for (const ProfilePoint& p : points)
+    figure.points.push_back({p.distance, p.ground, p.sight, p.visible, p.after_hole});
+  const dvec2 from = input.place_of(line.from().col, line.from().row),
+              to = input.place_of(line.to().col, line.to().row);
+  figure.title = fmt::format("{:.10g}, {:.10g} to {:.10g}, {:.10g}: {}", from.x, from.y, to.x, to.y,
+                             sight.visible ? "visible" : "blocked");
+  figure.remark =
+      fmt::format("eye {:.2f} m, target {:.2f} m above sea; {}", sight.eye, sight.target, input.curvature_text());
+  if (sight.obstruction) {
+    figure.blocked = true;
+    figure.block = {sight.obstruction->along * sight.distance, sight.obstruction->height, 0, true};
+  }
+  ReplaceFile file(options.output);
+  write_profile_figure(file, options.output, figure);
+}
+#endif
+
+void run(ProfileOptions options, const Command& command) {
+  if (options.output == "-") options.output.clear();
+  command.require_effect({});
+  const std::string extension = extension_of(options.output);
+  if (!options.output.empty() && extension != ".csv" && extension != ".svg" && extension != ".png")
+    throw Error(fmt::format("output '{}': expected .csv, .svg or .png", options.output));
+#ifndef SCARP_CAIRO
+  if (extension == ".svg" || extension == ".png")
+    throw Error(fmt::format("output '{}': this build draws no figures (SCARP_CAIRO=OFF)", options.output));
+#endif
+  keep_inputs(options.output, options.typed);
+  const ThreadLimit limit(options.threads);
+  SightPlaces places;
+  places.from = {options.from};
+  places.to = {options.to};
+  const PlaceTable table = sight_places(places);
+  MapInput input(options);
+  keep_inputs(options.output, input.files());
+  const auto [from, to] = sight_ends(input, table, 0, options.heights);
+  const HeightFieldSettings& cells = input.field().settings();
+  const HeightField field = input.field_at(
+      from.col, from.row, std::hypot((to.col - from.col) * cells.cell_x, (to.row - from.row) * cells.cell_y));
+  const SightLine line(field, from, to, input.curvature());
+  const std::vector<ProfilePoint> points = profile(line);
+  const LineOfSight sight = line_of_sight(field, from, to, input.curvature());
+  if (extension == ".svg" || extension == ".png") {
+#ifdef SCARP_CAIRO
+    draw(input, options, line, points, sight);
+#endif
+  } else if (options.output.empty()) {
+    fmt::print("{}", csv_of(input, points));
+  } else {
+    write_whole_file(options.output, csv_of(input, points));
+  }
+  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  if (!options.output.empty())
+    fmt::print("{}: {} points over {:.6g} m, {}; {}\n", options.output, points.size(), line.distance(),
+               sight.visible ? "target visible" : "target blocked", input.curvature_text());
+}
+
+}  // namespace
+
+void add_profile(Program& program) {
+  Command& command = program.add("profile", "Write or draw the heights along a line, with its line of sight");
+  const auto options = std::make_shared<ProfileOptions>();
+  ProfileOptions& o = *options;
+  command.add(&o.from, {.names = "--from", .value = "X,Y[,H]", .help = "observer", .common = true, .required = true});
+  command.add(&o.to, {.names = "--to", .value = "X,Y[,H]", .help = "target", .common = true, .required = true});
+  add_output_option(command, o.output, "result: .csv, .svg or .png; -: CSV to standard output", "csv svg png", false);
+  command.add(&o.size, {.names = "--size",
+                        .value = "WxH",
+                        .help = "size of the figure in pixels",
+                        .common = true,
+                        .rules = {needs("a .svg or .png output", [&o] {
+                          return extension_of(o.output) == ".svg" || extension_of(o.output) == ".png";
+                        })}});
+  add_sight_heights(command, o.heights);
+  add_curvature_option(command, o.curvature);
+  add_map_options(command, o);
+  command.footer(kColumns);
+  command.example("scarp profile dem.tif --from 692000,5143000 --to 698500,5149000,10 -o profile.svg");
+  command.runs([options, &command] {
+    options->typed = command.typed_values();
+    run(*options, command);
+  });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+// `scarp shadow`: maps where the sun shines on an elevation model.
+#include "scarp/analysis/shadow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/map_input.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/picture/map_preview.h"
+#include "app/cli/picture/raster_output.h"
+#include "app/cli/progress.h"
+#include "scarp/analysis/map_part.h"
+#include "scarp/analysis/sun_disc.h"
+#ifdef SCARP_ERFA
+#include "scarp/analysis/local_sun.h"
+#include "scarp/source/raster/node_places.h"
+#endif
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+constexpr int kShadowNodata = 255;
+constexpr const char* kShadowFooter = R"(Pixels:
+  0  lit
+  1  self-shaded: the ground itself faces away from the sun
+  2  cast shadow: ground farther away hides the sun
+With --fraction: share of the sun's disc above the terrain, 0 to 1.)";
+
+struct ShadowOptions : MapOptions {
+  std::vector<std::string> suns, times;
+  bool fraction = false, refraction = false, per_cell = false;
+  RasterOutput raster_output;
+};
+
+// A sun over the field; azimuth from grid north.
+struct Sun {
+  SunDirection direction;
+  std::string name;   // of the band
+  std::string place;  // azimuth and altitude in degrees
+#ifdef SCARP_ERFA
+  std::optional<LocalSun> local{};  // in place of the direction
+#endif
+};
+
+std::string place_text(double azimuth, double altitude) {
+  return fmt::format("azimuth {:.4f}, altitude {:.4f} degrees", azimuth * kDegreesPerRadian,
+                     altitude * kDegreesPerRadian);
+}
+
+dvec2 centre_of(const MapInput& input) { return {(input.field().cols() - 1) / 2.0, (input.field().rows() - 1) / 2.0}; }
+
+// Azimuth of grid north on the plane of the whole raster.
+double grid_north_of(MapInput& input) { return input.grid_north_at(centre_of(input).x, centre_of(input).y, HUGE_VAL); }
+
+#ifdef SCARP_ERFA
+// The sun of one time over a raster.
+struct SunSpread {
+  SunPosition centre;
+  double error = 0;                // largest deviation in the corners, radians
+  double lowest = 0, highest = 0;  // altitudes at centre and corners
+};
+
+SunSpread sun_spread(const MapInput& input, const std::string& text, bool refraction) {
+  const SunAtTime sky(parse_time(text));
+  const double last_col = input.field().cols() - 1, last_row = input.field().rows() - 1;
+  const double height = 0.5 * (input.field().min_height() + input.field().max_height());
+  const auto position = [&](double col, double row) {
+    const auto at = input.lonlat_of(col, row);
+    if (!at)
+      throw Error(fmt::format("{}: --time needs a raster with a CRS (give --raster-crs, or --sun)", input.path()));
+    return sky.at({at->x / kDegreesPerRadian, at->y / kDegreesPerRadian, height}, refraction);
+  };
+  SunSpread spread{position(last_col / 2, last_row / 2)};
+  const SunPosition& sun = spread.centre;
+  spread.lowest = spread.highest = sun.altitude;
+  for (const double col : {0.0, last_col})
+    for (const double row : {0.0, last_row}) {
+      const SunPosition corner = position(col, row);
+      const double cosine = std::sin(sun.altitude) * std::sin(corner.altitude) +
+                            std::cos(sun.altitude) * std::cos(corner.altitude) * std::cos(sun.azimuth - corner.azimuth);
+      spread.error = std::max(spread.error, std::acos(std::min(cosine, 1.0)));
+      spread.lowest = std::min(spread.lowest, corner.altitude);
+      spread.highest = std::max(spread.highest, corner.altitude);
+    }
+  return spread;
+}
+
+void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vector<Sun>& suns, double& lowest) {
+  double error = 0;
+  std::shared_ptr<const NodePlaces> places;
+  for (const std::string& text : options.times) {
+    SunSpread spread;
+    try {
+      spread = sun_spread(input, text, options.refraction);
+    } catch (const Error& error_of_time) {
+      throw Error(fmt::format("--time: {}", error_of_time.what()));
+    }
+    const auto& [azimuth, altitude] = spread.centre;
+    if (const double highest = options.per_cell ? spread.highest : altitude; highest <= 0)
+      throw Error(
+          fmt::format("--time '{}': the sun is {:.2f} degrees below the horizon", text, -highest * kDegreesPerRadian));
+    lowest = std::min(lowest, spread.lowest);
+    error = std::max(error, spread.error);
+    if (!options.per_cell) {
+      suns.push_back({{azimuth - grid_north_of(input), altitude}, text, place_text(azimuth, altitude)});
+      continue;
+    }
+    if (!places)
+      places = std::make_shared<const NodePlaces>(input.georeference(), input.field().cols(), input.field().rows());
+    suns.push_back(
+        {{},
+         text,
+         place_text(azimuth, altitude) + " at the centre",
+         LocalSun{parse_time(text), options.refraction,
+                  [places](int row, int first_col, std::span<dvec3> nodes) { places->row(row, first_col, nodes); }}});
+  }
+  if (!options.per_cell)
+    input.notes.push_back(
+        fmt::format("one sun for the whole raster, that at its centre; it is up to {:.3g} degrees off in the corners "
+                    "(--sun-per-cell)",
+                    error * kDegreesPerRadian));
+}
+#endif
+
+// `lowest`: the lowest altitude of the suns of --time, radians.
+std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& lowest) {
+  std::vector<Sun> suns;
+  for (const std::string& text : options.suns) {
+    constexpr std::string_view kForm =
+        "AZIMUTH,ALTITUDE in degrees, altitude above 0 and at most 90, for example 135,20";
+    const auto n = numbers_from(text, ',', 2, 2, "--sun", kForm);
+    if (!(n[1] > 0 && n[1] <= 90) || std::abs(n[0]) > 360)
+      throw Error(fmt::format("--sun '{}': expected {}", text, kForm));
+    const double azimuth = n[0] / kDegreesPerRadian, altitude = n[1] / kDegreesPerRadian;
+    suns.push_back(
+        {{azimuth - grid_north_of(input), altitude}, fmt::format("sun {}", text), place_text(azimuth, altitude)});
+  }
+  if (!options.times.empty()) {
+#ifdef SCARP_ERFA
+    add_suns_of_times(input, options, suns, lowest);
+#else
+    static_cast<void>(lowest);
+    throw Error("--time: this build does not compute the sun's position (SCARP_ERFA=OFF)");
+#endif
+  }
+  if (suns.empty()) throw Error("no sun: give --sun AZIMUTH,ALTITUDE or --time TIME");
+  return suns;
+}
+
+std::vector<Shade> shades_of(const SunGround& ground, const Sun& sun, const RowBand& rows, const Progress& progress) {
+#ifdef SCARP_ERFA
+  if (sun.local) return local_shadow(ground, *sun.local, rows, progress);
+#endif
+  return ground.rows(sun.direction, rows, progress);
+}
+
+std::vector<float> shares_of(const SunGround& ground, const Sun& sun, const RowBand& rows, const Progress& progress) {
+#ifdef SCARP_ERFA
+  if (sun.local) return local_lit_share(ground, *sun.local, rows, progress);
+#endif
+  return lit_share(ground, sun.direction, rows, progress);
+}
+
+std::string method_of(const ShadowOptions& options) {
+  return fmt::format("exact rays to the sun{}; ground {}; flat Earth; grazing is lit (scarp shadow)",
+                     options.per_cell ? " of every pixel" : "", surface_text(options.surface));
+}
+
+void run(ShadowOptions options, const Command& command) {
+  command.require_effect({});
+  settle_output(options.raster_output, options);
+  const ThreadLimit limit(options.threads);
+  const auto begin = std::chrono::steady_clock::now();
+  MapInput input(options);
+  keep_inputs(options.output, input.files());
+  double lowest = std::numbers::pi / 2;
+  const std::vector<Sun> suns = suns_of(input, options, lowest);
+  // One sun needs a plane of the whole raster; rays of cells need one as far as a shadow reaches.
+  const double relief = input.field().max_height() - input.field().min_height();
+  const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
+  const HeightField field =
+      input.field_at(centre_of(input).x, centre_of(input).y, whole ? HUGE_VAL : relief / std::tan(lowest));
+  const RowBand rows = rows_of_part(input, options.raster_output);
+  const double nodes = static_cast<double>(field.cols()) * rows.rows();
+  if (options.raster_output.dry_run) {
+    const double kNode_s = options.per_cell ? 4e-6 : options.surface == "bilinear" ? 1e-6 : 1e-7;
+    print_dry_run(input, rows, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
+                  nodes * kNode_s * static_cast<double>(suns.size()) *
+                      (!options.fraction  ? 1
+                       : options.per_cell ? 2
+                                          : 16));
+    return;
+  }
+  std::optional<MapPreview> preview;
+  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
+  std::string places;
+  for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
+  RasterMap map = map_of(input, options.raster_output, rows, method_of(options), {{"SUN", places}});
+  const Progress progress = terminal_progress("shadow");
+  const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
+  const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
+  std::vector<std::vector<std::uint8_t>> codes(suns.size());
+  std::vector<std::vector<float>> fractions(suns.size());
+  double lit = 0, with_sample = 0;  // pixels of all bands
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    if (options.fraction) {
+      fractions[i] = shares_of(ground, suns[i], rows, progress);
+      for (const float share : fractions[i]) lit += std::max(share, 0.0f);
+      with_sample += nodes - static_cast<double>(std::count(fractions[i].begin(), fractions[i].end(), kNoShare));
+      map.bands.push_back(
+          {fmt::format("lit share, {}", suns[i].name), "", std::span<const float>(fractions[i]), kNoShare});
+      continue;
+    }
+    const auto shades = shades_of(ground, suns[i], rows, progress);
+    codes[i].reserve(shades.size());
+    for (const Shade shade : shades)
+      codes[i].push_back(shade == Shade::hole ? kShadowNodata : static_cast<std::uint8_t>(shade));
+    lit += static_cast<double>(std::count(codes[i].begin(), codes[i].end(), 0));
+    with_sample += nodes - static_cast<double>(std::count(codes[i].begin(), codes[i].end(), kShadowNodata));
+    map.bands.push_back({suns[i].name,
+                         "",
+                         std::span<const std::uint8_t>(codes[i]),
+                         kShadowNodata,
+                         {{0, "lit", {255, 246, 214, 255}},
+                          {1, "self-shaded", {136, 134, 158, 255}},
+                          {2, "cast shadow", {52, 56, 92, 255}},
+                          {kShadowNodata, "no sample", {255, 255, 255, 0}}}});
+  }
+  write_raster_map(options.output, map, terminal_progress("write"));
+  if (preview) preview->write(map, rows, "grey");
+  print_map_summary(input, options.raster_output, rows, options.output,
+                    fmt::format("{}; {:.3g} % lit", places, with_sample > 0 ? 100 * lit / with_sample : 0), begin);
+}
+
+}  // namespace
+
+void add_shadow(Program& program) {
+  Command& command = program.add("shadow", "Map where the sun shines on an elevation model");
+  const auto options = std::make_shared<ShadowOptions>();
+  ShadowOptions& o = *options;
+  command.add(&o.suns, {.names = "--sun",
+                        .value = "AZ,ALT",
+                        .help = "direction to the sun in degrees: clockwise from true north, above the horizon",
+                        .note = "repeatable: one band each",
+                        .repeats = true,
+                        .common = true});
+  command.add(&o.times, {.names = "--time",
+                         .value = "TIME",
+                         .help = "time with UTC offset, 2026-06-21T09:00+02:00",
+                         .note = "repeatable: one band each",
+                         .repeats = true,
+                         .common = true});
+  command.add(&o.refraction, {.names = "--refraction",
+                              .help = "raise the sun of --time by the refraction of a standard atmosphere",
+                              .common = true,
+                              .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
+  command.add(&o.per_cell, {.names = "--sun-per-cell",
+                            .help = "the sun's position, north and scale at every pixel instead of at the centre",
+                            .common = true,
+                            .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
+  command.add(
+      &o.fraction,
+      {.names = "--fraction", .help = "lit share of the sun's disc (0.533 degrees) instead of codes", .common = true});
+  add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  add_surface_option(command, o.surface);
+  add_raster_output_options(command, o.raster_output);
+  add_map_options(command, o);
+  command.footer(kShadowFooter);
+  command.example("scarp shadow dem.tif --sun 135,20 -o shadow.tif");
+  command.example("scarp shadow dem.tif --time 2026-06-21T09:00+02:00 --time 2026-06-21T18:00+02:00 -o shadow.tif");
+  command.runs([options, &command] {
+    options->typed = command.typed_values();
+    run(*options, command);
+  });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// `scarp section`: draws one layer of a voxel model with the radius of the empty sphere or cube around each voxel, as
+// in figure 5 of C. Leak, "Raymarching voxel rendering".
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "app/cli/commands.h"
+#include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/options/vox_input.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
+#include "scarp/accel/voxel_bytes.h"
+#include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
+#include "scarp/base/replace_file.h"
+
+namespace scarp::cli {
+namespace {
+
+struct SectionOptions {
+  std::string input, output, radii = "spheres", axis = "z";
+  int at = -1, model = 0, margin = 4;
+  VoxOptions vox;
+};
+
+constexpr int kCell = 20;  // of the picture, in its units
+constexpr int kMostCells = 256;
+
+// Radii as colours: white for 0, deeper with every voxel, up to the largest of the layer.
+std::string shade(int radius, int largest) {
+  const double share = largest > 0 ? static_cast<double>(radius) / largest : 0;
+  const auto mix = [&](double from, double to) { return static_cast<int>(from + share * (to - from) + 0.5); };
+  return fmt::format("#{:02x}{:02x}{:02x}", mix(255, 246), mix(255, 190), mix(255, 110));
+}
+
+// The shape alone, surrounded by empty voxels.
+VoxelGrid with_margin(const VoxelGrid& grid, int margin) {
+  VoxelGrid larger(grid.size() + 2 * margin, 1);
+  larger.edit(larger.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {
+    const ivec3 from = v - margin;
+    return grid.box().contains(from) && grid.solid(from) ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
+  });
+  return larger;
+}
+
+// `size` includes the margin.
+void require_size(const std::string& input, const ivec3& size, int axis) {
+  const int cols = size[axis == 0 ? 1 : 0], rows = size[axis == 2 ? 1 : 2];
+  if (std::max(cols, rows) > kMostCells)
+    throw Error(
+        fmt::format("{}: the layer with its margin is {} x {} voxels (limited to {} per side; try another "
+                    "--axis, --margin or --model)",
+                    input, cols, rows, kMostCells));
+  if (size[axis] > kMaxAcceleratedSide)
+    throw Error(
+        fmt::format("{}: the model with its margin has {} layers (limited to {}; try another --axis or --model)", input,
+                    size[axis], kMaxAcceleratedSide));
+}
+
+template <class Radius>
+std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius) {
+  const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
+  const int cols = grid.size()[across], rows = grid.size()[up];
+  const auto voxel = [&](int col, int row) {
+    ivec3 v(0);
+    v[axis] = at, v[across] = col, v[up] = rows - 1 - row;
+    return v;
+  };
+  int largest = 0;
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      if (!grid.solid(voxel(col, row))) largest = std::max(largest, radius(voxel(col, row)));
+    }
+  }
+  const int width = cols * kCell, height = rows * kCell;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"-1 -1 {2} {3}\">\n"
+      "<g stroke=\"#9aa3ad\" stroke-width=\"0.6\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"{4}\" "
+      "text-anchor=\"middle\">\n",
+      width + 2, height + 2, width + 2, height + 2, kCell * 11 / 20);
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const ivec3 v = voxel(col, row);
+      const bool solid = grid.solid(v);
+      const int x = col * kCell, y = row * kCell;
+      svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>", x, y, kCell, kCell,
+                         solid ? "#3b6ea5" : shade(radius(v), largest));
+      if (!solid) {
+        svg += fmt::format("<text x=\"{}\" y=\"{}\" stroke=\"none\" fill=\"#333\">{}</text>", x + kCell / 2,
+                           y + kCell * 7 / 10, radius(v));
+      }
+      svg += '\n';
+    }
+  }
+  return svg + "</g>\n</svg>\n";
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  ReplaceFile place(path);
+  std::ofstream out(place.temporary_path(), std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
+  place.commit();
+}
+
+void run(const SectionOptions& options) {
+  if (extension_of(options.output) != ".svg")
+    throw Error(fmt::format("output '{}': sections are written as SVG (name it *.svg)", options.output));
+  if (!is_vox_input({options.input}, options.vox))
+    throw Error(fmt::format(
+        "'{}': not a voxel file (expected .vox, .binvox, .qb, .kv6, .vxl, .vdb, .nvdb, or --volume)", options.input));
+  const VoxInput input = read_voxels(options.input, options.vox, {}, {});
+  const auto& models = input.voxels.models;
+  if (options.model >= static_cast<int>(models.size()))
+    throw Error(fmt::format("--model {}: there are {}, counted from 0", options.model, models.size()));
+  const VoxelModel& model = *models[static_cast<std::size_t>(options.model)];
+  const int axis = options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2;
+  const int side = model.grid().size()[axis], at = options.at < 0 ? side / 2 : options.at;
+  if (at >= side) {
+    throw Error(fmt::format("--at {}: the box around the model's voxels has layers 0 to {} along {}", at, side - 1,
+                            options.axis));
+  }
+  require_size(options.input, model.grid().size() + 2 * options.margin, axis);
+  const VoxelGrid grid = with_margin(model.grid(), options.margin);
+  std::string svg;
+  if (options.radii == "spheres") {
+    const EmptySpheres spheres(grid);
+    svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return spheres.distance(v); });
+  } else {
+    const EmptyCubes cubes(grid);
+    svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return cubes.distance(v) - 1; });
+  }
+  write_text(options.output, svg);
+  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print("{}: model {}, layer {} of {} along {}, radii of {}\n", options.output, options.model, at, side,
+             options.axis, options.radii);
+}
+
+}  // namespace
+
+void add_section(Program& program) {
+  Command& command = program.add("section", "Draw one layer of a voxel model with its empty spheres or cubes as SVG");
+  const auto options = std::make_shared<SectionOptions>();
+  SectionOptions& o = *options;
+  command.add(&o.input, {.names = "IN",
+                         .help = "voxel file (.vox, .binvox, .qb, .kv6, .vxl, .vdb, .nvdb) or volume",
+                         .files = "vox binvox qb kv6 vxl vdb nvdb npy raw",
+                         .required = true});
+  add_output_option(command, o.output, "SVG to write", "svg");
+  command.add(&o.radii, {.names = "--radii",
+                         .value = "KIND",
+                         .help = "largest empty bodies around each empty voxel",
+                         .choices = {"spheres", "cubes"},
+                         .closed = true});
+  command.add(&o.axis, {.names = "--axis",
+                        .value = "AXIS",
+                        .help = "axis perpendicular to the layer",
+                        .choices = {"x", "y", "z"},
+                        .closed = true});
+  command.add(&o.at, {.names = "--at",
+                      .help = "index of the layer in the box around the voxels",
+                      .range = {0, VoxelGrid::kMaxModelSide - 1},
+                      .fallback = "the middle"});
+  command.add(&o.model, {.names = "--model", .help = "index of the model in the file", .range = {0, 1 << 20}});
+  command.add(
+      &o.margin,
+      {.names = "--margin", .help = "width of the empty border around the model, in voxels", .range = {0, 100}});
+  add_vox_options(command, o.vox);
+  command.example("scarp section model.vox -o section.svg --axis y");
+  command.runs([options, &command] {
+    command.require_effect({.kind = InputKind::voxels});
+    keep_inputs(options->output, command.typed_values());
+    run(*options);
+  });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/options/depth_options.h"
+
+#include <limits>
+
+#include "app/options/numbers.h"
+
+namespace scarp::cli {
+
+void add_depth_options(Command& command, DepthOptions& options) {
+  command.add(&options.range, {.names = "--depth-range",
+                               .value = "NEAR[,FAR]",
+                               .help = "near and far plane of the depth buffer in metres, as in OpenGL and Vulkan",
+                               .note = "without FAR: no far plane",
+                               .topic = Topic::depth});
+  command.add(&options.reversed,
+              {.names = "--depth-reversed",
+               .help = "reversed depth: 1 at the near plane, 0 at the far plane",
+               .topic = Topic::depth,
+               .rules = {needs("--depth-range NEAR,FAR", [&options] { return !options.range.empty(); })}});
+}
+
+std::optional<DepthRange> depth_range_of(const DepthOptions& options) {
+  if (options.range.empty()) return {};
+  const auto planes =
+      numbers_from(options.range, ',', 1, 2, "--depth-range", "NEAR,FAR in metres, for example 1,50000");
+  const DepthRange range{planes[0], planes.size() > 1 ? planes[1] : std::numeric_limits<double>::infinity(),
+                         options.reversed};
+  validate(range);
+  return range;
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Options of a picture's annotations: title, legend, scale bar, north arrow, graticule, labels of contour lines.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "app/options/command.h"
+
+namespace scarp::cli {
+
+/// Typed options.
+struct FigureOptions {
+  bool legend = false, scale_bar = false, north_arrow = false, contour_labels = false;
+  std::string title, graticule, layout = "on";
+  double dots_per_inch = 150;
+
+  /// The first given option, for messages; empty: none.
+  std::string_view any() const;
+};
+
+/// `top`: the option --top, and `output` the file's name; both must outlive the command.
+void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output);
+
+}  // namespace scarp::cli

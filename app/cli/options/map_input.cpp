@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/options/map_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "app/cli/options/raster_options.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+#include "scarp/scene/file/from_raster.h"
+#include "scarp/source/raster/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+// The same samples with cells of other lengths.
+HeightField with_cells(const HeightField& field, double cell_x, double cell_y) {
+  HeightFieldSettings settings = field.settings();
+  settings.cell_x = cell_x;
+  settings.cell_y = cell_y;
+  return field.visit(
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
+}
+
+Raster read(const MapOptions& options) { return read_tiles(options.inputs, options.raster, terminal_progress("read")); }
+
+}  // namespace
+
+void add_map_options(Command& command, MapOptions& options) {
+  add_raster_inputs(command, options.inputs, "elevation model: anything GDAL reads, .npy, .npz, .exr");
+  add_coordinates_option(command, options.coordinates,
+                         {.names = "--crs",
+                          .help = "coordinates of places",
+                          .fallback = "map; local for inputs without a georeference",
+                          .common = true});
+  command.add(&options.plane_error, {.names = "--plane-error",
+                                     .help = "largest displacement of a sample on the metric plane",
+                                     .unit = "cells",
+                                     .range = kAboveZero});
+  add_threads_option(command, options.threads);
+  add_raster_options(command, options.raster, "--raster-crs");
+}
+
+void add_curvature_option(Command& command, std::optional<double>& coefficient) {
+  command.add(&coefficient, {.names = "--cc",
+                             .help = "curvature coefficient, 1 - refraction coefficient",
+                             .range = {0, 1},
+                             .note = "0: flat; 1: curvature without refraction",
+                             .fallback = "6/7 on Earth, 1 on other bodies",
+                             .common = true});
+}
+
+void add_surface_option(Command& command, std::string& surface) {
+  command.add(&surface, {.names = "--surface",
+                         .value = "KIND",
+                         .help = "surface between samples",
+                         .choices = {"crossings", "bilinear"},
+                         .closed = true,
+                         .note = "crossings: linear on grid lines, nothing between them",
+                         .common = true});
+}
+
+std::string_view surface_text(std::string_view surface) {
+  return surface == "crossings" ? "linear at crossings of grid lines" : surface;
+}
+
+MapInput::MapInput(const MapOptions& options)
+    : options_(options), field_(HeightField::own(std::vector<float>{0}, 1, 1)) {
+  Raster raster = read(options);
+  path_ = raster.path;
+  files_ = raster.files;
+  georeference_ = raster.georeference;
+  notes = raster.notes;
+  stop_if_interrupted();
+  field_ = height_field_from(std::move(raster));
+  if (field_.all_nodata())
+    throw Error(fmt::format("{}: all {} x {} samples are nodata (choose another --window or --nodata)", path_,
+                            field_.cols(), field_.rows()));
+  try {
+    body_ = body_of(georeference_);
+    geographic_ = is_geographic(georeference_);
+    const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
+                                    : georeference_.present      ? Coordinates::map
+                                                                 : Coordinates::local;
+    frame_.emplace(georeference_, field_.cols(), field_.rows(), coordinates);
+    if (!georeference_.crs_wkt.empty())
+      lonlat_.emplace(georeference_, field_.cols(), field_.rows(), Coordinates::lonlat);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path_, error.what()));
+  }
+}
+
+SightCurvature MapInput::curvature() const {
+  constexpr double kVisibleLight = 6.0 / 7;
+  return {options_.curvature.value_or(body_.earth ? kVisibleLight : 1.0), 2 * body_.semi_major};
+}
+
+std::string MapInput::curvature_text() const {
+  const SightCurvature used = curvature();
+  return fmt::format("curvature coefficient {:.6g}, diameter {:.0f} m", used.coefficient, used.diameter);
+}
+
+dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
+  if (lonlat && !lonlat_)
+    throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--raster-crs)", path_, what));
+  std::array points{dvec3(place.x, place.y, 0)};
+  if ((lonlat ? *lonlat_ : *frame_).to_local(points))
+    throw Error(fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS", what, place.x, place.y));
+  return {points[0].x / georeference_.cell_x_m, field_.rows() - 1 - points[0].y / georeference_.cell_y_m};
+}
+
+void MapInput::refuse_outside(const TablePlace& place, std::string_view what, double beyond) const {
+  const dvec2 low = place_of(-beyond, field_.rows() - 1 + beyond), high = place_of(field_.cols() - 1 + beyond, -beyond);
+  throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--crs)", what,
+                          place.x, place.y, path_, low.x, high.x, low.y, high.y));
+}
+
+dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {
+  dvec2 at = position_of(place, lonlat, what);
+  // Places on the border may be a rounding outside.
+  const double last_col = field_.cols() - 1, last_row = field_.rows() - 1, rounding = 0.5 / kSubcells;
+  if (!(at.x >= -rounding && at.y >= -rounding && at.x <= last_col + rounding && at.y <= last_row + rounding))
+    refuse_outside(place, what, 0);
+  return {std::clamp(at.x, 0.0, last_col), std::clamp(at.y, 0.0, last_row)};
+}
+
+Node MapInput::node_of(const TablePlace& place, bool lonlat, std::string_view what) const {
+  const dvec2 at = position_of(place, lonlat, what);
+  // Pixels are half open, as in GDAL.
+  const double col = std::floor(at.x + 0.5), row = std::floor(at.y + 0.5);
+  if (!(col >= 0 && row >= 0 && col < field_.cols() && row < field_.rows())) refuse_outside(place, what, 0.5);
+  return {static_cast<int>(col), static_cast<int>(row)};
+}
+
+dvec2 MapInput::place_of(double col, double row) const {
+  std::array points{dvec3(col * georeference_.cell_x_m, (field_.rows() - 1 - row) * georeference_.cell_y_m, 0)};
+  frame_->from_local(points);
+  return {points[0].x, points[0].y};
+}
+
+std::optional<dvec2> MapInput::lonlat_of(double col, double row) const {
+  if (!lonlat_) return std::nullopt;
+  std::array points{dvec3(col * georeference_.cell_x_m, (field_.rows() - 1 - row) * georeference_.cell_y_m, 0)};
+  if (lonlat_->from_local(points)) return std::nullopt;
+  return dvec2(points[0].x, points[0].y);
+}
+
+const MetricPlane& MapInput::plane_at(double col, double row, double reach) {
+  if (last_ && last_->col == col && last_->row == row && last_->reach >= reach) return last_->plane;
+  last_ = Plane{col, row, reach, metric_plane(georeference_, field_.cols(), field_.rows(), col, row, reach)};
+  const double error = last_->plane.error_cells;
+  if (error > options_.plane_error) {
+    const dvec2 at = lonlat_of(col, row).value_or(dvec2(0, 0));
+    const int zone = std::clamp(static_cast<int>((at.x + 180) / 6) + 1, 1, 60);
+    throw Error(
+        fmt::format("{}: degrees: samples are up to {:.2g} cells off the metric plane, limit {} (first: gdalwarp "
+                    "-t_srs EPSG:{}{:02} "
+                    "-r bilinear {} utm.tif; or set a distance limit; or raise --plane-error)",
+                    path_, error, options_.plane_error, at.y < 0 ? 327 : 326, zone, path_));
+  }
+  return last_->plane;
+}
+
+HeightField MapInput::field_at(double col, double row, double reach) {
+  if (!geographic_) return field_;
+  const MetricPlane& plane = plane_at(col, row, reach);
+  if (!std::exchange(plane_is_noted_, true))
+    notes.push_back(
+        fmt::format("degrees: computed on a local metric plane, cells {:.6g} x {:.6g} m, samples up "
+                    "to {:.2g} cells off",
+                    plane.cell_x, plane.cell_y, plane.error_cells));
+  return with_cells(field_, plane.cell_x, plane.cell_y);
+}
+
+std::optional<BilinearGround> MapInput::bilinear_ground(const HeightField& field) const {
+  if (options_.surface != "bilinear") return std::nullopt;
+  try {
+    return BilinearGround(field);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path_, error.what()));
+  }
+}
+
+double MapInput::grid_north_at(double col, double row, double reach) {
+  return geographic_ ? plane_at(col, row, reach).grid_north_azimuth : georeference_.grid_north_azimuth;
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// The input of subcommands that compute maps: one elevation model, points on it, and a plane in metres around a point.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/options/places.h"
+#include "app/options/command.h"
+#include "scarp/analysis/bilinear_ground.h"
+#include "scarp/analysis/sight.h"
+#include "scarp/base/georeference.h"
+#include "scarp/field/height_field.h"
+#include "scarp/source/raster/metric_plane.h"
+#include "scarp/source/raster/raster_options.h"
+#include "scarp/source/table/place_table.h"
+
+namespace scarp::cli {
+
+/// Options as typed.
+struct MapOptions {
+  std::vector<std::string> inputs;
+  RasterOptions raster;
+  std::string coordinates;          ///< of places; empty: map, or local without a georeference
+  std::optional<double> curvature;  ///< coefficient; empty: by the body
+  double plane_error = 0.1;         ///< cells
+  std::string surface = "crossings";
+  int threads = 0;
+  std::string output;
+  std::vector<std::string> typed;
+};
+
+/// Declares IN, --crs, --plane-error, --threads and the raster options.
+void add_map_options(Command& command, MapOptions& options);
+/// Declares --cc.
+void add_curvature_option(Command& command, std::optional<double>& coefficient);
+
+/// Declares --surface.
+void add_surface_option(Command& command, std::string& surface);
+/// "bilinear", or what `crossings` means.
+std::string_view surface_text(std::string_view surface);
+
+class MapInput {
+ public:
+  /// Reads the raster. Throws Error naming the file.
+  explicit MapInput(const MapOptions& options);
+
+  const HeightField& field() const { return field_; }
+  const Georeference& georeference() const { return georeference_; }
+  const std::string& path() const { return path_; }
+  const std::vector<std::string>& files() const { return files_; }
+  /// Notes for users, printed last.
+  std::vector<std::string> notes;
+
+  /// The coefficient of --cc, else 6/7 on Earth and 1 elsewhere.
+  SightCurvature curvature() const;
+  std::string curvature_text() const;
+
+  /// Position in columns and rows. Messages start with `what`. Throws Error for a position outside the samples.
+  dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// Position in columns and rows of a place that may lie outside.
+  dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// The sample nearest to a place, as grid_of(); a place up to half a cell beyond the border counts.
+  Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// Converts a position in columns and rows to map coordinates, degrees or metres, as --crs specifies.
+  dvec2 place_of(double col, double row) const;
+  /// Longitude and latitude in degrees; nullopt without a CRS.
+  std::optional<dvec2> lonlat_of(double col, double row) const;
+
+  /// The field with the lengths of its cells at a place. Geographic rasters only; others keep those of their centre.
+  /// Throws Error if samples within `reach` metres are farther off than --plane-error allows.
+  HeightField field_at(double col, double row, double reach);
+  /// The ground of --surface bilinear; nullopt for `crossings`. `field` is one of field_at(). Throws Error naming the
+  /// file.
+  std::optional<BilinearGround> bilinear_ground(const HeightField& field) const;
+  /// Azimuth of grid north at that place, radians.
+  double grid_north_at(double col, double row, double reach);
+
+ private:
+  [[noreturn]] void refuse_outside(const TablePlace& place, std::string_view what, double beyond) const;
+  const MetricPlane& plane_at(double col, double row, double reach);
+
+  const MapOptions& options_;
+  HeightField field_;
+  Georeference georeference_;
+  std::string path_;
+  std::vector<std::string> files_;
+  Body body_;
+  bool geographic_ = false;
+  std::optional<CoordinateFrame> frame_, lonlat_;
+  struct Plane {
+    double col, row, reach;
+    MetricPlane plane;
+  };
+  std::optional<Plane> last_;  // consecutive places often have the same observer
+  bool plane_is_noted_ = false;
+};
+
+}  // namespace scarp::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// The options of `scarp render`, with their types.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/options/depth_options.h"
+#include "app/cli/options/figure_options.h"
+#include "app/cli/options/frames.h"
+#include "app/cli/options/look_options.h"
+#include "app/cli/options/open_input.h"
+#include "app/cli/options/places.h"
+#include "app/options/command.h"
+#include "scarp/render/frame/picture_request.h"
+
+namespace scarp::cli {
+
+constexpr double kComancheFov = 60;       // degrees, without --fov
+constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
+
+/// --view.
+struct TypedView {
+  double azimuth_deg = 0, elevation_deg = 0;
+  std::optional<double> distance{};
+};
+
+/// --area: edges in coordinates of --coords, with the text for messages.
+struct TypedArea {
+  double west = 0, south = 0, east = 0, north = 0;
+  std::string text;
+};
+
+/// The viewpoint of a picture.
+struct CameraOptions {
+  std::optional<TypedView> view;
+  std::optional<TypedPlace> eye, target;
+  std::optional<double> eye_above;
+  std::optional<double> fov_deg;
+  std::optional<TypedArea> area;
+  std::string coordinates = "local";
+  bool top = false;
+};
+
+struct RenderOptions : InputOptions {
+  std::string output;
+  PictureRequest picture;
+  PictureFileNames picture_files;
+  CameraOptions camera;
+  FrameOptions frames;
+  DepthOptions depth;
+  FigureOptions figure;
+  std::string voxel_drawing = "compute";
+  bool no_plinth = false;
+  bool full = false;  ///< reads all samples of large rasters
+  int threads = 0;
+  std::vector<std::string> typed;  ///< the typed values: files among them are not overwritten
+};
+
+/// Declares the options of pictures; if `written`, those of files, figures and several frames as well.
+void declare_picture(Command& command, RenderOptions& options, bool written);
+
+/// Adds the subcommand and declares its options.
+Command& declare_render(Program& program, RenderOptions& options);
+
+/// Returns the view of the options over the defaults of a look.
+ViewSettings view_of(const CameraOptions& camera, Look look);
+
+/// Checks everything that needs neither the input nor the output. Throws Error.
+void check_picture(const RenderOptions& options);
+
+}  // namespace scarp::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/options/shared_options.h"
+
+#include <utility>
+
+#include "scarp/base/file_name.h"
+
+namespace scarp::cli {
+
+void add_output_option(Command& command, std::string& output, const std::string& help, const std::string& files,
+                       bool required) {
+  command.add(&output, {.names = "-o,--output",
+                        .value = "FILE",
+                        .help = help,
+                        .files = files,
+                        .fallback = required ? "" : "standard output",
+                        .common = true,
+                        .required = required});
+}
+
+void add_threads_option(Command& command, int& threads) {
+  command.add(&threads, {.names = "--threads",
+                         .help = "number of threads",
+                         .range = {0, 1024},
+                         .note = "0: all processors",
+                         .common = true});
+}
+
+void add_tone_option(Command& command, Binding to, const std::string& output, Topic topic, Looks looks) {
+  const Rule tones{"has no effect on .exr files, which hold linear light",
+                   [&output] { return extension_of(output) != ".exr"; }};
+  command.add(std::move(to), {.names = "--no-tone-curve",
+                              .help = "clip bright colours instead of compressing them",
+                              .topic = topic,
+                              .looks = looks,
+                              .rules = {tones}});
+}
+
+void add_json_option(Command& command, bool& json) {
+  command.add(&json, {.names = "--json", .help = "one JSON object instead of text", .common = true});
+}
+
+}  // namespace scarp::cli

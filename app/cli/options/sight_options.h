@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Heights of observers and targets, and the ends of lines of sight, from options and tables.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/options/map_input.h"
+#include "scarp/analysis/line_of_sight.h"
+#include "scarp/source/table/place_table.h"
+
+namespace scarp::cli {
+
+struct SightHeights {
+  double observer = 2, target = 0;  ///< metres
+  std::string datum = "ground";     ///< vertical reference of the heights of points
+};
+
+/// Declares --observer-height, --target-height and --heights.
+void add_sight_heights(Command& command, SightHeights& heights);
+
+/// Parses X,Y or X,Y,HEIGHT. Throws Error "OPTION 'TEXT': expected ...".
+TablePlace typed_height_place(const std::string& text, std::string_view option);
+
+/// Lines between points.
+struct SightPlaces {
+  std::vector<std::string> from, to;  ///< X,Y[,H]
+  std::string lines;                  ///< a file
+};
+
+/// Declares --from, --to and --lines.
+void add_sight_places(Command& command, SightPlaces& places);
+
+/// Returns every line from each --from to each --to, or those of --lines. Throws Error.
+PlaceTable sight_places(const SightPlaces& places);
+
+/// The ends of one line.
+struct SightEnds {
+  SightEnd from, to;
+};
+SightEnds sight_ends(const MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights);
+
+}  // namespace scarp::cli

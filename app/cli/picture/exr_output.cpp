@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/picture/exr_output.h"
+
+#include <fmt/format.h>
+
+#include "scarp/base/error.h"
+#ifdef SCARP_OPENEXR
+#include "scarp/output/exr.h"
+#endif
+
+namespace scarp::cli {
+
+#ifdef SCARP_OPENEXR
+
+namespace {
+
+// GLM's matrices are for column vectors and stored by columns, which is the same order as for row vectors stored by
+// rows.
+ExrMatrix matrix(const char* name, const glm::dmat4& m) {
+  ExrMatrix stored{name, {}};
+  for (int i = 0; i < 16; ++i) stored.elements[static_cast<std::size_t>(i)] = static_cast<float>(m[i / 4][i % 4]);
+  return stored;
+}
+
+}  // namespace
+
+void require_exr(const std::string&) {}
+
+void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
+                  const std::optional<DepthRange>& range) {
+  const auto axis = [](const char* name, const std::vector<vec3>& layer, int i, ExrStorage storage) {
+    return ExrChannel{name, &layer.data()->x + i, 3, storage};
+  };
+  ExrView picture{layers.width, layers.height};
+  picture.channels = {axis("R", layers.colour, 0, ExrStorage::half),
+                      axis("G", layers.colour, 1, ExrStorage::half),
+                      axis("B", layers.colour, 2, ExrStorage::half),
+                      {"Z", layers.depth.data()},
+                      axis("N.X", layers.normal, 0, ExrStorage::full),
+                      axis("N.Y", layers.normal, 1, ExrStorage::full),
+                      axis("N.Z", layers.normal, 2, ExrStorage::full),
+                      axis("P.X", layers.position, 0, ExrStorage::full),
+                      axis("P.Y", layers.position, 1, ExrStorage::full),
+                      axis("P.Z", layers.position, 2, ExrStorage::full),
+                      {"steps", layers.steps.data()}};
+  std::vector<float> device;
+  if (range) {
+    for (const float z : layers.depth) device.push_back(static_cast<float>(device_depth(z, *range)));
+    picture.channels.push_back({"depth", device.data()});
+  }
+  picture.matrices = {matrix("worldToCamera", camera.camera_from_world()),
+                      matrix("worldToNDC", camera.ndc_from_world())};
+  write_exr(file, path, picture);
+}
+
+#else
+
+void require_exr(const std::string& path) {
+  throw Error(fmt::format(
+      "output '{}': this scarp was built without OpenEXR (SCARP_OPENEXR=OFF); let the name end in .png", path));
+}
+
+void write_layers(ReplaceFile&, const std::string& path, const PictureLayers&, const Camera&,
+                  const std::optional<DepthRange>&) {
+  require_exr(path);
+}
+
+#endif
+
+}  // namespace scarp::cli

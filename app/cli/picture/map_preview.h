@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Pictures of computed maps: the first band over the shaded elevation model, as `render --top --overlay` draws it, with
+// legend, scale bar and north arrow beside it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/cli/options/map_input.h"
+#include "app/cli/picture/picture_format.h"
+#include "scarp/analysis/map_part.h"
+#include "scarp/base/replace_file.h"
+#include "scarp/output/raster_map.h"
+#include "scarp/render/frame/picture.h"
+
+namespace scarp::cli {
+
+/// Throws Error for a format that has no margins for a legend, and in builds without Cairo.
+const PictureFormat& preview_format_of(const std::string& path);
+
+class MapPreview {
+ public:
+  /// Reserves the file. Throws Error for a model without ground, and for a file of the input.
+  MapPreview(std::string path, const MapInput& input);
+
+  /// Draws the map of these rows. Bands without classes are coloured by one of ramp_names(). Throws Error naming the
+  /// file.
+  void write(const RasterMap& map, const RowBand& rows, const std::string& ramp);
+
+ private:
+  std::string path_;
+  const MapInput& input_;
+  ReplaceFile file_;
+  Scene scene_;
+  PictureSettings picture_;
+};
+
+}  // namespace scarp::cli

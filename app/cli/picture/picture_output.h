@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Writes a rendered picture with its figure, in the format of its name.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/cli/picture/picture_format.h"
+#include "scarp/base/georeference.h"
+#include "scarp/base/replace_file.h"
+#include "scarp/output/figure.h"
+#include "scarp/output/geotiff.h"
+#include "scarp/render/camera/camera.h"
+#include "scarp/render/frame/film.h"
+#include "scarp/render/frame/picture.h"
+
+namespace scarp::cli {
+
+/// The place of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster of this many rows.
+/// Nullopt without a georeference.
+std::optional<MapPlace> place_of_map(const Camera& camera, int width, int height, const Georeference& georeference,
+                                     int cols, int rows);
+
+/// Size in pixels of the written picture, including margins except in PDF.
+struct WrittenSize {
+  int width = 0, height = 0;
+};
+
+/// Writes to the temporary file of `file` and commits it. The opacity of `image` is written only to GeoTIFF, and
+/// becomes opaque where the figure is drawn. Throws Error naming the file, and if the figure does not fit the picture.
+WrittenSize write_picture(ReplaceFile& file, const std::string& path, const PictureFormat& format, const Image& image,
+                          const std::optional<Figure>& figure, const std::optional<MapPlace>& place,
+                          double dots_per_inch);
+
+}  // namespace scarp::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Maps as georeferenced rasters: the options, and the metadata of every file.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/options/map_input.h"
+#include "scarp/analysis/map_part.h"
+#include "scarp/output/raster_map.h"
+
+namespace scarp::cli {
+
+struct RasterOutput {
+  std::string driver;                 ///< empty: by the extension
+  std::vector<std::string> creation;  ///< NAME=VALUE
+  std::string part;                   ///< I/N; empty: all
+  std::string preview;                ///< picture; empty: none
+  bool dry_run = false, quiet = false;
+};
+
+/// Declares --of, --co, --part, --preview, --dry-run and --quiet.
+void add_raster_output_options(Command& command, RasterOutput& options);
+
+/// Throws Error for formats and files that cannot be written, before hours of work, and for files of the command line;
+/// sets the driver.
+void settle_output(RasterOutput& options, const MapOptions& map);
+
+/// Returns the rows of --part. Throws Error.
+RowBand rows_of_part(const MapInput& input, const RasterOutput& options);
+
+/// Returns a map of these rows with the input's georeference, without bands. `method` and the pairs go into the
+/// metadata.
+RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBand& rows, const std::string& method,
+                 std::vector<std::pair<std::string, std::string>> metadata);
+
+/// Prints the requirements of a run: size of the output, memory, seconds.
+void print_dry_run(const MapInput& input, const RowBand& rows, const std::string& output, double bytes_per_node,
+                   double seconds);
+
+/// Prints the notes, and unless quiet the last line: output, size, `what`, seconds.
+void print_map_summary(const MapInput& input, const RasterOutput& options, const RowBand& rows,
+                       const std::string& output, const std::string& what, std::chrono::steady_clock::time_point begin);
+
+}  // namespace scarp::cli

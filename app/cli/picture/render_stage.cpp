@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/picture/render_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+#include "app/cli/options/mesh_options.h"
+#include "app/cli/picture/picture_format.h"
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+namespace {
+
+// Stopwatch: seconds since construction or the last call.
+class Watch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(begin_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+SceneDetail detail_of(const Camera& camera, int aa) {
+  return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
+}
+
+// Maximum length of camera rays: infinite, except over wrapped ground. There, unless requested, the extent of the
+// picture, and from outside of the box twice the distance to the field in addition. That reaches the field's far
+// corners: their distance exceeds the sum of the longer side and the distance to the field by less than half of that
+// side, and a camera that sees a whole field is farther away.
+double reach_of(const PictureRequest& asked, double across, const Scene& scene, const WorldBox& box,
+                const Camera& camera) {
+  constexpr double kFarthestCorner = 2;
+  if (asked.reach) return *asked.reach;
+  if (!scene.wraps()) return std::numeric_limits<double>::infinity();
+  return across + kFarthestCorner * length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
+}
+
+}  // namespace
+
+void RenderStage::open() {
+  Watch watch;
+  const MeshInput mesh(options_.mesh);
+  const PictureFiles files = read_picture_files(options_.picture_files, options_.picture);
+  input_ = open_render_input(kind_, options_, files, size_);
+  stop_if_interrupted();
+  read_s_ = watch.lap();
+  places_.emplace(input_.raster, find_coordinates(options_.camera.coordinates), exaggeration());
+  input_.scene = mesh.with_mesh(std::move(input_.scene), *places_);
+  input_.notes.insert(input_.notes.end(), mesh.notes().begin(), mesh.notes().end());
+  if (input_.coarse_voxels) {
+    scene_ = input_.scene;
+  } else {
+    put_on_device(input_.scene);
+  }
+  stop_if_interrupted();
+  subject_ = input_.subject;
+  subject_.files.ramp_stops = files.ramp_stops, subject_.files.detail_texture = files.detail_texture;
+  subject_.size = size_;
+  if (options_.camera.top) subject_.map = map_box();
+  if (!options_.output.empty()) subject_.alpha = picture_format_of(options_.output).map;
+  picture_ = picture(options_, nullptr);
+  facts_.heights = subject_.heights;
+  facts_.area = options_.camera.area.has_value();
+  facts_.function_reach = input_.function_reach;
+  build_s_ = watch.lap();
+}
+
+PictureSettings RenderStage::picture(const RenderOptions& options, const Camera* camera) const {
+  PictureSubject subject = subject_;
+  if (camera) subject.box = scene_box();
+  if (options.picture_files != options_.picture_files) {
+    const PictureFiles files = read_picture_files(options.picture_files, options.picture);
+    subject.files.ramp_stops = files.ramp_stops, subject.files.detail_texture = files.detail_texture;
+  }
+  return resolve(options.picture, subject, camera);
+}
+
+void RenderStage::put_on_device(const Scene& scene) {
+  there_ = scene_on_device(options_.device, scene, options_.voxel_drawing);
+  scene_ = there_.scene;
+}
+
+std::string RenderStage::on_device() const {
+  if (there_.device.empty()) return {};
+  const std::string drawn = drawn_by(there_);
+  return fmt::format(", on {}{}{}", there_.device, drawn.empty() ? "" : ", ", drawn);
+}
+
+WorldBox RenderStage::scene_box() const {
+  const WorldBox& box = scene_.box();
+  if (!box.empty() || !scene_.endless()) return picture_box(scene_);
+  return scene_.terrain() ? picture_box(scene_)
+                          : WorldBox{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
+}
+
+void RenderStage::finish(Camera& camera, const RenderOptions& options) {
+  camera.set_reach(reach_of(options.picture, subject_.across, scene_, scene_box(), camera));
+  // The judge must stop where the march does.
+  if (kind_ == InputKind::function && look_of(options.picture) == Look::error)
+    camera.set_reach(std::min(camera.reach(), input_.function_reach));
+  if (input_.coarse_voxels)
+    put_on_device(input_.scene.coarser(detail_of(camera, resolve(options.picture, subject_).aa)));
+}
+
+bool RenderStage::serves(const Declared& option) const {
+  switch (option.option.topic) {
+    case Topic::picture:
+      return option.name != "--no-plinth";
+    case Topic::ground:
+      // Functions have materials by --ramp, and volumes colours.
+      return option.name != "--overlay" && kind_ != InputKind::function && kind_ != InputKind::voxels;
+    case Topic::light:
+      // Rays over functions end where haze hides everything.
+      return option.name != "--haze" || kind_ != InputKind::function;
+    case Topic::water:
+    case Topic::fog:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool RenderStage::serves(const RenderOptions& options) const {
+  if (kind_ != InputKind::terrain || reads_all_samples(options) == input_.all_samples) return true;
+  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least.
+  const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
+  return 4 * samples < Decimation{}.above;
+}
+
+Camera RenderStage::framed(const ViewSettings& view) {
+  const FieldView found = input_.framed(scene_, view, picture_);
+  raised_ = std::max(raised_, found.raised);
+  return found.camera;
+}
+
+double RenderStage::exaggeration() const {
+  const HeightField* field = input_.scene.terrain();
+  return field ? field->settings().exaggeration : 1;
+}
+
+dvec3 RenderStage::typed_eye() const {
+  constexpr std::string_view kEye = "--eye";
+  const TypedPlace& eye = *options_.camera.eye;
+  if (eye.z) return places_->world(eye, input_.scene, kEye);
+  return above_surface(places_->world(dvec3(eye.x, eye.y, 0), kEye), kEye);
+}
+
+// --eye-above over the surface at (x, y) of `at`, or over water that covers it.
+dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
+  dvec3 eye = places_->on_surface(at, input_.scene, what);
+  if (picture_.water) eye.z = std::max(eye.z, picture_.water->level * exaggeration());
+  return eye + dvec3(0, 0, *options_.camera.eye_above * exaggeration());
+}
+
+// The area that --top shows.
+WorldBox RenderStage::map_box() const {
+  if (scene_.box().empty() && scene_.endless() && !scene_.terrain())
+    throw Error(
+        "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
+        "--eye and --target)");
+  WorldBox box = picture_box(scene_);
+  const auto& area = options_.camera.area;
+  if (!area) return box;
+  constexpr std::string_view kArea = "--area";
+  const dvec3 low = places_->world(dvec3(area->west, area->south, 0), kArea),
+              high = places_->world(dvec3(area->east, area->north, 0), kArea);
+  if (!(low.x < high.x && low.y < high.y))
+    throw Error(fmt::format("{} '{}': expected W below E, and S below N", kArea, area->text));
+  box.low.x = low.x, box.low.y = low.y, box.high.x = high.x, box.high.y = high.y;
+  return box;
+}
+
+Camera RenderStage::camera() {
+  const CameraOptions& asked = options_.camera;
+  const int width = picture_.width, height = picture_.height;
+  if (asked.top) return Camera::top(map_box(), width, height);
+  if (asked.eye) {
+    const dvec3 target = asked.target    ? places_->world(*asked.target, input_.scene, "--target")
+                         : input_.target ? *input_.target
+                                         : picture_box(scene_).middle();
+    return Camera::look_at(typed_eye(), target, input_.view.fov_deg, width, height);
+  }
+  if (!asked.view) {
+    if (input_.eye) return Camera::look_at(*input_.eye, *input_.target, input_.view.fov_deg, width, height);
+    if (picture_.look == Look::comanche && scene_.terrain() && !input_.viewed)
+      return flight_camera(*scene_.terrain(), picture_.grid_north_azimuth, input_.view.fov_deg, width, height);
+  }
+  return framed(input_.view);
+}
+
+PathPlaces RenderStage::path_places() const {
+  PathPlaces path{*places_, input_.scene};
+  if (options_.camera.eye_above)
+    path.above_surface = [this](const dvec3& at, const std::string& what) { return above_surface(at, what); };
+  return path;
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// The scene of `scarp render` and of the window, ready for rays: reads the inputs, copies them to the device, and
+// creates the cameras of the options.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "app/cli/options/device_option.h"
+#include "app/cli/options/places.h"
+#include "app/cli/options/render_options.h"
+#include "app/cli/picture/render_input.h"
+#include "app/cli/picture/seen.h"
+#include "scarp/render/frame/picture_request.h"
+
+namespace scarp::cli {
+
+class RenderStage {
+ public:
+  /// The options must be consistent with each other; `size` is the default size of pictures.
+  RenderStage(InputKind kind, RenderOptions options, ImageSize size = PictureSubject{}.size)
+      : options_(std::move(options)), kind_(kind), size_(size) {}
+  RenderStage(const RenderStage&) = delete;
+  RenderStage& operator=(const RenderStage&) = delete;
+
+  /// Reads the inputs and builds their accelerators. Throws Error naming the file.
+  void open();
+
+  const RenderOptions& options() const { return options_; }
+  InputKind kind() const { return kind_; }
+  /// The settings of the options, for any camera.
+  const PictureSettings& picture() const { return picture_; }
+  /// The settings of the options, or of others that serves() accepts, for a camera; null: for any camera. Throws Error
+  /// naming a file, or a setting that is out of range.
+  PictureSettings picture(const RenderOptions& options, const Camera* camera) const;
+  PictureSettings picture(const Camera& camera) const { return picture(options_, &camera); }
+  /// The scene as it was read. scene() may have coarser voxels or be on a device.
+  const Scene& given_scene() const { return input_.scene; }
+  const Scene& scene() const { return scene_; }
+  const RenderInput& input() const { return input_; }
+  const Places& places() const { return *places_; }
+  const SceneOnDevice& there() const { return there_; }
+  const BlankFacts& facts() const { return facts_; }
+  double read_seconds() const { return read_s_; }
+  double build_seconds() const { return build_s_; }
+  /// Maximum height in metres by which eyes were raised out of the ground so far.
+  double raised() const { return raised_; }
+  /// ", on NAME", and the number of drawn rays; empty on the CPU.
+  std::string on_device() const;
+  /// For unbounded scenes a point: the centre of the picture's extent.
+  WorldBox scene_box() const;
+  /// The factor between heights of the file and z.
+  double exaggeration() const;
+
+  /// The camera of the options.
+  Camera camera();
+  /// A camera that frames the scene.
+  Camera framed(const ViewSettings& view);
+  PathPlaces path_places() const;
+  /// Sets the maximum length of the camera's rays, and coarsens voxels for it.
+  void finish(Camera& camera) { finish(camera, options_); }
+  void finish(Camera& camera, const RenderOptions& options);
+
+  /// Whether the opened input supports pictures with another value of the option.
+  bool serves(const Declared& option) const;
+  /// Whether it supports them with other options, which differ only by such options. They may need other samples of a
+  /// large raster.
+  bool serves(const RenderOptions& options) const;
+
+ private:
+  WorldBox map_box() const;
+  void put_on_device(const Scene& scene);
+  dvec3 typed_eye() const;
+  dvec3 above_surface(const dvec3& at, std::string_view what) const;
+
+  const RenderOptions options_;
+  InputKind kind_;
+  ImageSize size_;
+  PictureSubject subject_{};
+  PictureSettings picture_{};
+  RenderInput input_{Scene({}, {})};
+  std::optional<Places> places_;
+  Scene scene_{{}, {}};
+  SceneOnDevice there_{Scene({}, {}), {}};
+  double read_s_ = 0, build_s_ = 0;
+  double raised_ = 0;
+  BlankFacts facts_;
+};
+
+}  // namespace scarp::cli

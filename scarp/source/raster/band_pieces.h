@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Reads a GDAL band piece by piece: every block of the file is decoded once, with little memory.
+#pragma once
+
+#include <gdal_priv.h>
+
+#include <cstdint>
+#include <functional>
+
+#include "scarp/base/progress.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster/raster_options.h"
+
+namespace scarp {
+
+/// Limits the blocks that GDAL keeps in memory, for the whole process, to what reading by pieces needs. By default GDAL
+/// keeps a twentieth of the machine's memory. A lower limit of the user's stays.
+class GdalCacheLimit {
+ public:
+  GdalCacheLimit();
+  ~GdalCacheLimit();
+  GdalCacheLimit(const GdalCacheLimit&) = delete;
+  GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
+};
+
+/// Callbacks of for_pieces().
+struct PieceCalls {
+  std::function<void(const RasterWindow&)> piece;  ///< in columns and rows of the band
+  std::function<void(int)> rows_done;              ///< all pieces of rows before this one are complete; may be empty
+};
+
+/// Covers the window with pieces that end at block boundaries of the band, in bands from the first row to the last.
+/// Throws Interrupted.
+void for_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_per_sample, const Progress& progress,
+                const PieceCalls& calls);
+
+/// Reads a piece as `type` into `out`, rows `row_samples` samples apart. Throws Error if the file lacks them.
+void read_piece(GDALRasterBand& band, const RasterWindow& piece, GDALDataType type, void* out, int row_samples,
+                GdalSession& session);
+
+/// Returns whether the file stores nothing for the piece, so that all of its samples have the band's nodata value.
+bool is_empty_piece(GDALRasterBand& band, const RasterWindow& piece);
+
+}  // namespace scarp

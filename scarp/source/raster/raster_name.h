@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Adds the path to errors of raster readers.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <new>
+#include <string>
+
+#include "scarp/base/error.h"
+#include "scarp/source/raster/raster.h"
+
+namespace scarp {
+
+/// Returns the result of read() with `path` in it. Rethrows its Errors prefixed with the path, and Interrupted
+/// unchanged.
+template <class Read>
+Raster read_named(const std::string& path, Read&& read) {
+  try {
+    Raster raster = read();
+    raster.path = path;
+    return raster;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("{}: samples do not fit in memory (read a part with --window COL,ROW,COLS,ROWS)", path));
+  }
+}
+
+}  // namespace scarp

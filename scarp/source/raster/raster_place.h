@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Georeference of a GDAL dataset: converts geotransform and CRS to positions of samples, north up, with true cell sizes
+// on the ground.
+#pragma once
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scarp/base/georeference.h"
+#include "scarp/source/raster/raster_options.h"
+
+namespace scarp {
+
+/// Result of find_place().
+struct RasterPlace {
+  Georeference georeference;       ///< of the window's samples, after the flips
+  bool flip_rows = false;          ///< the file's rows run from south to north
+  bool flip_cols = false;          ///< the file's columns run from east to west
+  double map_unit = 0;             ///< metres per unit of a projected or local CRS; 0: none
+  double vertical_unit = 0;        ///< metres per unit of a vertical CRS; 0: none
+  std::string vertical_unit_name;  ///< its name
+  std::vector<std::string> notes;
+};
+
+/// GDAL's six coefficients: map = (m[0] + m[1] col + m[2] row, m[3] + m[4] col + m[5] row), for pixel edges.
+using GeoTransform = std::array<double, 6>;
+
+/// Displacements below this fraction of a cell count as rounding in the file: 1e-3 cell is Scarp's horizontal accuracy.
+inline constexpr double kLargestDriftInCells = 1e-3;
+
+/// Throws Error without the file's name: not finite, rotated, cells without size.
+void check_geotransform(const GeoTransform& map, int cols, int rows);
+
+/// Returns a full circle in map units if the map's x is a longitude, by the CRS of the options, else of the file
+/// (`own`, may be null), else by bounds that fit degrees; otherwise 0. Throws Error without the file's name: an
+/// unusable CRS.
+double turn_of(const OGRSpatialReference* own, const GeoTransform& map, double cols, double rows,
+               const RasterOptions& options);
+
+/// Throws Error without the file's name: a rotated or degenerate geotransform, an unusable CRS.
+RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options);
+
+}  // namespace scarp

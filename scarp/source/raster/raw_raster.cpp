@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/raster/raw_raster.h"
+
+#include <fmt/format.h>
+
+#include "scarp/base/error.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster/file_check.h"
+#include "scarp/source/raster/gdal_dataset.h"
+#include "scarp/source/raster/raster_name.h"
+#include "scarp/source/raster/raw_band.h"
+
+namespace scarp {
+namespace {
+
+// Bytes after the samples. Throws Error if there are too few, or extra ones without an offset.
+std::int64_t bytes_left(const RawFormat& format, std::int64_t bytes) {
+  // In double: neither the product nor the sum can overflow.
+  const double needed = static_cast<double>(format.offset) +
+                        static_cast<double>(format.cols) * static_cast<double>(format.rows) * format.bytes;
+  const double have = static_cast<double>(bytes);
+  if (have == needed || (format.has_offset && have > needed)) return static_cast<std::int64_t>(have - needed);
+  throw Error(fmt::format("{} bytes, but --raw {} needs {:.0f} ({})", bytes, text_of(format), needed,
+                          have < needed ? "truncated file, or wrong size, type or offset"
+                                        : "wrong size or type; otherwise append +0 to ignore bytes after the "
+                                          "samples, or +OFFSET to skip a header"));
+}
+
+}  // namespace
+
+Raster read_raw(const std::string& path, const RasterOptions& options, const Progress& progress) {
+  GdalSession session;
+  return read_named(path, [&] {
+    const RawFormat& format = options.raw.value();
+    const std::int64_t bytes = file_bytes(path);
+    check_file(path);
+    const std::int64_t left = bytes_left(format, bytes);
+    const GDALDatasetUniquePtr dataset =
+        open_raw_band({full_path(path), format.cols, format.rows, raw_sample_type(format.kind, format.bytes).value(),
+                       format.bytes, format.big_endian, format.offset},
+                      session);
+    Raster raster = read_dataset(*dataset, options, session, progress);
+    if (left > 0) raster.notes.push_back(fmt::format("ignored {} bytes after the samples", left));
+    return raster;
+  });
+}
+
+}  // namespace scarp

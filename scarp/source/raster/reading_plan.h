@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The part of a band to read: all of its samples or, for a large raster that is only displayed, fewer of them
+// (decimate.h), from an overview of the file if it has a suitable one.
+#pragma once
+
+#include <gdal_priv.h>
+
+#include <optional>
+#include <string>
+
+#include "scarp/source/raster/decimate.h"
+#include "scarp/source/raster/raster_options.h"
+
+namespace scarp {
+
+/// Position of the samples of a result along one side, in samples of the request.
+struct SampleSpacing {
+  double first = 0;
+  double step = 1;
+};
+
+struct ReadingPlan {
+  GDALRasterBand* band = nullptr;  ///< the band or one of its overviews
+  RasterWindow window;             ///< of it
+  bool decimates = false;          ///< whether the result has fewer samples than requested
+  int cols = 0;                    ///< of the result
+  int rows = 0;
+  SampleSpacing across, down;
+  SampleEnds known;  ///< of the file, as an overview may lack them
+  std::string note;  ///< empty if everything is read
+};
+
+/// Plans to read a window of a band. `own_nodata`: holes are those that the file states. Throws Error without the
+/// file's name if there are too many samples even to reduce them.
+ReadingPlan plan_reading(GDALRasterBand& band, const RasterWindow& window, const std::optional<Decimation>& decimation,
+                         bool own_nodata);
+
+}  // namespace scarp

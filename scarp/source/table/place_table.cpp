@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/table/place_table.h"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/table/csv_rows.h"
+#include "scarp/source/table/table_file.h"
+
+namespace scarp {
+namespace {
+
+enum Column : std::size_t { x, y, z, tx, ty, tz, lon, lat, tlon, tlat, column_count };
+constexpr std::array<std::string_view, column_count> kNames = {"x",  "y",   "z",   "tx",   "ty",
+                                                               "tz", "lon", "lat", "tlon", "tlat"};
+
+// The columns of a header; those that are missing are `npos`.
+struct Header {
+  std::array<std::size_t, column_count> at;
+  std::vector<std::size_t> carried;
+  bool has(Column column) const { return at[column] != std::string_view::npos; }
+};
+
+Header header_of(const std::vector<std::string_view>& fields, PlaceKind kind, PlaceTable& table) {
+  Header header;
+  header.at.fill(std::string_view::npos);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto name = std::find(kNames.begin(), kNames.end(), trimmed(fields[i]));
+    if (name == kNames.end()) {
+      header.carried.push_back(i);
+      table.carried.names.emplace_back(trimmed(fields[i]));
+      continue;
+    }
+    auto& at = header.at[static_cast<std::size_t>(name - kNames.begin())];
+    if (at != std::string_view::npos) throw Error(fmt::format("two columns '{}'", *name));
+    at = i;
+  }
+  const bool lines = kind == PlaceKind::lines;
+  const bool plain = header.has(x) && header.has(y) && (!lines || (header.has(tx) && header.has(ty)));
+  table.lonlat = header.has(lon) && header.has(lat) && (!lines || (header.has(tlon) && header.has(tlat)));
+  if (plain == table.lonlat)
+    throw Error(fmt::format("{} (required: {})", plain ? "columns x,y and lon,lat both" : "no columns with places",
+                            lines ? "x,y[,z],tx,ty[,tz] or lon,lat[,z],tlon,tlat[,tz]" : "x,y[,z] or lon,lat[,z]"));
+  return header;
+}
+
+// --- vector files --------------------------------------------------------------------------------------------------
+
+struct TransformDeleter {
+  void operator()(OGRCoordinateTransformation* transform) const { OGRCoordinateTransformation::DestroyCT(transform); }
+};
+using Transform = std::unique_ptr<OGRCoordinateTransformation, TransformDeleter>;
+
+Transform to_lonlat(const OGRSpatialReference& from) {
+  OGRSpatialReference wgs84;
+  wgs84.SetWellKnownGeogCS("WGS84");
+  wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return Transform(OGRCreateCoordinateTransformation(&from, &wgs84));
+}
+
+TablePlace place_from(double x_at, double y_at, std::optional<double> height, OGRCoordinateTransformation* transform,
+                      std::int64_t feature) {
+  TablePlace place{x_at, y_at, height};
+  if (transform && (!transform->Transform(1, &place.x, &place.y)))
+    throw Error(fmt::format("feature {}: ({}, {}) is outside the domain of the file's CRS", feature, x_at, y_at));
+  if (!std::isfinite(place.x) || !std::isfinite(place.y)) throw Error(fmt::format("feature {}: not finite", feature));
+  return place;
+}
+
+void add_feature(const OGRGeometry& geometry, PlaceKind kind, OGRCoordinateTransformation* transform,
+                 std::int64_t feature, std::vector<PlaceRow>& rows) {
+  const auto type = wkbFlatten(geometry.getGeometryType());
+  if (type == wkbMultiPoint || type == wkbMultiLineString || type == wkbGeometryCollection) {
+    for (const OGRGeometry* part : *geometry.toGeometryCollection()) add_feature(*part, kind, transform, feature, rows);
+    return;
+  }
+  const auto height = [&](double z_at) { return geometry.Is3D() ? std::optional(z_at) : std::nullopt; };
+  if (kind == PlaceKind::points && type == wkbPoint) {
+    const OGRPoint& point = *geometry.toPoint();
+    if (point.IsEmpty()) throw Error(fmt::format("feature {}: empty geometry", feature));
+    rows.push_back({place_from(point.getX(), point.getY(), height(point.getZ()), transform, feature), {}, feature});
+  } else if (kind == PlaceKind::lines && type == wkbLineString && geometry.toLineString()->getNumPoints() >= 2) {
+    const OGRLineString& line = *geometry.toLineString();
+    const int last = line.getNumPoints() - 1;
+    rows.push_back({place_from(line.getX(0), line.getY(0), height(line.getZ(0)), transform, feature),
+                    place_from(line.getX(last), line.getY(last), height(line.getZ(last)), transform, feature),
+                    feature});
+  } else {
+    throw Error(fmt::format("feature {}: is a {} (expected {})", feature, geometry.getGeometryName(),
+                            kind == PlaceKind::points ? "points" : "lines of two or more vertices"));
+  }
+}
+
+PlaceTable read_vectors(const std::string& path, PlaceKind kind) {
+  const GdalSession session;
+  const GDALDatasetUniquePtr dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (!dataset || dataset->GetLayerCount() == 0)
+    throw Error(session.reason("is neither CSV nor a vector format that GDAL can read"));
+  PlaceTable table;
+  OGRLayer& layer = *dataset->GetLayer(0);
+  Transform transform;
+  if (const OGRSpatialReference* crs = layer.GetSpatialRef()) {
+    OGRSpatialReference from(*crs);
+    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    transform = to_lonlat(from);
+    if (!transform) throw Error("its CRS cannot be transformed to longitude and latitude");
+    table.lonlat = true;
+  }
+  OGRFeatureDefn& fields = *layer.GetLayerDefn();
+  for (int i = 0; i < fields.GetFieldCount(); ++i)
+    table.carried.names.emplace_back(fields.GetFieldDefn(i)->GetNameRef());
+  std::int64_t number = 0;
+  for (const auto& feature : layer) {
+    ++number;
+    const OGRGeometry* geometry = feature->GetGeometryRef();
+    if (!geometry) throw Error(fmt::format("feature {}: has no geometry", number));
+    const std::size_t before = table.rows.size();
+    add_feature(*geometry, kind, transform.get(), number, table.rows);
+    for (std::size_t i = before; i < table.rows.size(); ++i)
+      for (int k = 0; k < fields.GetFieldCount(); ++k)
+        table.carried.cells.emplace_back(feature->IsFieldSetAndNotNull(k) ? feature->GetFieldAsString(k) : "");
+  }
+  if (session.failed()) throw Error(session.reason("is damaged"));
+  return table;
+}
+
+bool is_text(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return path == "-" || extension == ".csv" || extension == ".txt" || extension == ".tsv";
+}
+
+}  // namespace
+
+std::string PlaceTable::where(std::size_t row) const {
+  return fmt::format("{}: {} {}", path, is_text(path) ? "line" : "feature", rows[row].line);
+}
+
+PlaceTable parse_place_csv(std::string_view bytes, PlaceKind kind) {
+  CsvRows rows(bytes);
+  if (!rows.next()) throw Error("is empty (expected a header and places)");
+  PlaceTable table;
+  const std::size_t width = rows.fields().size();
+  const Header header = header_of(rows.fields(), kind, table);
+  while (rows.next()) {
+    const auto& fields = rows.fields();
+    const std::int64_t line = rows.line();
+    if (fields.size() != width)
+      throw Error(fmt::format("line {}: {} fields (the header has {})", line, fields.size(), width));
+    const auto number = [&](Column column) { return finite_field(fields[header.at[column]], kNames[column], line); };
+    const auto height = [&](Column column) {
+      return header.has(column) && !trimmed(fields[header.at[column]]).empty() ? std::optional(number(column))
+                                                                               : std::nullopt;
+    };
+    const bool degrees = table.lonlat;
+    PlaceRow row{{number(degrees ? lon : x), number(degrees ? lat : y), height(z)}, {}, line};
+    if (kind == PlaceKind::lines) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
+    table.rows.push_back(row);
+    for (const std::size_t i : header.carried) table.carried.cells.emplace_back(fields[i]);
+  }
+  return table;
+}
+
+PlaceTable read_places(const std::string& path, PlaceKind kind) {
+  try {
+    PlaceTable table = is_text(path) ? parse_place_csv(table_bytes(path), kind) : read_vectors(path, kind);
+    table.path = path;
+    if (table.rows.empty()) throw Error(kind == PlaceKind::points ? "contains no points" : "contains no lines");
+    return table;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
+}  // namespace scarp
