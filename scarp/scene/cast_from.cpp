@@ -13,7 +13,6 @@
 namespace scarp {
 namespace {
 
-constexpr int kFanStrip = 16;  // columns that are walked together
 constexpr std::int64_t kFanRaysPerPiece = 8192;
 
 // With the seam of cast(): rays beside a border meet what they meet there.

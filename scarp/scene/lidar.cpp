@@ -20,7 +20,6 @@ namespace {
 constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
 constexpr std::int64_t kMostRays = std::int64_t{1} << 40;
 constexpr std::int64_t kMostColumnsPerCall = std::int64_t{1} << 30;  // fans count them in 32 bits
-constexpr std::int64_t kLidarStrip = 16;                             // columns of a fan that are walked together
 constexpr std::int64_t kLidarGrain = 4096;
 
 bool all_finite(const dvec3& v) { return std::isfinite(v.x + v.y + v.z); }
@@ -238,16 +237,16 @@ void LidarScan::cast(std::int64_t first, std::int64_t count, std::vector<LidarRe
 
 void LidarScan::cast_fan(std::int64_t first, std::int64_t count, std::vector<LidarReturn>& returns) const {
   const std::size_t channels = lidar_.channels();
-  const auto strip_size = static_cast<std::size_t>(kLidarStrip) * channels;
-  const std::int64_t strips = (count + kLidarStrip - 1) / kLidarStrip;
+  const auto strip_size = static_cast<std::size_t>(kFanStrip) * channels;
+  const std::int64_t strips = (count + kFanStrip - 1) / kFanStrip;
   const std::size_t size = static_cast<std::size_t>(strips) * strip_size;
   const Station station = station_at(lidar_.path.front().time);
   std::vector<float> dx(size), dy(size), dz(size), t(size), u(size), v(size);
   std::vector<std::int32_t> col(size), row(size);
   std::vector<HitStatus> status(size);
   const auto place = [&](std::int64_t i, std::size_t r) {
-    return static_cast<std::size_t>(i / kLidarStrip) * strip_size + r * kLidarStrip +
-           static_cast<std::size_t>(i % kLidarStrip);
+    return static_cast<std::size_t>(i / kFanStrip) * strip_size + r * kFanStrip +
+           static_cast<std::size_t>(i % kFanStrip);
   };
   const std::int64_t grain = std::max<std::int64_t>(1, kLidarGrain / static_cast<std::int64_t>(channels));
   parallel_for(count, grain, [&](std::int64_t begin, std::int64_t end) {
@@ -269,7 +268,7 @@ void LidarScan::cast_fan(std::int64_t first, std::int64_t count, std::vector<Lid
   fan.origin = station.eye;
   fan.dx = dx.data(), fan.dy = dy.data(), fan.dz = dz.data();
   fan.columns = static_cast<int>(count), fan.rows = static_cast<int>(channels);
-  fan.row_stride = kLidarStrip, fan.strip_stride = static_cast<std::ptrdiff_t>(strip_size);
+  fan.row_stride = kFanStrip, fan.strip_stride = static_cast<std::ptrdiff_t>(strip_size);
   // Directions have length 1, but for their rounding; a longer ray may hit beyond the range.
   fan.t_max = lidar_.max_range;
   cast_from(*terrain_, fan, {t.data(), col.data(), row.data(), u.data(), v.data(), status.data()});

@@ -17,7 +17,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::size_t kStripColumns = 16;   // that a fan follows together
+constexpr std::size_t kStripColumns = kFanStrip;
 constexpr std::size_t kLeastRun = 16;       // shorter ones are not looked for
 constexpr std::size_t kRaysPerLook = 8192;  // of several strips, for the threads
 constexpr std::int64_t kFanRaysPerPiece = 2048;
@@ -28,8 +28,6 @@ constexpr double kStraightDown = 0.996;
 constexpr double kSameSlope = 0x1p-22;
 // Longer ones would need more memory than a group of rays has.
 constexpr std::size_t kLongestRun = kRaysPerGroup / kStripColumns;
-// Lines of the grid that take a column as long as a batch takes for one ray (doc/dev/decisions/march.md).
-constexpr double kLinesPerRow = 8;
 
 // Directions as floats lose nothing that fans promise.
 bool is_plain(const dvec3& d) {
@@ -64,19 +62,6 @@ std::size_t first_run(std::span<const Ray> rays) {
 // The share of its length by which a step is vertical.
 double rise(const dvec3& step) { return std::abs(step.z) / std::max(length(step), 0x1p-1000); }
 
-// About the number of lines that a column with these ends crosses over ground that may be as high as its rays.
-double lines_of(const HeightField& field, double z, const dvec3& a, const dvec3& b) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  double begin = kFar, end = 0;
-  for (const dvec3& d : {a, b}) {
-    const double fall = -slope(d);
-    begin = std::min(begin, fall > 0 ? std::max(z - field.max_height(), 0.0) / fall : kFar);
-    end = std::max(end, fall > 0 ? (z - field.min_height()) / fall : kFar);
-  }
-  const double cell = std::min(field.settings().cell_x, field.settings().cell_y);
-  return begin < end ? std::min(end - begin, std::hypot(field.width(), field.depth())) / cell : 0;
-}
-
 }  // namespace
 
 std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays) {
@@ -98,11 +83,7 @@ std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ra
   fan.origin = origin;
   fan.columns = static_cast<int>(batch.columns ? runs : batch.run);
   fan.rows = static_cast<int>(batch.columns ? batch.run : runs);
-  if (!looks_by_fan(target, fan)) return {};
-  const bool from_above = origin.z > target.field->max_height();
-  if (from_above &&
-      fan.rows * kLinesPerRow < lines_of(*target.field, origin.z, first, rays[runs * batch.run - 1].direction))
-    return {};
+  if (!looks_by_fan(target, fan, first, rays[runs * batch.run - 1].direction)) return {};
   return batch;
 }
 

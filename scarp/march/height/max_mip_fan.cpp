@@ -22,11 +22,36 @@ using max_mip::FanRest;
 constexpr std::size_t kBatch = 4096;
 
 // From above all ground, where rays are far from the ground until they hit, the batch is as fast with fewer rows than
-// this; and anywhere with fewer columns than this, which leave most lanes empty. Measured (decisions.md).
+// this; and anywhere with fewer columns than this, which leave most lanes empty. Measured (doc/dev/decisions/march.md).
 constexpr int kFewRows = 24, kFewColumns = 5;
+// Lines of the grid that take a column as long as a batch takes for one ray.
+constexpr double kLinesPerRow = 8;
 
-bool pays(const HeightField& field, const Fan& fan, int columns) {
-  return columns >= kFewColumns && (fan.rows >= kFewRows || fan.origin.z <= field.max_height());
+// About the number of lines that a column with these ends crosses over ground that may be as high as its rays.
+double lines_of(const HeightField& field, double z, const dvec3& a, const dvec3& b) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  double begin = kFar, end = 0;
+  for (const dvec3& d : {a, b}) {
+    const double fall = -d.z / std::hypot(d.x, d.y);
+    begin = std::min(begin, fall > 0 ? std::max(z - field.max_height(), 0.0) / fall : kFar);
+    end = std::max(end, fall > 0 ? (z - field.min_height()) / fall : kFar);
+  }
+  const double cell = std::min(field.settings().cell_x, field.settings().cell_y);
+  return begin < end ? std::min(end - begin, std::hypot(field.width(), field.depth())) / cell : 0;
+}
+
+// `first`, `last`: directions at opposite corners of these columns.
+bool pays(const HeightField& field, const Fan& fan, int columns, const dvec3& first, const dvec3& last) {
+  if (columns < kFewColumns) return false;
+  if (fan.origin.z <= field.max_height()) return true;
+  return fan.rows >= kFewRows && fan.rows * kLinesPerRow >= lines_of(field, fan.origin.z, first, last);
+}
+
+std::ptrdiff_t place_of(const Fan& fan, int column, int row) {
+  return row * fan.row_stride + column / kFanStrip * fan.strip_stride + column % kFanStrip;
+}
+dvec3 direction_of(const Fan& fan, std::ptrdiff_t i) {
+  return {static_cast<double>(fan.dx[i]), static_cast<double>(fan.dy[i]), static_cast<double>(fan.dz[i])};
 }
 
 thread_local FanStats t_stats;
@@ -34,7 +59,7 @@ thread_local FanStats t_stats;
 Ray ray_of(const Fan& fan, std::ptrdiff_t i) {
   Ray ray;
   ray.origin = fan.origin;
-  ray.direction = {static_cast<double>(fan.dx[i]), static_cast<double>(fan.dy[i]), static_cast<double>(fan.dz[i])};
+  ray.direction = direction_of(fan, i);
   ray.t_min = fan.t_min, ray.t_max = fan.t_max;
   return ray;
 }
@@ -128,11 +153,12 @@ void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const 
   require(target, HeightPart::pyramid);
   if (column_begin >= column_end || fan.rows <= 0) return;
   Batch batch(target, fan, hits);
-  const bool walks = options.always || pays(*target.field, fan, column_end - column_begin);
+  const bool walks = options.always || pays(*target.field, fan, column_end - column_begin,
+                                            direction_of(fan, place_of(fan, column_begin, 0)),
+                                            direction_of(fan, place_of(fan, column_end - 1, fan.rows - 1)));
   if (!walks || !max_mip::walks_fan(target, fan)) {
     for (int row = 0; row < fan.rows; ++row) {
-      for (int column = column_begin; column < column_end; ++column)
-        batch.add(row * fan.row_stride + column / 16 * fan.strip_stride + column % 16);
+      for (int column = column_begin; column < column_end; ++column) batch.add(place_of(fan, column, row));
     }
     return batch.answer();
   }
@@ -155,9 +181,9 @@ void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const 
   closest_hits_max_mip_fan(target, fan, hits, column_begin, column_end, {});
 }
 
-bool looks_by_fan(const HeightTarget& target, const Fan& fan) {
+bool looks_by_fan(const HeightTarget& target, const Fan& fan, const dvec3& first, const dvec3& last) {
   require(target, HeightPart::pyramid);
-  return pays(*target.field, fan, fan.columns) && max_mip::walks_fan(target, fan);
+  return pays(*target.field, fan, fan.columns, first, last) && max_mip::walks_fan(target, fan);
 }
 
 void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int column_begin, int column_end,
@@ -168,8 +194,7 @@ void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sigh
     return max_mip::look_fan(target, fan, sights, column_begin, column_end, options, t_stats);
   for (int row = 0; row < fan.rows; ++row) {
     for (int column = column_begin; column < column_end; ++column)
-      sights[row * fan.row_stride + column / 16 * fan.strip_stride + column % 16] = {
-          -std::numeric_limits<float>::infinity(), 0};
+      sights[place_of(fan, column, row)] = {-std::numeric_limits<float>::infinity(), 0};
   }
 }
 

@@ -30,6 +30,9 @@
 
 namespace scarp {
 
+/// Columns that are followed together: the lanes of a vector.
+constexpr int kFanStrip = 16;
+
 /// Rays of one origin. The ray of column c and row r is at r * row_stride + c / 16 * strip_stride + c % 16 of each
 /// array. In rows: row_stride = columns, strip_stride = 16; in strips of 16 columns: row_stride = 16, strip_stride = 16
 /// * rows. Rows should be in the order of their slope, rising or falling; they are faster then.
@@ -69,8 +72,8 @@ struct FanSight {
 };
 
 /// Whether look_max_mip_fan() finds anything over this field and from this origin, and is likely to be faster than a
-/// batch.
-bool looks_by_fan(const HeightTarget& target, const Fan& fan);
+/// batch. `first` and `last`: directions of the rays at two opposite corners; those of `fan` are not read.
+bool looks_by_fan(const HeightTarget& target, const Fan& fan, const dvec3& first, const dvec3& last);
 
 /// Sets sights, laid out as the rays, for t_min = 0 and any t_max. The rays may be given in double elsewhere: sights
 /// are also those of rays whose directions, or multiples of them, round to these floats. Threads and columns as above.

@@ -438,5 +438,35 @@ TEST(MaxMipFan, UsualFansLeaveFewRays) {
   EXPECT_LT(stats.resumed + stats.from_start, stats.rays / 100);
 }
 
+// From above all ground a column crosses as many lines whatever its number of rows: a batch is faster with few.
+TEST(MaxMipFan, FewRowsFromAboveGoToTheBatch) {
+  constexpr int kSide = 513;
+  std::vector<float> samples;
+  for (int i = 0; i < kSide * kSide; ++i)
+    samples.push_back(8 * std::sin(0.05f * static_cast<float>(i % kSide)) *
+                      std::cos(0.04f * static_cast<float>(i / kSide)));
+  const HeightField field = HeightField::own(samples, kSide, kSide);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const double above = field.max_height() + 0.1 * field.width();
+  const auto strips = [&](int rows, double highest, double lowest) {
+    Rays rays({0, 0.5 * field.depth(), above}, 32, rows, true);
+    for (int c = 0; c < rays.columns; ++c) {
+      for (int r = 0; r < rows; ++r)
+        rays.put(c, r, direction_to(1.2 + 0.02 * c, highest + (lowest - highest) * r / (rows - 1)));
+    }
+    const std::size_t count = rays.dx.size();
+    std::vector<float> t(count), u(count), v(count);
+    std::vector<std::int32_t> col(count), row(count);
+    take_fan_stats();
+    closest_hits_max_mip_fan(target, rays.fan(), {t.data(), col.data(), row.data(), u.data(), v.data()});
+    return take_fan_stats().strips;
+  };
+  EXPECT_EQ(strips(32, 0, -0.5), 0u);
+  EXPECT_GT(strips(128, 0, -0.5), 0u);
+  // Less ground.
+  EXPECT_GT(strips(32, -0.4, -0.5), 0u);
+}
+
 }  // namespace
 }  // namespace scarp::test
