@@ -131,8 +131,8 @@ class Ground {
     const double gu = upper ? h.h10 - h.h00 : h.h11 - h.h01, gv = upper ? h.h01 - h.h00 : h.h11 - h.h10;
     const auto clearance = [&](double t) {
       const double u = inside(ox_ + dx_ * t - col), v = inside(oy_ + dy_ * t - row);
-      const double ground =
-          upper ? h.h00 * (1 - u - v) + h.h10 * u + h.h01 * v : h.h11 * (u + v - 1) + h.h01 * (1 - u) + h.h10 * (1 - v);
+      const double ground = upper ? h.h00 + (h.h10 - h.h00) * u + (h.h01 - h.h00) * v
+                                  : h.h11 + (h.h01 - h.h11) * (1 - u) + (h.h10 - h.h11) * (1 - v);
       return oz_ + dz_ * t - ground;
     };
     p.b = dz_ - gu * dx_ - gv * dy_;
@@ -327,8 +327,10 @@ class Ground {
   }
   static double inside(double x) { return std::clamp(x, 0.0, 1.0); }
   static int within(double cell, int cells) { return static_cast<int>(cell - std::floor(cell / cells) * cells); }
+  // Exact on level ground, on which rays may start.
   static double bilinear(const CellHeights& h, double u, double v) {
-    return (h.h00 * (1 - u) + h.h10 * u) * (1 - v) + (h.h01 * (1 - u) + h.h11 * u) * v;
+    const double west = h.h00 + (h.h01 - h.h00) * v, east = h.h10 + (h.h11 - h.h10) * v;
+    return west + (east - west) * u;
   }
 
   const HeightField& field_;

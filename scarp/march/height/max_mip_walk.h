@@ -143,9 +143,9 @@ class Walk {
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
       side_ = Side::above;
-      // Down to the highest sample and what rounding may add to it. Not finite for a ray straight down without an end,
-      // which has one cell.
-      const double t_top = (highest - z_ + rounding_) / dz_;
+      // Down to the highest sample and what rounding may add to it, twice: a touch is within the bound, and its t is
+      // rounded. Not finite for a ray straight down without an end, which has one cell.
+      const double t_top = (highest - z_ + 2 * rounding_) / dz_;
       if (t_top > t_end_) return false;
       level_ = from_outside;
       t_begin = std::max(t_begin, t_top);

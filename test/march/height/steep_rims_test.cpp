@@ -617,5 +617,62 @@ TEST(SteepRims, TouchNodesOfTheBorderAlikeInAllQueries) {
   EXPECT_GT(hits, 1000);
 }
 
+// Level ground without rounding, with a hole elsewhere.
+HeightField level_with_hole(double height, double cell, Surface surface) {
+  std::vector<float> samples(9 * 5, static_cast<float>(height));
+  samples[6] = kNone;
+  return HeightField::own(samples, 9, 5, {.cell_x = cell, .cell_y = cell, .surface = surface});
+}
+
+TEST(SteepRims, HitLevelGroundOnWhichTheyStart) {
+  Random random(61);
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const double cell : {46.315, 30.7, 1.0, 0.1}) {
+      const HeightField field = level_with_hole(500, cell, surface);
+      SteepRays rays(field, kSeamOfScenes);
+      for (int i = 0; i < cases(4000, 1000, 200); ++i) {
+        // On a line of constant row or column, or in between; the hole is in the north.
+        dvec3 p(uniform(random, 0, 8) * cell, uniform(random, 0, 2.9) * cell, 500);
+        const int line = whole(random, 0, 2);
+        if (line < 2) p[line] = whole(random, 0, 2) * cell;
+        const double lean = whole(random, 0, 1) ? 0.0 : uniform(random, -1, 1);
+        rays.expect_hit({.origin = p, .direction = {0, line == 1 ? 0 : lean, -0.5}}, 0);
+      }
+      rays.check(0);
+    }
+  }
+}
+
+// Rays that come to the height of the rim just where they cross it.
+TEST(SteepRims, KeepTouchesAtTheEndOfTheRange) {
+  Random random(62);
+  int hits = 0;
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    for (const double cell : {0.1, 1.0, 7.7}) {
+      const HeightField field = level_with_hole(0, cell, surface);
+      const MaxPyramid pyramid(field);
+      const HeightTarget target{&field, &pyramid, 0, kSeamOfScenes};
+      for (int i = 0; i < cases(200'000, 20'000, 2'000); ++i) {
+        dvec3 p(whole(random, 0, 80) * 0.1 * cell, whole(random, 0, 40) * 0.1 * cell, 0);
+        if (whole(random, 0, 1)) {
+          p.y = whole(random, 0, 4) * cell;
+        } else {
+          p.x = whole(random, 0, 8) * cell;
+        }
+        const dvec3 d(whole(random, -10, 10) * 0.1, whole(random, -10, 10) * 0.1, std::pow(10.0, -whole(random, 0, 4)));
+        const double t = std::pow(10.0, -whole(random, 0, 3));
+        Ray ray{.origin = p + t * dvec3(d.x, d.y, d.z), .direction = -d};
+        const Hit hit = march_max_mip(target, ray);
+        if (!hit) continue;
+        ++hits;
+        ray.t_max = hit.t;
+        ASSERT_EQ(march_max_mip(target, ray), hit) << i << ", cell " << cell;
+        ASSERT_TRUE(occluded_max_mip(target, ray)) << i << ", cell " << cell;
+      }
+    }
+  }
+  EXPECT_GT(hits, 1000);
+}
+
 }  // namespace
 }  // namespace scarp::test
