@@ -199,26 +199,29 @@ struct ObjectRay {
   ObjectRay(const TurnedRay& ray, dvec3 origin, double room, double t_min, double t_max, const VoxelBox& box) {
     note_block(SimtBlock::object);
     glsl::ScarpVoxelClip clip{t_min, t_max, -1, false};
+    walk.back = ray.back;
     for (int axis = 0; axis < 3; ++axis) {
       if (ray.given[axis] == 0)
         origin[axis] = glsl::scarp_voxel_level(axis, origin[axis], room, ray.back, box.low[axis], box.high[axis]);
+      if ((walk.back & glsl::kScarpInexact) == 0)
+        walk.back |= glsl::scarp_voxel_rounded(origin[axis], ray.given[axis], t_min);
       met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], room, ray.speed[axis],
-                                   ray.back, box.low[axis], box.high[axis], false, 0, clip) &&
+                                   walk.back, box.low[axis], box.high[axis], false, 0, clip) &&
             met;
     }
     met = met && clip.t <= clip.t_out;
     if (!met) return;
+    walk.speed = ray.speed;
     for (int axis = 0; axis < 3; ++axis) {
       glsl::ScarpVoxelPlace at;
-      met = glsl::scarp_voxel_place(axis, origin[axis], ray.given[axis], ray.speed[axis], ray.back, box.low[axis],
+      met = glsl::scarp_voxel_place(axis, origin[axis], ray.given[axis], ray.speed[axis], walk.back, box.low[axis],
                                     box.high[axis], false, 0, clip, at) &&
             met;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
       walk.next[axis] = at.next;
+      walk.speed[axis] = at.speed;
     }
-    walk.speed = ray.speed;
-    walk.back = ray.back;
     walk.axis = -1;
     t = clip.t;
     entered = glsl::scarp_voxel_entered(clip, ray.back);

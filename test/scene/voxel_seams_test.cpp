@@ -233,50 +233,108 @@ TEST(VoxelSeams, HaveNoGapBetweenPlacedFields) {
   }
 }
 
-// Two objects that touch along an edge, in boxes that reach beyond it: rays in any direction through points of the
-// edge.
+// Components of directions that rounding treats differently.
+double any_component(bench::Random& random) {
+  constexpr std::array<double, 6> kTiny = {6.123233995736766e-17, 0x1p-30, 3 * 0x1p-29, 0x1p-52, 0x1p-1000, 5e-324};
+  switch (random.below(5)) {
+    case 0:
+      return std::ldexp(1.0, -random.below(19));
+    case 1:
+      return 1 + random.below(7);
+    case 2:
+      return std::ldexp(random.uniform(0.5, 1), -14 - random.below(40));
+    case 3:
+      return kTiny[static_cast<std::size_t>(random.below(6))];
+    default:
+      return random.uniform(0.05, 1);
+  }
+}
+
+// Two objects that touch along an edge: rays in any direction through points of the edge. One of the boxes is entered
+// there: that of a single solid block, or both boxes if they touch in a plane and reach beyond the edge there.
 TEST(VoxelSeams, BlockRaysThroughSharedEdges) {
   bench::Random random(5, 1);
   const std::vector<glm::dmat3> all = orientations();
-  for (int round = 0; round < test::cases(1000, 1000, 250); ++round) {
+  std::int64_t rays = 0;
+  for (int round = 0; round < test::cases(4000, 2000, 250); ++round) {
     const int across = random.below(3), up = (across + 1 + random.below(2)) % 3, along = 3 - across - up;
-    const double side = random.below(2) ? 1 : 0.1;
-    const bool alone = random.below(2) != 0;  // only the voxels at the edge
+    const double side = std::array{1.0, 0.1, 0.25, 7.7}[static_cast<std::size_t>(random.below(4))];
+    const dvec3 base = random.below(2) ? dvec3(0.0) : side * dvec3(random.below(2001) - 1000, 17.5, random.uniform());
+    // Voxels beyond the edge: of both boxes on each side of the plane, of one box all around the edge, or of none.
+    const int beyond = random.below(3), wide = random.below(2);
     PlacedVoxels placed;
     for (const int which : {0, 1}) {
       const glm::dmat3& turn = all[static_cast<std::size_t>(random.below(48))];
-      // On the lattice: 8 voxels to one side of the edge, solid below it or above.
-      dvec3 low(0.0), high(0.0);
-      low[across] = which ? 0 : -8, high[across] = which ? 8 : 0;
-      low[up] = -8, high[up] = 8, high[along] = 8;
+      const double sign = which ? 1 : -1;
+      dvec3 near(0.0), far(0.0);  // of the solid block
+      far[across] = sign * (1 + random.below(8)), far[up] = sign * (1 + random.below(8)), far[along] = 8;
+      dvec3 low = glm::min(near, far), high = glm::max(near, far);
+      const dvec3 solid_low = low, solid_high = high;
+      if (beyond == 0 || (beyond == 1 && which == wide)) low[up] = -9, high[up] = 9;
+      if (beyond == 1 && which == wide) low[across] = -9, high[across] = 9;
       const dvec3 size = glm::abs(transpose(turn) * (high - low));
       VoxelGrid grid(ivec3(size), 8);
       VoxelPlace place = place_at(low, turn, ivec3(size));
+      // Voxels at its ends keep the box as large as it is.
       for_each_voxel(grid.box(), [&](const ivec3& v) {
         const dvec3 p = turn * (dvec3(v) + 0.5) + place.origin;
-        const bool far = std::abs(p[across]) > 7 && std::abs(p[along] - 4) > 3;
-        if ((p[up] < 0) == (which == 0) || (far && !alone)) grid.set(v, 1);
+        bool block = true, end = false;
+        for (int axis = 0; axis < 3; ++axis) {
+          block = block && p[axis] > solid_low[axis] && p[axis] < solid_high[axis];
+          end = end || (axis != along && (p[axis] < low[axis] + 1 || p[axis] > high[axis] - 1));
+        }
+        if (block || (end && (p[along] < 1 || p[along] > 7))) grid.set(v, 1);
       });
       place.model = static_cast<std::uint32_t>(which);
       place.world_from_grid *= side;
-      place.origin *= side;
+      place.origin = side * place.origin + base;
       placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-planes")));
       placed.places.push_back(place);
     }
     const VoxelObjects objects(placed);
     for (int i = 0; i < 64; ++i) {
       dvec3 p(0.0), d;
-      p[along] = side * random.uniform(2, 6);
-      for (int axis = 0; axis < 3; ++axis) d[axis] = random.uniform(-1, 1);
+      p[along] = random.below(2) ? random.uniform(2, 6) : 2 + 0.5 * random.below(9);
       // Between the two, from outside.
-      d[across] = std::abs(d[across]), d[up] = -std::abs(d[up]), d[along] *= 0.1;
+      d[across] = any_component(random), d[up] = -any_component(random);
+      if (std::max(d[across], -d[up]) < 0.05) (random.below(2) ? d[across] = 1 : d[up] = -1);
+      const double longest = std::max(d[across], -d[up]);
+      d[along] = random.below(3) ? 0.1 * (random.below(2) ? 1 : -1) * std::min(any_component(random), longest) : 0.0;
       if (i % 2) d = -d;
-      const double t = side * random.uniform(1, 30);
+      const double voxels = random.below(2) ? 1 + random.below(30) : random.uniform(1, 30);
       Ray ray;
-      ray.origin = p - t * d;
-      ray.direction = d;
-      if (i % 4 > 1) ray.direction = p - ray.origin;
-      ASSERT_TRUE(blocks(objects, ray)) << round << ' ' << i << ' ' << side << ' ' << across << up;
+      ray.origin = base + side * (p - voxels / longest * d);
+      ray.direction = side * d;
+      ++rays;
+      ASSERT_TRUE(blocks(objects, ray)) << fmt::format("round {}, ray {}, side {}, beyond {}, direction {} {} {}",
+                                                       round, i, side, beyond, d.x, d.y, d.z);
+    }
+  }
+  EXPECT_GT(rays, 10'000);
+}
+
+// Rays through a corner of the smaller of two objects, where only its voxel beyond two of the three planes blocks them:
+// one plane ends its box, the other does not.
+TEST(VoxelSeams, BlockRaysThroughCorners) {
+  bench::Random random(5, 2);
+  VoxelGrid large(ivec3(6), 8), small(ivec3(2, 1, 2), 8);
+  for (const ivec3& v : {ivec3(3, 3, 3), ivec3(2, 3, 2), ivec3(3, 3, 2), ivec3(0), ivec3(5)}) large.set(v, 1);
+  for (const ivec3& v : {ivec3(0), ivec3(1, 0, 1)}) small.set(v, 1);
+  const auto model = [](VoxelGrid grid) {
+    return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-planes"));
+  };
+  const std::vector models{model(large), model(small)};
+  for (const glm::dmat3& turn : orientations()) {
+    for (const double side : {1.0, 0.1}) {
+      const VoxelObjects objects(
+          {models, {{0, side * turn, side * (turn * dvec3(-3))}, {1, side * turn, side * (turn * dvec3(-2, -1, -1))}}});
+      for (int i = 0; i < test::cases(1000, 100, 10); ++i) {
+        const dvec3 d(-random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1));
+        Ray ray;
+        ray.direction = side * (turn * d);
+        ray.origin = -random.uniform(0.1, 1) * ray.direction;
+        ASSERT_TRUE(blocks(objects, ray)) << i << ", side " << side;
+      }
     }
   }
 }

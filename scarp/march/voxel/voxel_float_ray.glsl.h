@@ -44,7 +44,8 @@ SCARP_FN bool scarp_voxel_ray(ivec3 low, ivec3 high, vec3 origin, vec3 direction
                               bool has_start, ivec3 start, SCARP_OUT(ScarpVoxelWalk) walk,
                               SCARP_OUT(ScarpVoxelEntry) entry) {
   float longest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
-  // Quotients of devices have errors of 2.5 units; no component may appear longer than the longest one.
+  // Quotients of devices have errors of 2.5 units; no component may appear longer than the longest one. No
+  // path is exact here.
   float per_longest = (1.0f - 1.0f / 2097152.0f) / longest;
   ScarpVoxelClip clip = ScarpVoxelClip(t_min, t_max, -1, false);
   walk.back = 0u;
@@ -65,6 +66,7 @@ SCARP_FN bool scarp_voxel_ray(ivec3 low, ivec3 high, vec3 origin, vec3 direction
       met = scarp_voxel_place(i, origin[i], direction[i], walk.speed[i], walk.back, low[i], high[i], has_start,
                               start[i], clip, at) &&
             met;
+      walk.speed[i] = at.speed;
       walk.voxel[i] = at.voxel;
       walk.left[i] = at.left;
       walk.next[i] = at.next;

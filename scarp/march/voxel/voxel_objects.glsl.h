@@ -56,34 +56,37 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
   uint ray = query.ray, grid = objects.of[index].grid;
   bool has_start = rays.rays[ray].part == objects.of[index].part;
   ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[ray].t_min, query.t_max, -1, false);
+  uint back = scratch.of[ray].back;
   bool met = true;
   [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
     precise dvec3 away = rays.rays[ray].origin - objects.of[index].origin;
     double origin = scarp_turned(turns.of[query.turn].rows[axis], away);
     double room = scarp_voxel_room(turns.of[query.turn].room, turns.of[query.turn].per_metre, rays.rays[ray].room);
     if (scratch.of[ray].given[axis] == 0.0lf)
-      origin = scarp_voxel_level(axis, origin, room, scratch.of[ray].back, grids.grids[grid].low[axis],
-                                 grids.grids[grid].high[axis]);
+      origin = scarp_voxel_level(axis, origin, room, back, grids.grids[grid].low[axis], grids.grids[grid].high[axis]);
     scratch.of[ray].origin[axis] = origin;
+    if ((back & kScarpInexact) == 0u)
+      back |= scarp_voxel_rounded(origin, scratch.of[ray].given[axis], rays.rays[ray].t_min);
     met = scarp_voxel_clip(axis, origin, scratch.of[ray].given[axis], scratch.of[ray].inverse[axis], room,
-                           scratch.of[ray].speed[axis], scratch.of[ray].back, grids.grids[grid].low[axis],
-                           grids.grids[grid].high[axis], has_start, rays.rays[ray].start[axis], clip) &&
+                           scratch.of[ray].speed[axis], back, grids.grids[grid].low[axis], grids.grids[grid].high[axis],
+                           has_start, rays.rays[ray].start[axis], clip) &&
           met;
   }
   met = met && clip.t <= clip.t_out;
   if (met) {
+    walk.speed = scratch.of[ray].speed;
+    walk.back = back;
     [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
       ScarpVoxelPlace at;
       met = scarp_voxel_place(axis, scratch.of[ray].origin[axis], scratch.of[ray].given[axis],
-                              scratch.of[ray].speed[axis], scratch.of[ray].back, grids.grids[grid].low[axis],
+                              scratch.of[ray].speed[axis], walk.back, grids.grids[grid].low[axis],
                               grids.grids[grid].high[axis], has_start, rays.rays[ray].start[axis], clip, at) &&
             met;
+      walk.speed[axis] = at.speed;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
       walk.next[axis] = at.next;
     }
-    walk.speed = scratch.of[ray].speed;
-    walk.back = scratch.of[ray].back;
     walk.axis = -1;
     scratch.of[ray].t = clip.t;
     scratch.of[ray].entered = scarp_voxel_entered(clip, walk.back);

@@ -34,8 +34,8 @@ struct VoxelPacket {
 
   // Set by aim_voxel_packet(): VoxelDirection of each ray in the space of a grid.
   alignas(64) Lanes<double> given[3], inverse[3], t_per_s;
-  alignas(64) Lanes<double> touch;  ///< kTouch in voxels, 0 for exact directions
-  bool slow = false;                ///< whether any ray is level or slow along an axis
+  alignas(64) Lanes<std::int64_t> exact;  ///< QuantisedDirection::exact: -1 or 0
+  bool slow = false;                      ///< whether any ray is level or slow along an axis
   alignas(64) Lanes<std::int64_t> speed[3],
       down[3];  ///< down: -1 if a ray's step along the axis is -1, otherwise 0
 

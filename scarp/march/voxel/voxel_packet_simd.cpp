@@ -138,12 +138,25 @@ HWY_INLINE MI entered_by(VI entered, VoxelTies ties, int axis, bool first) {
   return any;
 }
 
+// is_exact() of voxel_ray.cpp.
+HWY_INLINE MI exact_paths(const VoxelPacket& packet, std::size_t o, const VD (&origin)[3], const VD (&given)[3]) {
+  const VD t_min = hn::Load(dd, packet.t_min + o);
+  MD exact = hn::RebindMask(dd, hn::Lt(hn::Load(di, packet.exact + o), hn::Zero(di)));
+  if (hn::AllFalse(dd, exact)) return hn::RebindMask(di, exact);
+  for (int i = 0; i < 3; ++i) {
+    const VD parts = hn::Mul(hn::Add(origin[i], hn::Mul(t_min, given[i])), hn::Set(dd, kExactStart));
+    const MD whole = hn::And(hn::Eq(hn::Trunc(parts), parts), hn::Lt(hn::Abs(parts), hn::Set(dd, kOnes)));
+    exact = hn::And(exact, hn::Or(whole, hn::Eq(given[i], hn::Zero(dd))));
+  }
+  return hn::RebindMask(di, exact);
+}
+
 // As in quantise(): rays step back to the voxels before planes that are not crossed yet.
 HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPacket& packet, std::size_t o, VD t,
-                             VD touch, VI entered, const MD (&down)[3], const VD (&distance)[3], VD (&voxel)[3],
-                             VI (&next)[3]) {
+                             VI entered, const MD (&down)[3], const VD (&origin)[3], const VD (&given)[3],
+                             const VD (&distance)[3], VD (&voxel)[3], VI (&next)[3], VI (&speed)[3]) {
   const VD one = hn::Set(dd, 1.0);
-  const MI exact = hn::RebindMask(di, hn::Eq(touch, hn::Zero(dd)));
+  const MI exact = exact_paths(packet, o, origin, given);
   MI comes_in = hn::RebindMask(di, hn::Gt(t, hn::Load(dd, packet.t_min + o)));
   comes_in = hn::AndNot(hn::Eq(entered, hn::Set(di, LaneWalk::kInside)), comes_in);
   for (int i = 0; i < 3; ++i) {
@@ -152,11 +165,18 @@ HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPac
     const VD first = hn::IfThenElse(down[i], hn::Set(dd, box.high[i] - 1.0), hn::Set(dd, box.low[i]));
     MI back = hn::And(comes_in, hn::Gt(next[i], hn::Set(di, kVoxelPlaces - kTouch - 1)));
     back = hn::AndNot(hn::Or(crossed, hn::Eq(entered, hn::Set(di, LaneWalk::kEntered + i))), back);
-    back = hn::AndNot(hn::Eq(hn::Load(di, packet.speed[i] + o), hn::Zero(di)), back);
+    back = hn::AndNot(hn::RebindMask(di, hn::Eq(given[i], hn::Zero(dd))), back);
     back = hn::AndNot(hn::RebindMask(di, hn::Eq(voxel[i], first)), back);
     const VD step = hn::IfThenElse(down[i], one, hn::Neg(one));
     voxel[i] = hn::Add(voxel[i], hn::IfThenElseZero(hn::RebindMask(dd, back), step));
     next[i] = hn::IfThenZeroElse(back, next[i]);
+    // It crosses this plane at once, and never another one.
+    speed[i] = hn::IfThenElse(hn::And(back, hn::Eq(speed[i], hn::Zero(di))), hn::Set(di, 1), speed[i]);
+    // A plane by which a ray leaves the box at once comes after others at the same place.
+    const VD last = hn::IfThenElse(down[i], hn::Set(dd, box.low[i]), hn::Set(dd, box.high[i] - 1.0));
+    MI leaves = hn::And(comes_in, hn::And(hn::Eq(next[i], hn::Zero(di)), hn::RebindMask(di, hn::Eq(voxel[i], last))));
+    leaves = hn::AndNot(hn::Or(exact, hn::Lt(speed[i], hn::Set(di, kSlow))), leaves);
+    next[i] = hn::IfThenElse(leaves, hn::Set(di, 1), next[i]);
   }
 }
 
@@ -171,7 +191,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
   transform(stand.grid_from_world, from, origin);
   VD t = hn::Load(dd, packet.t_min + o), t_out = hn::Load(dd, packet.t_max + o);
   MD alive = hn::And(hn::RebindMask(dd, rays), hn::Lt(hn::Load(dd, packet.t_per_s + o), hn::Inf(dd)));
-  const VD touch = hn::Load(dd, packet.touch + o), late = hn::Max(touch, hn::Set(dd, stand.room));
+  const VD late = hn::Set(dd, std::max(stand.room, static_cast<double>(kTouch) / static_cast<double>(kVoxelPlaces)));
   VI entered = hn::Set(di, LaneWalk::kInside);
   MD down[3];
   VD given[3];
@@ -216,10 +236,11 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
   alive = hn::And(alive, hn::Le(t, t_out));
   if (hn::AllFalse(dd, alive)) return hn::RebindMask(di, alive);
   VD voxel[3], distance[3];
-  VI next[3];
+  VI next[3], speed[3];
   MI touched = hn::MaskFromVec(hn::Zero(di));
   for (int i = 0; i < 3; ++i) {
     const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
+    speed[i] = hn::Load(di, packet.speed[i] + o);
     VD place = hn::Add(origin[i], hn::Mul(t, given[i]));
     place = hn::IfThenElse(hn::Gt(place, low), place, low);
     place = hn::IfThenElse(hn::Lt(place, high), place, high);
@@ -233,16 +254,17 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     const VD units = hn::Mul(distance[i], hn::Set(dd, static_cast<double>(kVoxelPlaces)));
     VD places = hn::Add(units, hn::Set(dd, 0.5));
     if (packet.slow) {
-      const MI slow = hn::Lt(hn::Load(di, packet.speed[i] + o), hn::Set(di, kSlow));
+      const MI slow = hn::Lt(speed[i], hn::Set(di, kSlow));
       places = hn::IfThenElse(hn::RebindMask(dd, slow), hn::Ceil(units), places);
     }
     next[i] = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
-    touched = hn::Or(touched, hn::AndNot(in_here, hn::Gt(next[i], hn::Set(di, kVoxelPlaces - kTouch - 1))));
+    touched = hn::Or(touched, hn::Or(hn::Eq(next[i], hn::Zero(di)),
+                                     hn::AndNot(in_here, hn::Gt(next[i], hn::Set(di, kVoxelPlaces - kTouch - 1)))));
   }
   // Rays that miss the box are on its sides here.
   touched = hn::And(touched, hn::RebindMask(di, alive));
   if (!hn::AllFalse(di, touched))
-    touch_behind(box, stand.ties, packet, o, t, touch, entered, down, distance, voxel, next);
+    touch_behind(box, stand.ties, packet, o, t, entered, down, origin, given, distance, voxel, next, speed);
   for (int i = 0; i < 3; ++i) {
     // On the border and leaving.
     alive =
@@ -252,22 +274,18 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
   const Chosen chosen(bits_of(in));
   const std::size_t to = walk.lanes;
   for (int i = 0; i < 3; ++i) {
-    const VI speed = hn::Load(di, packet.speed[i] + o), side = hn::Load(di, packet.down[i] + o);
+    const VI side = hn::Load(di, packet.down[i] + o);
     // A plane that is never reached: at speed 0 any distance above 0 comes last.
-    const MI never = hn::Eq(speed, hn::Zero(di));
+    const MI never = hn::Eq(speed[i], hn::Zero(di));
     const VI end = hn::IfThenElse(hn::RebindMask(di, down[i]), hn::Set(di, -box.low[i]), hn::Set(di, box.high[i]));
     chosen.append(hn::IfThenElse(never, hn::Set(di, 1), next[i]), walk.next[i] + to);
     chosen.append(hn::Xor(truncated(voxel[i]), side), walk.at[i] + to);
     chosen.append(end, walk.end[i] + to);
-    chosen.append(speed, walk.speed[i] + to);
+    chosen.append(speed[i], walk.speed[i] + to);
     chosen.append(side, walk.down[i] + to);
-    if constexpr (!Lookup::kSingle) chosen.append(slowness_of(speed), walk.slowness[i] + to);
+    if constexpr (!Lookup::kSingle) chosen.append(slowness_of(speed[i]), walk.slowness[i] + to);
   }
-  if constexpr (Lookup::kTravels) {
-    const VI speed[3] = {hn::Load(di, packet.speed[0] + o), hn::Load(di, packet.speed[1] + o),
-                         hn::Load(di, packet.speed[2] + o)};
-    chosen.append(travel_per_voxel(speed), walk.slowness[0] + to);
-  }
+  if constexpr (Lookup::kTravels) chosen.append(travel_per_voxel(speed), walk.slowness[0] + to);
   chosen.append(entered, walk.crossed + to);
   chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
   if constexpr (Lookup::kDescends) chosen.append(hn::Set(di, LaneWalk::kAllMoved), walk.moved + to);
@@ -538,11 +556,12 @@ void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties)
       const MD slow = hn::Lt(units, hn::Set(dd, static_cast<double>(kSlow)));
       const VI speed = truncated(hn::IfThenElse(slow, units, hn::Add(units, half)));
       hn::Store(speed, di, packet.speed[i] + o);
-      exact = hn::And(exact, hn::Eq(units, as_double(speed)));
+      const MI power = hn::Eq(hn::And(speed, hn::Sub(speed, hn::Set(di, 1))), hn::Zero(di));
+      const MD fits = hn::AndNot(slow, hn::And(hn::Eq(units, as_double(speed)), hn::RebindMask(dd, power)));
+      exact = hn::And(exact, hn::Or(fits, hn::Eq(given[i], hn::Zero(dd))));
       any_slow = hn::Or(any_slow, slow);
     }
-    hn::Store(hn::IfThenZeroElse(exact, hn::Set(dd, static_cast<double>(kTouch) / static_cast<double>(kVoxelPlaces))),
-              dd, packet.touch + o);
+    hn::Store(hn::VecFromMask(di, hn::RebindMask(di, exact)), di, packet.exact + o);
     packet.slow = packet.slow || !hn::AllFalse(dd, any_slow);
     const VD per_s = hn::Set(dd, static_cast<double>(1 << (kDirectionBits - kPlaceBits)));
     hn::Store(hn::Mul(per_s, per_longest), dd, packet.t_per_s + o);

@@ -86,6 +86,7 @@ bool scarp_enter_proxy(uint pixel, VoxelObjects scene, uint object, out ScarpVox
   bool met = true;
   for (int axis = 0; axis < 3; ++axis) {
     scarp_proxy_axis(pixel, scene, object, axis, room, ties, origin, given);
+    back |= scarp_voxel_rounded(origin, given, rays.rays[pixel].t_min);
     met = scarp_voxel_clip(axis, origin, given, inverse[axis], room, walk.speed[axis], back, voxel_grid.low[axis],
                            voxel_grid.high[axis], false, 0, clip) &&
           met;
@@ -98,6 +99,7 @@ bool scarp_enter_proxy(uint pixel, VoxelObjects scene, uint object, out ScarpVox
       met = scarp_voxel_place(axis, origin, given, walk.speed[axis], back, voxel_grid.low[axis], voxel_grid.high[axis],
                               false, 0, clip, at) &&
             met;
+      walk.speed[axis] = at.speed;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
       walk.next[axis] = at.next;

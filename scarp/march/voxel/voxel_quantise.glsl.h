@@ -7,7 +7,7 @@
 // registers each, and a shader has few.
 //
 //   direction of the grid   scarp_exact_inverse(), the least magnitude of all three, scarp_voxel_speed()
-//   each object's box       scarp_voxel_clip(), then scarp_voxel_place()
+//   each object's box       scarp_voxel_rounded() of exact directions and scarp_voxel_clip(), then scarp_voxel_place()
 //
 // Numbers whose products would be subnormal are excluded: drivers may flush them to zero.
 #ifndef SCARP_MARCH_VOXEL_QUANTISE_GLSL_H
@@ -20,7 +20,7 @@ SCARP_GLSL_BEGIN
 SCARP_FN scarp_real scarp_magnitude(scarp_real x) { return x < scarp_real(0.0f) ? -x : x; }
 
 const uint kScarpVoxelSlow = 16384u;  ///< kSlow of voxel_ray.h
-const uint kScarpVoxelTouch = 5u;     ///< kTouch
+const uint kScarpVoxelTouch = 10u;    ///< kTouch
 
 /// A component of the direction in 2^-28 of the longest one, given the least magnitude of inverse components.
 SCARP_FN uint scarp_voxel_speed(scarp_real given, scarp_real per_longest) {
@@ -29,11 +29,20 @@ SCARP_FN uint scarp_voxel_speed(scarp_real given, scarp_real per_longest) {
   SCARP_PRECISE scarp_real nearest = units + scarp_real(0.5f);
   return share <= scarp_real(1.0f) ? uint(units < scarp_real(16384.0f) ? units : nearest) : 0u;
 }
-/// kScarpInexact if this speed is not the component itself, else 0.
+/// kScarpInexact if no path in this direction is exact (kExactStart of voxel_ray.h), given one component, else 0.
 SCARP_FN uint scarp_voxel_inexact(scarp_real given, scarp_real per_longest, uint speed) {
   SCARP_PRECISE scarp_real share = scarp_magnitude(given) * per_longest;
   SCARP_PRECISE scarp_real units = share * scarp_real(268435456.0f);
-  return units == scarp_real(speed) ? 0u : kScarpInexact;
+  bool power = units == scarp_real(speed) && (speed & (speed - 1u)) == 0u && speed >= kScarpVoxelSlow;
+  return power || given == scarp_real(0.0f) ? 0u : kScarpInexact;
+}
+/// kScarpInexact if the path is not exact from this coordinate of the ray's origin, else 0.
+SCARP_FN uint scarp_voxel_rounded(scarp_real origin, scarp_real given, scarp_real t_min) {
+  SCARP_PRECISE scarp_real way = t_min * given;
+  SCARP_PRECISE scarp_real place = origin + way;
+  SCARP_PRECISE scarp_real parts = place * scarp_real(4.0f);
+  bool whole = floor(parts) == parts && scarp_magnitude(parts) < scarp_real(4503599627370496.0f);
+  return whole || given == scarp_real(0.0f) ? 0u : kScarpInexact;
 }
 /// Bits of ScarpVoxelWalk::back for an axis: how the ray steps along it, given the bits of VoxelTies.
 SCARP_FN uint scarp_voxel_back(int axis, scarp_real given, uint ties) {
@@ -73,9 +82,8 @@ SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, sc
   if (given == scarp_real(0.0f)) {
     met = up ? origin >= from && origin < to : origin > to && origin <= from;
   } else {
-    scarp_real early = speed < kScarpVoxelSlow ? room : scarp_real(0.0f), late = room;
-    if ((back & kScarpInexact) != 0u && late < scarp_real(4.76837158203125e-6f))
-      late = scarp_real(4.76837158203125e-6f);
+    scarp_real early = speed < kScarpVoxelSlow ? room : scarp_real(0.0f);
+    scarp_real late = room > scarp_real(9.5367431640625e-6f) ? room : scarp_real(9.5367431640625e-6f);
     SCARP_PRECISE scarp_real first = up ? from - early : from + early;
     SCARP_PRECISE scarp_real last = up ? to + late : to - late;
     SCARP_PRECISE scarp_real before = first - origin;
@@ -105,9 +113,11 @@ struct ScarpVoxelPlace {
   int voxel;
   int left;
   uint next;
+  uint speed;
 };
 
-/// Returns false if the ray only touches the box from outside.
+/// Returns false if the ray only touches the box from outside. `back` has kScarpInexact unless the path is exact: from
+/// scarp_voxel_inexact() and scarp_voxel_rounded() of all axes.
 SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, uint speed, uint back, int low, int high,
                                 bool has_start, int start, ScarpVoxelClip clip, SCARP_OUT(ScarpVoxelPlace) at) {
   bool up = (back >> uint(axis) & 1u) == 0u;
@@ -136,12 +146,20 @@ SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, u
   at.next = uint(units);
   // Planes behind that are not crossed yet.
   bool on_plane = distance == scarp_real(1.0f) && (back & kScarpInexact) == 0u;
-  if (clip.comes_in && at.next >= kScarpVoxelPlaces - kScarpVoxelTouch && speed != 0u && axis != clip.entered &&
-      (!on_plane || scarp_axis_before(back, clip.entered, axis)) && at.voxel != (up ? low : high - 1)) {
+  at.speed = speed;
+  if (clip.comes_in && at.next >= kScarpVoxelPlaces - kScarpVoxelTouch && given != scarp_real(0.0f) &&
+      axis != clip.entered && (!on_plane || scarp_axis_before(back, clip.entered, axis)) &&
+      at.voxel != (up ? low : high - 1)) {
     at.voxel -= up ? 1 : -1;
     at.next = 0u;
+    // It crosses this plane at once, and never another one.
+    at.speed = speed > 0u ? speed : 1u;
   }
-  if (speed == 0u) at.next = kScarpNoPlane;
+  // A plane by which it leaves the box at once comes after others at the same place.
+  if (at.next == 0u && clip.comes_in && speed >= kScarpVoxelSlow && at.voxel == (up ? high - 1 : low) &&
+      (back & kScarpInexact) != 0u)
+    at.next = 1u;
+  if (at.speed == 0u) at.next = kScarpNoPlane;
   at.left = up ? high - at.voxel : at.voxel - low + 1;
   return at.voxel >= low && at.voxel < high;
 }

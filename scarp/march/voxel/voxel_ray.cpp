@@ -71,7 +71,8 @@ VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(d
     const double share = std::abs(direction[axis]) * per_longest;
     const double units = share <= 1 ? share * (1 << kDirectionBits) : 0;
     speed[axis] = static_cast<std::int64_t>(units < kSlow ? units : units + 0.5);
-    exact = exact && static_cast<double>(speed[axis]) == units;
+    const bool power = static_cast<double>(speed[axis]) == units && (speed[axis] & (speed[axis] - 1)) == 0;
+    exact = exact && ((power && speed[axis] >= kSlow) || direction[axis] == 0);
     slowness[axis] = 1 / static_cast<double>(speed[axis]);
     step[axis] = direction[axis] == 0 ? ties.up(axis) : direction[axis] < 0 ? -1 : 1;
   }
@@ -80,6 +81,17 @@ VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(d
 }
 
 namespace {
+
+// Whether the path is exact: neither the direction nor the start of the ray needs rounding.
+bool is_exact(const VoxelRay& ray, const VoxelDirection& direction) {
+  if (!direction.quantised.exact) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction.given[axis] == 0) continue;
+    const double parts = (ray.origin[axis] + ray.t_min * direction.given[axis]) * kExactStart;
+    if (!(std::abs(parts) < 0x1p52) || static_cast<double>(static_cast<std::int64_t>(parts)) != parts) return false;
+  }
+  return true;
+}
 
 // kPlain: for a plain direction and no start voxel, which nearly all rays have. Without tests for the others, a ray
 // through many objects takes 3 to 6 % less time.
@@ -90,7 +102,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
   if (!kPlain && !std::isfinite(direction.t_per_s)) return false;
   const bool has_start = !kPlain && ray.start_voxel;
   const VoxelTies ties = direction.ties;
-  const double late = direction.exact ? ray.room : std::max(ray.room, kTouch * 0x1p-20);
+  const double late = std::max(ray.room, kTouch * 0x1p-20);
   // Clip to the box. If planes are crossed at the same t, the last one is the entry face.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
@@ -144,20 +156,30 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
       voxel = voxel_at(place, step);
     }
     const double distance = step > 0 ? voxel + 1 - place : place - voxel, units = distance * kVoxelPlaces;
-    const bool slow = !kPlain && direction.speed[axis] < kSlow, level = slow && direction.speed[axis] == 0;
+    const bool slow = !kPlain && direction.speed[axis] < kSlow;
     std::int64_t next =
         std::clamp<std::int64_t>(slow ? rounded_up(units) : static_cast<std::int64_t>(units + 0.5), 0, kVoxelPlaces);
+    bool never = slow && direction.speed[axis] == 0;
     // Planes behind that are not crossed yet.
-    const bool exact = distance == 1 && direction.exact;
-    if (comes_in && next >= kVoxelPlaces - kTouch && !level && axis != entered &&
-        (!exact || ties.before(entered, axis)) && voxel != (step > 0 ? low : high - 1)) {
+    const bool moves = kPlain || ray_direction.given[axis] != 0;
+    if (comes_in && next >= kVoxelPlaces - kTouch && moves && axis != entered && voxel != (step > 0 ? low : high - 1) &&
+        (distance != 1 || ties.before(entered, axis) || !is_exact(ray, ray_direction))) {
       voxel -= step;
       next = 0;
+      if (never) {
+        // It crosses this plane at once, and never another one.
+        quantised.direction.speed[axis] = 1;
+        quantised.direction.slowness[axis] = 1;
+        never = false;
+      }
     }
+    // A plane by which it leaves the box at once comes after others at the same place.
+    if (next == 0 && comes_in && !slow && voxel == (step > 0 ? high - 1 : low) && !is_exact(ray, ray_direction))
+      next = 1;
     // On the border and leaving.
     if (voxel < low || voxel >= high) return false;
     quantised.voxel[axis] = voxel;
-    quantised.to_plane[axis] = level ? QuantisedRay::kNever : next;
+    quantised.to_plane[axis] = never ? QuantisedRay::kNever : next;
   }
   return true;
 }

@@ -20,8 +20,9 @@
 //                                  nothing pass, in one grid or in two
 //   a ray along a plane            belongs to the voxel on the plane's upper side: that of +x, +y or +z
 //   a ray that starts on a plane   belongs to the voxel that it enters
-//   a ray that enters the box      crosses the planes there in the same order; with an inexact direction, all but that
-//                                  by which it enters afterwards (kTouch)
+//   a ray that enters the box      crosses the planes there in the same order; unless its path is exact, all but that
+//   by
+//                                  which it enters afterwards (kTouch)
 #pragma once
 
 #include <array>
@@ -98,10 +99,16 @@ struct VoxelTies {
 /// that the quantised ray does not leave its box before the given ray, and neighbours lose nothing.
 constexpr std::int64_t kSlow = std::int64_t{1} << (kDirectionBits - 14);
 
-/// Rays whose direction is not exact in 2^-28 may be displaced where they leave one box and enter the next. Planes that
-/// such a ray has passed by less than this where it enters a box count as not crossed yet, so it touches the voxels at
-/// an edge there: no edge at which two objects touch lets it pass. In 2^-20 voxel: 2^-21 + 2^-29 2048, and rounding.
-constexpr std::int64_t kTouch = 5;
+/// Rays may be displaced where they leave one box and enter the next. Planes that a ray has passed by less than this
+/// where it enters a box count as not crossed yet, so it touches the voxels at an edge there: no edge at which two
+/// objects touch lets it pass. In 2^-20 voxel, for boxes of 2,048: 2^-20 + 2^-28 2048 of slow components, and rounding.
+constexpr std::int64_t kTouch = 10;
+
+/// A path that is exact in one box must be exact in all others of the lattice, or one of them could leave a tie to
+/// another that has rounded it away. Paths are exact if no component is slow, each is 0 or a power of two of the
+/// longest one, and the ray starts at multiples of 1 / kExactStart voxel: then it reaches all planes at multiples of
+/// 2^-16, and those of a grid with voxels of 16 times the size at multiples of 2^-20.
+constexpr int kExactStart = 4;
 
 /// A quantised direction.
 struct QuantisedDirection {
@@ -110,7 +117,7 @@ struct QuantisedDirection {
   std::array<int, 3> step;            ///< 1 or -1; VoxelTies::up() along planes
   VoxelTies ties;
   std::array<std::uint8_t, 3> after;  ///< per axis, a bit for each axis that is crossed after it
-  bool exact;                         ///< speeds are the components of the given direction, without rounding
+  bool exact;                         ///< paths in this direction are exact from exact starts (kExactStart)
   bool plain;                         ///< no speed is below kSlow, and t_per_s is finite
   double t_per_s;                     ///< t per unit of s = n / d; not finite if the direction is too short
 };

@@ -88,6 +88,8 @@ struct ShaderRay {
         origin[axis] = glsl::scarp_voxel_level(axis, origin[axis], ray.room, walk.back, box.low[axis], box.high[axis]);
     }
     for (int axis = 0; axis < 3; ++axis) {
+      if ((walk.back & glsl::kScarpInexact) == 0)
+        walk.back |= glsl::scarp_voxel_rounded(origin[axis], ray.direction[axis], ray.t_min);
       met = glsl::scarp_voxel_clip(axis, origin[axis], ray.direction[axis], inverse[axis], ray.room, walk.speed[axis],
                                    walk.back, box.low[axis], box.high[axis], has_start, start[axis], clip) &&
             met;
@@ -102,6 +104,7 @@ struct ShaderRay {
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
       walk.next[axis] = at.next;
+      walk.speed[axis] = at.speed;
     }
     walk.axis = -1;
     t = clip.t;
