@@ -25,7 +25,7 @@ constexpr std::size_t kBatch = 4096;
 // this; and anywhere with fewer columns than this, which leave most lanes empty. Measured (doc/dev/decisions/march.md).
 constexpr int kFewRows = 24, kFewColumns = 5;
 // Lines of the grid that take a column as long as a batch takes for one ray.
-constexpr double kLinesPerRow = 8;
+constexpr double kLinesPerRow = 32;
 
 // About the number of lines that a column with these ends crosses over ground that may be as high as its rays.
 double lines_of(const HeightField& field, double z, const dvec3& a, const dvec3& b) {
@@ -94,9 +94,9 @@ class Batch {
   const HeightTarget& target_;
   const Fan& fan_;
   const FanHits& to_;
-  std::vector<Ray> rays_;
-  std::vector<std::ptrdiff_t> places_;
-  std::vector<Hit> hits_;
+  KeptVector<Ray> rays_;
+  KeptVector<std::ptrdiff_t> places_;
+  KeptVector<Hit> hits_;
 };
 
 // Sides that a cell's 16-bit numbers reach, and from how far away a walk over the field makes sense.

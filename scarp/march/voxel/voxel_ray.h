@@ -20,9 +20,8 @@
 //                                  nothing pass, in one grid or in two
 //   a ray along a plane            belongs to the voxel on the plane's upper side: that of +x, +y or +z
 //   a ray that starts on a plane   belongs to the voxel that it enters
-//   a ray that enters the box      crosses the planes there in the same order; unless its path is exact, all but that
-//   by
-//                                  which it enters afterwards (kTouch)
+//   a ray that enters the box      crosses the planes there in the same order; unless its path is exact, it crosses the
+//                                  plane by which it enters before all others (kTouch)
 #pragma once
 
 #include <array>

@@ -19,7 +19,7 @@ struct ScarpVoxelWalk {
   uvec3 next;  ///< distance to the next plane in 2^-20 voxel, from where distances began; any if speed is 0
   uvec3 speed;
   /// Bits 0 to 2: axes along which it steps in the negative direction; 3 to 5: those of VoxelTies (voxel_ray.h), 0 for
-  /// the order x, y, z; 6: its direction is inexact; above: how often rebased.
+  /// the order x, y, z; 6: its path is inexact; above: how often rebased.
   uint back;
   int axis;  ///< crossed last; -1: none
 };

@@ -440,7 +440,7 @@ TEST(MaxMipFan, UsualFansLeaveFewRays) {
 
 // From above all ground a column crosses as many lines whatever its number of rows: a batch is faster with few.
 TEST(MaxMipFan, FewRowsFromAboveGoToTheBatch) {
-  constexpr int kSide = 513;
+  constexpr int kSide = 1025;
   std::vector<float> samples;
   for (int i = 0; i < kSide * kSide; ++i)
     samples.push_back(8 * std::sin(0.05f * static_cast<float>(i % kSide)) *

@@ -64,11 +64,10 @@ TEST(CameraFan, HitsAreThoseOfSingleRays) {
     for (const bool plinth : {false, true}) {
       const Scene scene = plinth ? test::terrain_on_plinth(field) : test::terrain(field);
       for (const dvec3 target : {dvec3(150, 160, 0), dvec3(60, 30.5, -40), dvec3(30, 30.01, -9)}) {
-        // From above all ground the fan may be left to the batch.
-        for (const bool above : {false, true}) {
-          const int width = 75, height = 61, aa = above ? 3 : 1;
-          Camera camera = Camera::look_at({30, 30, above ? 45 : 18}, target, 60, width, height);
-          if (hole) camera.set_reach(80);
+        for (const int aa : {1, 3}) {
+          const int width = 75, height = 61;
+          Camera camera = Camera::look_at({30, 30, 45}, target, 60, width, height);
+          if (aa == 3) camera.set_reach(80);
           std::atomic<int> seen = 0, wrong = 0;
           work_on_camera_tiles(scene, camera, width, height, aa, 1024,
                                [&](const PixelTile& tile, const CameraSights* sights) {
@@ -76,9 +75,7 @@ TEST(CameraFan, HitsAreThoseOfSingleRays) {
                                },
                                {});
           EXPECT_EQ(wrong, 0) << "hole " << hole << ", plinth " << plinth << ", aa " << aa;
-          if (!above) {
-            EXPECT_EQ(seen, width * height * aa * aa);
-          }
+          EXPECT_EQ(seen, width * height * aa * aa);
         }
       }
     }
@@ -88,7 +85,7 @@ TEST(CameraFan, HitsAreThoseOfSingleRays) {
 TEST(CameraFan, PaysOnlyForPerspectiveOverHeightsByMaxMip) {
   const HeightField field = hills(false);
   const Scene scene = test::terrain(field);
-  const Camera camera = Camera::look_at({30, 30, 22}, {90, 90, 0}, 60, 64, 64);
+  const Camera camera = Camera::look_at({30, 30, 45}, {90, 90, 0}, 60, 64, 64);
   EXPECT_TRUE(CameraFan(scene, camera, 64, 1).pays());
   EXPECT_FALSE(CameraFan(scene, camera, 8, 1).pays());
   EXPECT_FALSE(CameraFan(scene, Camera::top(scene.box(), 64, 64), 64, 1).pays());
