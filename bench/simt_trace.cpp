@@ -14,8 +14,8 @@
 #include "scarp/accel/max_quads.glsl.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/sampling/device_sampling.h"
 
 namespace scarp::bench {
 

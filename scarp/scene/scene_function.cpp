@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scarp/march/function/lipschitz_local_rules.h"
-#include "scarp/march/lipschitz.h"
+#include "scarp/march/sampling/shrink_factor.h"
 #include "scarp/scene/function_shadow.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/scene_limits.h"

@@ -15,7 +15,7 @@
 #include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/march/height/wall.h"
-#include "scarp/march/lipschitz.h"
+#include "scarp/march/sampling/shrink_factor.h"
 #include "scarp/scene/scene_field.h"
 
 namespace scarp {

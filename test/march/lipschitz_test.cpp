@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // lipschitz: it never passes the surface, on any field and ray, and says so when it gives up.
-#include "scarp/march/lipschitz.h"
+#include "scarp/march/height/height_sampling.h"
+#include "scarp/march/sampling/shrink_factor.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -8,10 +8,8 @@
 
 #include "march/refinement_judge.h"
 #include "scarp/base/error.h"
-#include "scarp/march/fixed_step.h"
+#include "scarp/march/height/height_sampling.h"
 #include "scarp/march/height/height_table.h"
-#include "scarp/march/naive.h"
-#include "scarp/march/relaxed.h"
 
 namespace scarp {
 namespace {

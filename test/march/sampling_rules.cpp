@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/fixed_step.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/height_sampling.h"
 
 namespace scarp::test {
 namespace {

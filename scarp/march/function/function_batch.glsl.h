@@ -10,7 +10,7 @@
 
 #include "scarp/accel/function_buffers.glsl.h"
 #include "scarp/march/function/function_frame.glsl.h"
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 #include "scarp/vk/loop_turns.glsl.h"
 

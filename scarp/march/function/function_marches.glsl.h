@@ -8,7 +8,7 @@
 #define SCARP_MARCH_FUNCTION_MARCHES_GLSL_H
 
 #include "scarp/march/function/function_frame.glsl.h"
-#include "scarp/march/sampling_marches.glsl.h"
+#include "scarp/march/sampling/sampling_marches.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "scarp/march/function/function_ray.h"
-#include "scarp/march/sampling.h"
+#include "scarp/march/sampling/sampling.h"
 #include "scarp/march/usual_ray.h"
 
 namespace scarp {

@@ -10,11 +10,11 @@
 
 #include "scarp/base/error.h"
 #include "scarp/field/function_node.h"
-#include "scarp/march/device_function_ray.h"
-#include "scarp/march/device_sampling.h"
+#include "scarp/march/function/device_function_ray.h"
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
-#include "scarp/march/sampling_entries.h"
+#include "scarp/march/sampling/device_sampling.h"
+#include "scarp/march/sampling/sampling_entries.h"
 #include "scarp/vk/shader_program.h"
 
 namespace scarp {

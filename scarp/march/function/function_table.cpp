@@ -4,14 +4,11 @@
 #include <array>
 
 #include "scarp/march/find_entry.h"
-#include "scarp/march/fixed_step.h"
+#include "scarp/march/function/function_sampling.h"
 #include "scarp/march/function/lipschitz_local.h"
 #include "scarp/march/function/lipschitz_local_rules.h"
 #include "scarp/march/function/lipschitz_local_simd.h"
-#include "scarp/march/lipschitz.h"
-#include "scarp/march/naive.h"
-#include "scarp/march/relaxed.h"
-#include "scarp/march/sampling_entries.h"
+#include "scarp/march/sampling/sampling_entries.h"
 
 namespace scarp {
 namespace {

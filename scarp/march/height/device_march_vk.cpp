@@ -9,7 +9,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/height/batch_states.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
-#include "scarp/march/sampling_entries.h"
+#include "scarp/march/sampling/sampling_entries.h"
 
 namespace scarp {
 namespace {

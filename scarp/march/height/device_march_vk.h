@@ -22,7 +22,7 @@
 #include "scarp/field/height_field.h"
 #include "scarp/march/height/march_host.h"
 #include "scarp/march/height/ray_batch.glsl.h"
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/loop_turns.glsl.h"

@@ -9,7 +9,7 @@
 
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/ray_clip.h"
-#include "scarp/march/sampling.h"
+#include "scarp/march/sampling/sampling.h"
 #include "scarp/march/usual_ray.h"
 
 namespace scarp {

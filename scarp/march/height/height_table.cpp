@@ -4,15 +4,12 @@
 #include <array>
 
 #include "scarp/march/find_entry.h"
-#include "scarp/march/fixed_step.h"
 #include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/height_sampling.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_easy.h"
 #include "scarp/march/height/max_mip_simd.h"
-#include "scarp/march/lipschitz.h"
-#include "scarp/march/naive.h"
-#include "scarp/march/relaxed.h"
-#include "scarp/march/sampling_entries.h"
+#include "scarp/march/sampling/sampling_entries.h"
 
 namespace scarp {
 namespace {

@@ -8,12 +8,12 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
-#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_march_vk.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
+#include "scarp/march/sampling/device_sampling.h"
 #include "scarp/vk/shader_program.h"
 
 namespace scarp {

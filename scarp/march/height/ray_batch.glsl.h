@@ -17,7 +17,7 @@
 
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/march/height/ray_blocks.glsl.h"
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

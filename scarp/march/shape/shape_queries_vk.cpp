@@ -8,7 +8,7 @@
 #include <string>
 
 #include "scarp/base/error.h"
-#include "scarp/march/device_function_ray.h"
+#include "scarp/march/function/device_function_ray.h"
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 #include "scarp/march/shape/shape_batch.glsl.h"

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "scarp/base/error.h"
-#include "scarp/march/fixed_step.glsl.h"
+#include "scarp/march/sampling/fixed_step.glsl.h"
 #include "scarp/vk/memory.h"
 
 namespace scarp {

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "scarp/base/setting.h"
-#include "scarp/march/fixed_step.h"
+#include "scarp/march/height/height_sampling.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/camera/compass.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 
 namespace scarp {
 namespace {

@@ -12,15 +12,14 @@
 #include "march/function/function_rays.h"
 #include "march/steep_waves.h"
 #include "scarp/base/error.h"
-#include "scarp/march/fixed_step.h"
 #include "scarp/march/function/function_exhaustive.h"
+#include "scarp/march/function/function_sampling.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.h"
 #include "scarp/march/function/lipschitz_local_simd.h"
 #include "scarp/march/function/presets.h"
 #include "scarp/march/height/height_table.h"
-#include "scarp/march/lipschitz.h"
-#include "scarp/march/relaxed.h"
+#include "scarp/march/sampling/shrink_factor.h"
 
 namespace scarp::test {
 namespace {

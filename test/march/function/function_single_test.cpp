@@ -15,12 +15,12 @@
 #include "scarp/accel/function_words.h"
 #include "scarp/base/error.h"
 #include "scarp/field/function_single.h"
-#include "scarp/march/device_function_ray.h"
-#include "scarp/march/device_sampling.h"
+#include "scarp/march/function/device_function_ray.h"
 #include "scarp/march/function/function_marches.glsl.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.glsl.h"
 #include "scarp/march/function/noise.glsl.h"
+#include "scarp/march/sampling/device_sampling.h"
 
 namespace scarp::glsl {
 

@@ -10,10 +10,10 @@
 #include "march/height/entering_rays.h"
 #include "march/height/spiteful_text.h"
 #include "scarp/accel/slope_bound.h"
-#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/height_table.h"
+#include "scarp/march/sampling/device_sampling.h"
 
 namespace scarp::test {
 namespace {

@@ -13,11 +13,11 @@
 #include "march/height/spiteful_text.h"
 #include "scarp/accel/device_ground.h"
 #include "scarp/accel/slope_bound.h"
-#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/height_marches_lean.glsl.h"
 #include "scarp/march/height/height_table.h"
 #include "scarp/march/height/queries_vk.h"
+#include "scarp/march/sampling/device_sampling.h"
 #include "vk/device_under_test.h"
 
 namespace scarp::test {

@@ -13,10 +13,10 @@
 #include "march/height/spiteful_text.h"
 #include "march/sampling_rules.h"
 #include "scarp/accel/slope_bound.h"
-#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/height_marches_lean.glsl.h"
 #include "scarp/march/height/height_table.h"
+#include "scarp/march/sampling/device_sampling.h"
 
 namespace scarp::test {
 namespace {

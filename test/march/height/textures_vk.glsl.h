@@ -4,7 +4,7 @@
 #define TEST_MARCH_TEXTURES_VK_GLSL_H
 
 #include "scarp/march/height/ray_frame.glsl.h"
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

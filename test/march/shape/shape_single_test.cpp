@@ -11,7 +11,7 @@
 #include "scarp/accel/function_words.h"
 #include "scarp/accel/shape_words.h"
 #include "scarp/base/error.h"
-#include "scarp/march/device_function_ray.h"
+#include "scarp/march/function/device_function_ray.h"
 #include "scarp/march/function/function_heights.glsl.h"
 #include "scarp/march/shape/shape_grounds.glsl.h"
 #include "scarp/march/shape/sphere_trace.glsl.h"

@@ -9,7 +9,7 @@
 
 #include "march/shape/shape_judge.h"
 #include "scarp/base/error.h"
-#include "scarp/march/device_function_ray.h"
+#include "scarp/march/function/device_function_ray.h"
 #include "scarp/march/shape/shape_batch.glsl.h"
 #include "scarp/march/shape/shape_queries_vk.h"
 #include "vk/device_under_test.h"

@@ -4,10 +4,10 @@
 // ScarpSampling::proven: approximate.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
-#ifndef SCARP_MARCH_LIPSCHITZ_GLSL_H
-#define SCARP_MARCH_LIPSCHITZ_GLSL_H
+#ifndef SCARP_MARCH_SAMPLING_LIPSCHITZ_GLSL_H
+#define SCARP_MARCH_SAMPLING_LIPSCHITZ_GLSL_H
 
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/march/device_function_ray.h"
+#include "scarp/march/function/device_function_ray.h"
 
 #include <algorithm>
 #include <cmath>

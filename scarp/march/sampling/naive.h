@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/march/naive.h"
+// `naive`: steps by the vertical distance h between ray and ground, never less than a fraction of the ray's length; it
+// hits where h is small, with a tolerance that grows with distance.
+//
+//   t = t_enter;   h = ray height - ground;   h < tolerance * t: hit;   t += max(step_factor * |h|, min_step * t_exit)
+//
+// t and t_exit, where the ray leaves the field, count from t_min here: the distance travelled, and its maximum.
+// SamplingSettings::tolerance is a height that counts as a hit at any distance. A ray from the surface starts within
+// it: its steps are no shorter than this height, and it hits only where it is deeper below ground.
+//
+// The hit is refined on request (Refinement): `secant`, of I. Quilez, "Rainforest", 2016, draws a straight line through
+// the last two clearances, and ends where it reaches the tolerance, not the ground.
+//
+// Guarantee: approximate. The vertical distance is an overestimate: rays step over steep ground (holes in the picture),
+// and rays that graze the ground stop before it. This is the baseline of the max-mip article, in which this march took
+// 55.066 ms and max-mip 9.074 ms. Cost: at most 1 / min_step forced steps, plus those determined by h; one height per
+// step.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/function/function_probe.h"
-#include "scarp/march/height/height_probe.h"
+#include "scarp/march/march_settings.h"
+#include "scarp/march/sampling/sampling.h"
 
 namespace scarp {
-namespace {
 
 template <class Probe>
 Hit naive_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
@@ -43,19 +58,6 @@ Hit naive_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) 
     t += std::max(point.known ? settings.step_factor * std::abs(point.h) : 0.0, least);
   }
   return ground.missed();
-}
-
-}  // namespace
-
-Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  return march_over(target, ray, stats,
-                    [&](const auto& probe, MarchStats& counted) { return naive_over(probe, settings, counted); });
-}
-
-Hit march_naive(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
-                FunctionUse use) {
-  return march_over(function, ray, use, settings.function.reach, stats,
-                    [&](const auto& probe, MarchStats& counted) { return naive_over(probe, settings, counted); });
 }
 
 }  // namespace scarp

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/march/relaxed.h"
+// `relaxed`: the march of many terrain shaders. t += 0.4 * h, a hit where |h| < 0.0015 * t, 300 steps; t counts from
+// t_min.
+//
+// The factor below 1 stands in for the unknown slope: on gentle ground the march approaches the surface from above; on
+// steep ground it steps through and returns (h < 0 steps backwards).
+//
+// Guarantee: approximate. Stops within the tolerance of a surface, which may not be the first one; refined on request
+// (Refinement). Unlike its source, it reports the step limit as exhausted, not as a hit. Source: R. Ma, "Heightfield
+// Raycast", procedural_shader_framework; the constants go back to I. Quilez, "Elevated", 2009. Cost: up to 300 heights
+// per ray.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/function/function_probe.h"
-#include "scarp/march/height/height_probe.h"
+#include "scarp/march/march_settings.h"
+#include "scarp/march/sampling/sampling.h"
 
 namespace scarp {
-namespace {
 
 template <class Probe>
 Hit relaxed_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
@@ -45,19 +54,6 @@ Hit relaxed_over(const Probe& probe, const MarchSettings& all, MarchStats& stats
     ground.step_from(point);
   }
   return ground.missed();
-}
-
-}  // namespace
-
-Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  return march_over(target, ray, stats,
-                    [&](const auto& probe, MarchStats& counted) { return relaxed_over(probe, settings, counted); });
-}
-
-Hit march_relaxed(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
-                  FunctionUse use) {
-  return march_over(function, ray, use, settings.function.reach, stats,
-                    [&](const auto& probe, MarchStats& counted) { return relaxed_over(probe, settings, counted); });
 }
 
 }  // namespace scarp

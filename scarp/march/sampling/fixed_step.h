@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/march/fixed_step.h"
+// `fixed-step`: samples at a constant distance along the ray; the first sample that is no longer above the ground is a
+// hit.
+//
+//   o   o   o   o          plain: the hit is the sample that is first on or below the ground
+//        _____  \ x        interpolated: between the last two samples, where a straight line between their clearances
+//   ____/     \_/ o\_      crosses zero (the default); or bisected (Refinement)
+//
+// Guarantee: approximate. Steps over anything thinner than a step. The last sample is where the ray leaves the field or
+// its range ends. Sample positions are computed from their index, not accumulated. Sources: the ray caster for
+// semi-voxel terrain of the founding texts, first plain, then interpolating the last two samples; I. Quilez, "Terrain
+// raymarching", 2002. Cost: one height per step.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/function/function_probe.h"
-#include "scarp/march/height/height_probe.h"
+#include "scarp/march/march_settings.h"
+#include "scarp/march/sampling/sampling.h"
 
 namespace scarp {
-namespace {
 
 template <class Probe>
 Hit fixed_step_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
@@ -48,19 +58,6 @@ Hit fixed_step_over(const Probe& probe, const MarchSettings& all, MarchStats& st
     before = point;
     if (!(t < probe.t_exit)) return hit;
   }
-}
-
-}  // namespace
-
-Hit march_fixed_step(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  return march_over(target, ray, stats,
-                    [&](const auto& probe, MarchStats& counted) { return fixed_step_over(probe, settings, counted); });
-}
-
-Hit march_fixed_step(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
-                     FunctionUse use) {
-  return march_over(function, ray, use, settings.function.reach, stats,
-                    [&](const auto& probe, MarchStats& counted) { return fixed_step_over(probe, settings, counted); });
 }
 
 }  // namespace scarp

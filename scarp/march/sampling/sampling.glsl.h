@@ -10,8 +10,8 @@
 // limit the iterations of all loops (vk/loop_turns.glsl.h).
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
-#ifndef SCARP_MARCH_SAMPLING_GLSL_H
-#define SCARP_MARCH_SAMPLING_GLSL_H
+#ifndef SCARP_MARCH_SAMPLING_SAMPLING_GLSL_H
+#define SCARP_MARCH_SAMPLING_SAMPLING_GLSL_H
 
 #include "scarp/march/march_state.glsl.h"
 #include "scarp/vk/glsl_cpp.h"

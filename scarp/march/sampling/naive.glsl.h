@@ -2,10 +2,10 @@
 // `naive` for shaders: the march of naive.h in single precision. Guarantee: approximate, as there.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
-#ifndef SCARP_MARCH_NAIVE_GLSL_H
-#define SCARP_MARCH_NAIVE_GLSL_H
+#ifndef SCARP_MARCH_SAMPLING_NAIVE_GLSL_H
+#define SCARP_MARCH_SAMPLING_NAIVE_GLSL_H
 
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

@@ -3,13 +3,13 @@
 // others.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
-#ifndef SCARP_MARCH_SAMPLING_MARCHES_GLSL_H
-#define SCARP_MARCH_SAMPLING_MARCHES_GLSL_H
+#ifndef SCARP_MARCH_SAMPLING_SAMPLING_MARCHES_GLSL_H
+#define SCARP_MARCH_SAMPLING_SAMPLING_MARCHES_GLSL_H
 
-#include "scarp/march/fixed_step.glsl.h"
-#include "scarp/march/lipschitz.glsl.h"
-#include "scarp/march/naive.glsl.h"
-#include "scarp/march/relaxed.glsl.h"
+#include "scarp/march/sampling/fixed_step.glsl.h"
+#include "scarp/march/sampling/lipschitz.glsl.h"
+#include "scarp/march/sampling/naive.glsl.h"
+#include "scarp/march/sampling/relaxed.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

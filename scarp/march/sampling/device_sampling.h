@@ -3,9 +3,9 @@
 #pragma once
 
 #include "scarp/march/march_settings.h"
+#include "scarp/march/sampling/sampling_marches.glsl.h"
+#include "scarp/march/sampling/shrink_factor.h"
 #include "scarp/march/sampling_kind.h"
-#include "scarp/march/sampling_marches.glsl.h"
-#include "scarp/march/shrink_factor.h"
 
 namespace scarp {
 

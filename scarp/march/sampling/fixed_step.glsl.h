@@ -3,10 +3,10 @@
 // are those of the march in double.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
-#ifndef SCARP_MARCH_FIXED_STEP_GLSL_H
-#define SCARP_MARCH_FIXED_STEP_GLSL_H
+#ifndef SCARP_MARCH_SAMPLING_FIXED_STEP_GLSL_H
+#define SCARP_MARCH_SAMPLING_FIXED_STEP_GLSL_H
 
-#include "scarp/march/sampling.glsl.h"
+#include "scarp/march/sampling/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN
