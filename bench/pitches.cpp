@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench pitches`: cameras that look down by 0 to 90 degrees, their rays by fans, by batches, and by the choice
-// between both, as pictures ask them (render/frame/camera_fan.h); and in one call that finds the fan by itself
+// between both, as pictures ask them (render/film/camera_fan.h); and in one call that finds the fan by itself
 // (march/height/fan_batch.h).
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 
 struct GLFWwindow;
 

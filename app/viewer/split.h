@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/base/vec.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 
 namespace scarp::viewer {
 

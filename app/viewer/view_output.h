@@ -7,7 +7,7 @@
 #include "app/cli/options/places.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/opening.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 
 namespace scarp::viewer {
 

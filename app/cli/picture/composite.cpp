@@ -20,7 +20,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/output/png.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 #include "scarp/source/raster/exr_raster.h"
 #ifdef SCARP_OPENEXR
 #include "scarp/output/exr.h"

@@ -11,7 +11,7 @@
 #include "scarp/output/figure.h"
 #include "scarp/output/geotiff.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 #include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "scarp/render/film/tile_work.h"
 #include "scarp/render/frame/frame_view.h"
-#include "scarp/render/frame/tile_work.h"
 
 namespace scarp {
 

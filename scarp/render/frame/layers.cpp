@@ -8,9 +8,9 @@
 #include <memory>
 
 #include "scarp/base/error.h"
+#include "scarp/render/film/middles.h"
+#include "scarp/render/film/tile_work.h"
 #include "scarp/render/frame/frame_tile.h"
-#include "scarp/render/frame/middles.h"
-#include "scarp/render/frame/tile_work.h"
 
 namespace scarp {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/setting.h"
+#include "scarp/render/film/middles.h"
+#include "scarp/render/film/tile_work.h"
 #include "scarp/render/frame/frame_tile.h"
-#include "scarp/render/frame/middles.h"
-#include "scarp/render/frame/tile_work.h"
 #include "scarp/render/light/light.h"
 #include "scarp/render/look/height_look.h"
 #include "scarp/render/look/hillshade_look.h"
@@ -29,6 +29,8 @@ namespace {
 constexpr int kMaxSide = 65536;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr int kMaxSamples = 4096;
+
+ImageSize size_of(const PictureSettings& settings) { return {settings.width, settings.height}; }
 
 class ImageTile final : public TileWork {
  public:
@@ -111,7 +113,7 @@ Picture render_hillshade(const Scene& scene, const Camera& camera, const Picture
                          const Progress& progress) {
   Picture picture{Image(settings.width, settings.height)};
   const dvec3 to_sun = Light(settings.sun, settings.grid_north_azimuth).to_sun();
-  look_through_middles(scene, camera, settings, false, progress,
+  look_through_middles(scene, camera, size_of(settings), false, progress,
                        [&](std::size_t i, const Ray& ray, const Hit& hit, std::uint32_t) {
                          if (!hit || scene.field_of(hit.object).is_backdrop()) return;
                          const auto width = static_cast<std::size_t>(settings.width);
@@ -157,6 +159,15 @@ std::optional<ReliefRange> range_of_grey(const Scene& scene, const PictureSettin
   return field ? std::optional(ReliefRange{field->min_height(), field->max_height()}) : std::nullopt;
 }
 
+Picture picture_of_heights(std::span<const double> heights, const Scene& scene, const PictureSettings& settings) {
+  const std::optional<ReliefRange> given = range_of_grey(scene, settings);
+  const std::optional<ReliefRange> range = given ? given : range_of_heights(heights);
+  Picture picture{range ? image_of_heights(size_of(settings), heights, *range)
+                        : Image(settings.width, settings.height)};
+  if (!given) picture.heights = range;
+  return picture;
+}
+
 std::vector<double> heights_seen(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                                  const Progress& progress) {
   const std::optional<StepMarch> stepped = step_march_of(scene, camera, settings);
@@ -166,40 +177,53 @@ std::vector<double> heights_seen(const Scene& scene, const Camera& camera, const
 #endif
     require_steps(scene);
   }
+  TraceMiddles trace;
+  if (stepped) {
+    trace = [&stepped](RayRound& round) {
+      round.hits.clear();
+      round.steps.clear();
+      for (const Ray& ray : round.rays) {
+        const StepMarch::Answer answer = stepped->march(ray, nullptr);
+        round.hits.push_back(answer.hit);
+        round.steps.push_back(answer.steps);
+      }
+    };
+  }
   std::vector<double> heights = no_heights(settings);
   look_through_middles(
-      scene, camera, settings, false, progress,
+      scene, camera, size_of(settings), false, progress,
       [&](std::size_t i, const Ray& ray, const Hit& hit, std::uint32_t) {
         if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = ray.at(hit.t).z;
       },
-      stepped ? &*stepped : nullptr);
+      trace);
   return heights;
 }
 
 Picture render_height(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                       const Progress& progress) {
   const std::vector<double> heights = heights_seen(scene, camera, settings, progress);
-  return picture_of_heights(settings, heights, range_of_grey(scene, settings));
+  return picture_of_heights(heights, scene, settings);
 }
 
 Picture render_level(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress) {
   const LevelMaxima maxima(scene, settings.level);
   std::vector<double> heights = no_heights(settings);
-  look_through_middles(scene, camera, settings, false, progress,
+  look_through_middles(scene, camera, size_of(settings), false, progress,
                        [&](std::size_t i, const Ray&, const Hit& hit, std::uint32_t) {
                          if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = maxima.over(hit.cell);
                        });
-  return picture_of_heights(settings, heights, range_of_grey(scene, settings));
+  return picture_of_heights(heights, scene, settings);
 }
 
 Picture render_steps(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress) {
   std::vector<std::uint32_t> steps(static_cast<std::size_t>(settings.width) *
                                    static_cast<std::size_t>(settings.height));
-  look_through_middles(scene, camera, settings, true, progress,
+  look_through_middles(scene, camera, size_of(settings), true, progress,
                        [&](std::size_t i, const Ray&, const Hit&, std::uint32_t cost) { steps[i] = cost; });
-  return picture_of_steps(settings, steps);
+  const StepRange range = range_of_steps(steps, settings.step_scale);
+  return {image_of_steps(size_of(settings), steps, ramp_over(settings, range.scale.low, range.scale.high)), range};
 }
 
 }  // namespace
@@ -351,7 +375,7 @@ Picture render_look(const Scene& scene, const Camera& camera, const PictureSetti
 // For looks of one ray per pixel.
 void find_alpha(const Scene& scene, const Camera& camera, const PictureSettings& settings, Image& image) {
   image.make_transparent();
-  look_through_middles(scene, camera, settings, false, {},
+  look_through_middles(scene, camera, size_of(settings), false, {},
                        [&](std::size_t i, const Ray&, const Hit& hit, std::uint32_t) {
                          if (hit && !scene.field_of(hit.object).is_backdrop()) {
                            image.alpha[i] = 255;

@@ -12,7 +12,7 @@
 
 #include "scarp/base/progress.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 #include "scarp/render/light/fog.h"
 #include "scarp/render/light/sky.h"
 #include "scarp/render/light/sun.h"
@@ -28,16 +28,6 @@
 namespace scarp {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
-/// A range of heights, in metres of world z.
-struct ReliefRange {
-  double low = 0, high = 0;
-};
-
-/// Step counts of the first and last colour of a ramp; 0 <= low < high.
-struct StepScale {
-  double low = 0, high = 0;
-};
 
 /// Settings of a picture, apart from the camera.
 struct PictureSettings {
@@ -111,14 +101,6 @@ void validate(const PictureSettings& settings);
 /// Returns the box to frame: around all bounded objects and, if terrain wraps, one period of it. Throws Error if it is
 /// empty.
 WorldBox picture_box(const Scene& scene);
-
-/// Minimum, maximum and mean number of steps per ray, and the scale of the colours.
-struct StepRange {
-  std::uint32_t least = 0;
-  std::uint32_t most = 0;
-  double mean = 0;
-  StepScale scale{};
-};
 
 /// A picture, and statistics of some looks.
 struct Picture {

@@ -15,11 +15,6 @@
 
 namespace scarp {
 
-/// Pixels of a picture.
-struct ImageSize {
-  int width = 0, height = 0;
-};
-
 /// Default size of `comanche` in large pixels.
 constexpr ImageSize kLowResolution{320, 240};
 

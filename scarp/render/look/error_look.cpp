@@ -11,8 +11,8 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/function/function_exhaustive.h"
-#include "scarp/render/frame/middles.h"
-#include "scarp/render/frame/tile_work.h"
+#include "scarp/render/film/middles.h"
+#include "scarp/render/film/tile_work.h"
 #include "scarp/render/light/light.h"
 #include "scarp/render/look/judged_rays.h"
 #include "scarp/render/surface/ramp.h"

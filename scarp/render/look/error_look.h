@@ -24,7 +24,7 @@
 
 #include "scarp/base/progress.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {

@@ -6,18 +6,21 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
-#include "scarp/render/frame/picture.h"
+#include "scarp/render/film/film.h"
+#include "scarp/render/surface/ramp.h"
 
 namespace scarp {
 
-/// 1 at `low` to 255 at `high`, clamped beyond.
-std::uint8_t grey_of_height(double height, double low, double high);
+/// Returns the range of heights, in metres, that are not NaN; nullopt if all are.
+std::optional<ReliefRange> range_of_heights(std::span<const double> heights);
 
-/// `heights`: width * height of them, metres, rows from the top; NaN: a miss. Without a range, it is that of `heights`,
-/// which the picture then reports.
-Picture picture_of_heights(const PictureSettings& settings, std::span<const double> heights,
-                           const std::optional<ReliefRange>& range = {});
+/// 1 at `low` to 255 at `high`, clamped beyond.
+std::uint8_t grey_of_height(double height, const ReliefRange& range);
+
+/// `heights`: width * height of them, metres, rows from the top; NaN: a miss.
+Image image_of_heights(ImageSize size, std::span<const double> heights, const ReliefRange& range);
 
 }  // namespace scarp

@@ -34,6 +34,19 @@ struct LookEntry {
   bool measures = false;      ///< shows numbers of the march or of its structures, which averaged samples would change
 };
 
+/// Step counts of the first and last colour of a ramp; 0 <= low < high.
+struct StepScale {
+  double low = 0, high = 0;
+};
+
+/// Minimum, maximum and mean number of steps per ray, and the scale of the colours.
+struct StepRange {
+  std::uint32_t least = 0;
+  std::uint32_t most = 0;
+  double mean = 0;
+  StepScale scale{};
+};
+
 /// Returns all looks, in the order of the enumeration.
 std::span<const LookEntry> looks();
 /// Returns the row of a look.

@@ -4,23 +4,21 @@
 #include <algorithm>
 #include <numeric>
 
-#include "scarp/render/surface/ramp.h"
-
 namespace scarp {
 
-Picture picture_of_steps(const PictureSettings& settings, std::span<const std::uint32_t> steps) {
-  const auto width = static_cast<std::size_t>(settings.width);
+StepRange range_of_steps(std::span<const std::uint32_t> steps, const std::optional<StepScale>& scale) {
   const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
   const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
-  const StepScale scale =
-      settings.step_scale.value_or(StepScale{static_cast<double>(*least), static_cast<double>(*most)});
-  Picture picture{Image(settings.width, settings.height),
-                  StepRange{*least, *most, sum / static_cast<double>(steps.size()), scale}};
-  const Ramp ramp = ramp_over(settings, scale.low, scale.high);
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    set_pixel(picture.image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));
-  }
-  return picture;
+  return {*least, *most, sum / static_cast<double>(steps.size()),
+          scale.value_or(StepScale{static_cast<double>(*least), static_cast<double>(*most)})};
+}
+
+Image image_of_steps(ImageSize size, std::span<const std::uint32_t> steps, const Ramp& ramp) {
+  Image image(size.width, size.height);
+  const auto width = static_cast<std::size_t>(size.width);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    set_pixel(image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));
+  return image;
 }
 
 }  // namespace scarp

@@ -4,13 +4,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
-#include "scarp/render/frame/picture.h"
+#include "scarp/render/film/film.h"
+#include "scarp/render/look/look.h"
+#include "scarp/render/surface/ramp.h"
 
 namespace scarp {
 
+/// Returns the range of one or more step counts. Without a scale, the colours span the minimum to the maximum.
+StepRange range_of_steps(std::span<const std::uint32_t> steps, const std::optional<StepScale>& scale);
+
 /// `steps`: width * height of them, rows from the top.
-Picture picture_of_steps(const PictureSettings& settings, std::span<const std::uint32_t> steps);
+Image image_of_steps(ImageSize size, std::span<const std::uint32_t> steps, const Ramp& ramp);
 
 }  // namespace scarp

@@ -11,6 +11,11 @@
 
 namespace scarp {
 
+/// A range of heights, in metres of world z.
+struct ReliefRange {
+  double low = 0, high = 0;
+};
+
 /// Names of all ramps: viridis, magma, inferno, plasma, grey, hypsometric.
 std::span<const std::string_view> ramp_names();
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "scarp/base/error.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 #include "scarp/render/light/colour.glsl.h"
 #include "scarp/render/light/light.h"
 #include "scarp/render/surface/ramp.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Work in rounds, against a scene on a fake device, which derives its answer from the ray itself.
-#include "scarp/render/frame/tile_work.h"
+#include "scarp/render/film/tile_work.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 
 #include <gtest/gtest.h>
 

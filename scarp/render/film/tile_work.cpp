@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/render/frame/tile_work.h"
+#include "scarp/render/film/tile_work.h"
 
 #include <algorithm>
 #include <atomic>

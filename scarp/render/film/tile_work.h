@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "scarp/base/progress.h"
-#include "scarp/render/frame/camera_fan.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/camera_fan.h"
+#include "scarp/render/film/film.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Camera rays of pictures, by fans: the hits of single rays, to the bit.
-#include "scarp/render/frame/camera_fan.h"
+#include "scarp/render/film/camera_fan.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "render/terrain.h"
-#include "scarp/render/frame/tile_work.h"
+#include "scarp/render/film/tile_work.h"
 
 namespace scarp {
 namespace {

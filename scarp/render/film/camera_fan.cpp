@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/render/frame/camera_fan.h"
+#include "scarp/render/film/camera_fan.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -8,9 +8,8 @@
 
 #include "scarp/base/progress.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/film.h"
-#include "scarp/render/frame/picture.h"
-#include "scarp/render/look/comanche.h"
+#include "scarp/render/film/film.h"
+#include "scarp/render/film/tile_work.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {
@@ -21,9 +20,12 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
 /// Receives a pixel's index (rows from the top), its ray, its hit, and its steps (0 without `count`).
 using TakeMiddle = std::function<void(std::size_t, const Ray&, const Hit&, std::uint32_t)>;
 
-/// Calls `take` for each pixel, on any thread. `count`: whether to count steps. If not null, `stepped` traces the rays
-/// instead of the scene.
-void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
-                          const Progress& progress, const TakeMiddle& take, const StepMarch* stepped = nullptr);
+/// Sets the hits and steps of a round's rays; called on any thread.
+using TraceMiddles = std::function<void(RayRound&)>;
+
+/// Calls `take` for each pixel of a picture of the camera, on any thread. `count`: whether to count steps. If not
+/// empty, `trace` traces the rays instead of the scene.
+void look_through_middles(const Scene& scene, const Camera& camera, ImageSize size, bool count,
+                          const Progress& progress, const TakeMiddle& take, const TraceMiddles& trace = {});
 
 }  // namespace scarp

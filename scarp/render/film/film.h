@@ -10,6 +10,11 @@
 
 namespace scarp {
 
+/// Pixels of a picture.
+struct ImageSize {
+  int width = 0, height = 0;
+};
+
 /// Rows from the top, 3 bytes (red, green, blue; sRGB) a pixel, no padding.
 struct Image {
   int width = 0;

@@ -12,7 +12,7 @@
 #include "scarp/base/kept_memory.h"
 #include "scarp/march/height/max_mip_fan.h"
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/film.h"
+#include "scarp/render/film/film.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/render/frame/middles.h"
+#include "scarp/render/film/middles.h"
 
 #include <memory>
-
-#include "scarp/render/frame/tile_work.h"
 
 namespace scarp {
 namespace {
@@ -11,8 +9,8 @@ namespace {
 class MiddlesTile final : public TileWork {
  public:
   MiddlesTile(const Camera& camera, const PixelTile& tile, const CameraSights* sights, int width, bool count,
-              const TakeMiddle& take, const StepMarch* stepped)
-      : camera_(camera), tile_(tile), sights_(sights), width_(width), count_(count), take_(take), stepped_(stepped) {}
+              const TakeMiddle& take, const TraceMiddles& trace)
+      : camera_(camera), tile_(tile), sights_(sights), width_(width), count_(count), take_(take), trace_(trace) {}
 
   bool next(RayRound& round) override {
     if (!asked_) {
@@ -21,8 +19,8 @@ class MiddlesTile final : public TileWork {
       round.rays = rays_through_middles(camera_, tile_);
       if (sights_ && !count_) sights_->of(tile_, round.sights);
       round.from.clear();
-      if (!stepped_) return true;
-      answer_by_steps(round);
+      if (!trace_) return true;
+      trace_(round);
     }
     std::size_t i = 0;
     for (int y = tile_.y0; y < tile_.y1; ++y) {
@@ -35,23 +33,13 @@ class MiddlesTile final : public TileWork {
   }
 
  private:
-  void answer_by_steps(RayRound& round) const {
-    round.hits.clear();
-    round.steps.clear();
-    for (const Ray& ray : round.rays) {
-      const StepMarch::Answer answer = stepped_->march(ray, nullptr);
-      round.hits.push_back(answer.hit);
-      round.steps.push_back(answer.steps);
-    }
-  }
-
   const Camera& camera_;
   PixelTile tile_;
   const CameraSights* sights_;
   int width_;
   bool count_, asked_ = false;
   const TakeMiddle& take_;
-  const StepMarch* stepped_;
+  const TraceMiddles& trace_;
 };
 
 }  // namespace
@@ -65,18 +53,18 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
   return rays;
 }
 
-void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
-                          const Progress& progress, const TakeMiddle& take, const StepMarch* stepped) {
-  const std::size_t most_rays = PixelTiles(settings.width, settings.height, 1)[0].pixels();
+void look_through_middles(const Scene& scene, const Camera& camera, ImageSize size, bool count,
+                          const Progress& progress, const TakeMiddle& take, const TraceMiddles& trace) {
+  const std::size_t most_rays = PixelTiles(size.width, size.height, 1)[0].pixels();
   const auto make = [&](const PixelTile& tile, const CameraSights* sights) {
-    return std::make_unique<MiddlesTile>(camera, tile, sights, settings.width, count, take, stepped);
+    return std::make_unique<MiddlesTile>(camera, tile, sights, size.width, count, take, trace);
   };
-  if (count || stepped) {
+  if (count || trace) {
     return work_on_tiles(
-        scene, PixelTiles(settings.width, settings.height, 1), most_rays,
+        scene, PixelTiles(size.width, size.height, 1), most_rays,
         [&](const PixelTile& tile) { return make(tile, nullptr); }, progress);
   }
-  work_on_camera_tiles(scene, camera, settings.width, settings.height, 1, most_rays, make, progress);
+  work_on_camera_tiles(scene, camera, size.width, size.height, 1, most_rays, make, progress);
 }
 
 }  // namespace scarp
