@@ -47,7 +47,8 @@ struct SampleGrid {
     return has_holes && (is_nodata(at(col, r)) || is_nodata(at(east(col), r)) || is_nodata(at(col, south(r))) ||
                          is_nodata(at(east(col), south(r))));
   }
-  CellHeights cell(int col, int r) const {
+  // Part of every march's inner loop.
+  [[gnu::always_inline]] CellHeights cell(int col, int r) const {
     const T *north = row(r), *beyond = row(south(r));
     const int next = east(col);
     return {static_cast<double>(north[col]), static_cast<double>(north[next]), static_cast<double>(beyond[col]),

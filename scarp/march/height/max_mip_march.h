@@ -24,12 +24,12 @@ bool runs_along_line(const GridRay& ray) {
   return along(0) || along(1);
 }
 
-template <Ask ask, bool upside_down>
+template <Ask ask>
 Hit march_along_line(const HeightTarget& target, const Ray& ray, const Wanted& wanted, MarchStats* stats) {
   if (ask != Ask::as_wanted || wanted.bisects) return march_exhaustive(target, ray, {}, stats);
   Hit hit;
   std::vector<Hit> own, &hits = wanted.all ? *wanted.all : own;
-  hit.status = (upside_down ? all_hits_from_below_exhaustive : all_hits_exhaustive)(target, ray, hits);
+  hit.status = (wanted.from_below ? all_hits_from_below_exhaustive : all_hits_exhaustive)(target, ray, hits);
   if (wanted.all) return hit;
   for (const Hit& one : hits) {
     if (!wanted.accept || (*wanted.accept)(one)) return one;
@@ -38,7 +38,7 @@ Hit march_along_line(const HeightTarget& target, const Ray& ray, const Wanted& w
   return hit;
 }
 
-template <Ask ask, bool upside_down = false>
+template <Ask ask>
 Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, MarchStats* stats) {
   require(target, HeightPart::pyramid);
   const HeightField& field = *target.field;
@@ -61,7 +61,7 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
     if (wanted.accept) usual.accept = &accept;
     // Any hit is computed as the closest hit, because its height is needed below.
     constexpr Ask with_height = ask == Ask::any ? Ask::closest : ask;
-    hit = march<with_height, upside_down>(target, scaled_down(ray, exponent), usual, stats);
+    hit = march<with_height>(target, scaled_down(ray, exponent), usual, stats);
     hit.t = std::ldexp(hit.t, -exponent);
     if (wanted.all) {
       for (Hit& one : *wanted.all) one.t = std::ldexp(one.t, -exponent);
@@ -79,11 +79,11 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
     return hit;
   }
   if (field.nodata_count() > 0 && ray.start == RayStart::free && runs_along_line(local))
-    return march_along_line<ask, upside_down>(target, ray, wanted, stats);
+    return march_along_line<ask>(target, ray, wanted, stats);
   field.visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
     const auto run = [&]<bool holes, bool wraps>() {
-      Walk<T, holes, wraps, ask, upside_down> walk(target, grid, ray, local, wanted, hit);
+      Walk<T, holes, wraps, ask> walk(target, grid, ray, local, wanted, hit);
       walk.run();
       if (stats) *stats = walk.stats;
     };

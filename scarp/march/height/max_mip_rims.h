@@ -56,12 +56,12 @@ struct RimStretch {
   double relief;
 };
 
-template <class T, bool Wraps, bool UpsideDown>
+template <class T, bool Wraps, bool MayInvert>
 struct Rim {
   using Axis = GridAxis<Wraps>;
 
   const HeightField& field;
-  const WalkGround<T, UpsideDown>& ground;
+  const WalkGround<T, MayInvert>& ground;
   const Axis &x, &y;
   const GridRay ray;
   double seam, seam_step;

@@ -42,7 +42,7 @@ Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const Hit
     };
     accept = &leaves_start;
   }
-  Hit below = march<Ask::as_wanted, true>(target, ray, {.accept = accept}, stats);
+  Hit below = march<Ask::as_wanted>(target, ray, {.from_below = true, .accept = accept}, stats);
   // The ray was above the ground, which adds nothing.
   if (below.status == HitStatus::below) below.status = HitStatus::miss;
   if (rules.sides == Sides::below) return below;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rounding error bounds of a ray's clearance, derived in doc/dev/numerics.md.
+// Rounding error bounds of a ray's clearance. doc/dev/numerics.md shows how hits depend on them. u = 2^-53.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,20 @@ namespace scarp {
 /// Returns the maximum rounding error of ray height - surface height at time t, in sample units, from world coordinates
 /// to a march's clearance: 16 u times the magnitude of the operands, including the offset of the ray into the grid.
 /// `relief` is the height difference around the ray: of its cell, or of the whole field.
+///
+/// Roundings of each quantity on the way to the clearance, times u, of the largest value that it takes:
+///
+///     into grid units (a product or two)    3    coordinates and height, abs(o) and abs(d t)
+///     time of a line: 1/d, k - o, product   3    the coordinate at t
+///     o + d t, minus the cell               3    abs(o) + abs(d t)
+///     ray height o_z + d_z t                2    abs(o_z) + abs(d_z t)
+///     surface a + w (b - a), difference     3    the samples
+///
+/// No quantity goes through more than 11; 16 is the next power of two. Errors of coordinates change the clearance through
+/// the slope: at most `relief` per cell.
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t, double relief) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
-  constexpr double kRoundings = 16;  // numerics.md counts 11
+  constexpr double kRoundings = 16;  // counted above
   // Products below 2^-1022 are rounded by half of the least number instead.
   constexpr double kSubnormal = kRoundings / 2 * std::numeric_limits<double>::denorm_min();
   const double low = field.min_sample(), high = field.max_sample();

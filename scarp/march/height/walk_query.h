@@ -20,6 +20,7 @@ struct Wanted {
   int halvings = 0;                   ///< halvings
   double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
   std::vector<Hit>* all = nullptr;    ///< as_wanted: receives all hits, unless null
+  bool from_below = false;            ///< as_wanted: hits from below, over the inverted ground
   const HitFilter* accept = nullptr;  ///< as_wanted: null: the first hit is accepted
 };
 
