@@ -27,7 +27,7 @@ class CastStarts : public testing::Test {
                           "ncols 5\nnrows 4\nxllcenter 1000\nyllcenter 2000\ncellsize 10\n" + samples + "\n");
   }
   void expect_rays_refused(const std::string& table, const std::string& fragment) const {
-    const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays", rays(table)});
+    const auto result = run({"cast", path("hills.asc"), "--coords", "local", "--rays", rays(table)});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(lines(result.err), 1) << result.err;
@@ -40,7 +40,7 @@ class CastStarts : public testing::Test {
 TEST_F(CastStarts, CountAsAboveTheSurface) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
   // Along the plane: touching is a hit for a free ray, none for one that starts on it.
-  const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
+  const auto result = run({"cast", path("hills.asc"), "--coords", "local", "--rays",
                            rays("x,y,z,dx,dy,dz,start_col,start_row\n15,15,0,1,0,0,,\n15,15,0,1,0,0,1,1\n")});
   const auto rows = rows_of(result.out);
   ASSERT_EQ(rows.size(), 2u) << result.err;
@@ -59,7 +59,7 @@ TEST_F(CastStarts, MustLieInTheirCell) {
   expect_rays_refused(header + "-50,15,0,0,0,1,0,9,0,1\n", "column -5, row 1.5");
   expect_rays_refused(header + "15,15,0,1,0,0,20,99,1,1\n", "column 3.5, row 1.5");
   const auto err = [&](const std::string& table, const Names& more = {}) {
-    Names words{"cast", path("hills.asc"), "--crs", "local", "--rays", rays(header + table)};
+    Names words{"cast", path("hills.asc"), "--coords", "local", "--rays", rays(header + table)};
     words.insert(words.end(), more.begin(), more.end());
     const auto result = run(words);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -85,7 +85,7 @@ TEST_F(CastStarts, MayBeHitsOfOtherRays) {
                         {"map", hills(), "EPSG:32616", 1000, 2000, 1},
                         {"lonlat", degrees, "EPSG:4326", 10, 50, 1e-5}}) {
     const auto cast = [&](const std::string& table) {
-      const auto result = run({"cast", c.file, "--raster-crs", c.crs, "--crs", c.coordinates, "--rays", rays(table)});
+      const auto result = run({"cast", c.file, "--crs", c.crs, "--coords", c.coordinates, "--rays", rays(table)});
       EXPECT_EQ(result.status, 0) << c.coordinates << ": " << result.err;
       EXPECT_EQ(result.err.find("start_col"), std::string::npos) << result.err;
       return rows_of(result.out);

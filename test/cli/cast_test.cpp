@@ -95,12 +95,12 @@ class Cast : public testing::Test {
 };
 
 TEST_F(Cast, LocalNodesHitTheirSamples) {
-  look_down({"--crs", "local"}, [](int col, int row) { return std::pair(10.0 * col, 10.0 * (kRows - 1 - row)); });
+  look_down({"--coords", "local"}, [](int col, int row) { return std::pair(10.0 * col, 10.0 * (kRows - 1 - row)); });
 }
 
 TEST_F(Cast, MapNodesHitTheirSamples) {
   const auto place = [](int col, int row) { return std::pair(1000 + 10.0 * col, 2000 + 10.0 * (kRows - 1 - row)); };
-  const auto asked = look_down({"--crs", "map"}, place), by_default = look_down({}, place);
+  const auto asked = look_down({"--coords", "map"}, place), by_default = look_down({}, place);
   EXPECT_EQ(asked, by_default) << "a raster with a place has map coordinates";
 }
 
@@ -111,7 +111,7 @@ TEST_F(Cast, LonlatNodesHitTheirSamples) {
                                          west + (kCols - 0.5) * cell, south + (kRows - 0.5) * cell);
   // Their cells on the ground are rounded: a node of the border may be outside by a rounding error.
   look_down(
-      {"--crs", "lonlat", "--raster-crs", "EPSG:4326", bounds},
+      {"--coords", "lonlat", "--crs", "EPSG:4326", bounds},
       [&](int col, int row) { return std::pair(west + cell * col, south + cell * (kRows - 1 - row)); }, true);
 }
 
@@ -121,7 +121,7 @@ TEST_F(Cast, CoordinateSystemsAgree) {
   const double west = 721015, south = 4030015, x = 721085, y = 4030060;
   const auto cast = [&](const std::string& place, const std::string& crs) {
     const auto result = run({"cast", hills(), "--rays", rays(fmt::format("x,y,z,dx,dy,dz\n{},900,0,0,-1\n", place)),
-                             "--crs", crs, "--raster-crs", "EPSG:32616", "--bounds=721000,4030000,721150,4030120"});
+                             "--coords", crs, "--crs", "EPSG:32616", "--bounds=721000,4030000,721150,4030120"});
     EXPECT_EQ(result.status, 0) << result.err;
     const auto rows = rows_of(result.out);
     return rows.empty() ? Row() : rows[0];
@@ -147,8 +147,8 @@ TEST_F(Cast, ReportsHitsWithoutLongitude) {
   // The Earth from far away: the corners of this map show the sky behind it.
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
   const auto result =
-      run({"cast", path("hills.asc"), "--rays", rays("x,y,z,dx,dy,dz\n0,0,1000,6000,6000,-1\n"), "--crs", "lonlat",
-           "--raster-crs", "+proj=ortho +lat_0=0 +lon_0=0 +ellps=WGS84", "--bounds=-9000000,-9000000,9000000,9000000"});
+      run({"cast", path("hills.asc"), "--rays", rays("x,y,z,dx,dy,dz\n0,0,1000,6000,6000,-1\n"), "--coords", "lonlat",
+           "--crs", "+proj=ortho +lat_0=0 +lon_0=0 +ellps=WGS84", "--bounds=-9000000,-9000000,9000000,9000000"});
   EXPECT_EQ(result.status, 1);
   EXPECT_EQ(test::lines(result.err), 1) << result.err;
   EXPECT_NE(result.err.find("line 2 (ray 0): its hit is at a place that has no longitude"), std::string::npos)
@@ -157,7 +157,7 @@ TEST_F(Cast, ReportsHitsWithoutLongitude) {
 
 TEST_F(Cast, CarriesColumnsForEveryStatus) {
   hills();
-  const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
+  const auto result = run({"cast", path("hills.asc"), "--coords", "local", "--rays",
                            rays("name;x;y;z;dx;dy;dz;t_max\r\nhit;15;15;500;0;0;-1;\r\nup;15;15;500;0;0;1;\r\n"
                                 "short;15;15;500;0;0;-1;10\r\nunder;15;15;1;0;0;-1;\r\n")});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -178,10 +178,11 @@ TEST_F(Cast, MarchesAgree) {
     table += fmt::format("{},{},{},{},{},-20\n", i % 7 * 6, i % 5 * 6, 300, i % 9 - 4, i % 4 - 2);
   hills();
   rays(table);
-  const auto exact = rows_of(run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv")}).out);
+  const auto exact = rows_of(run({"cast", path("hills.asc"), "--coords", "local", "--rays", path("rays.csv")}).out);
   const auto judge = rows_of(
-      run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv"), "--march", "exhaustive"}).out);
-  const auto any = rows_of(run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv"), "--any"}).out);
+      run({"cast", path("hills.asc"), "--coords", "local", "--rays", path("rays.csv"), "--march", "exhaustive"}).out);
+  const auto any =
+      rows_of(run({"cast", path("hills.asc"), "--coords", "local", "--rays", path("rays.csv"), "--any"}).out);
   ASSERT_EQ(exact.size(), 50u);
   ASSERT_EQ(judge.size(), 50u);
   ASSERT_EQ(any.size(), 50u);
@@ -202,7 +203,8 @@ TEST_F(Cast, AllHitsAreSortedByT) {
   rays("x,y,z,dx,dy,dz\n-5,15,5,1,0,0\n-5,15,20,1,0,0\n");
   for (const char* march : {"max-mip", "exhaustive"}) {
     const auto rows = rows_of(
-        run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv"), "--all", "--march", march}).out);
+        run({"cast", path("hills.asc"), "--coords", "local", "--rays", path("rays.csv"), "--all", "--march", march})
+            .out);
     ASSERT_EQ(rows.size(), 3u) << march;
     EXPECT_EQ(number(rows[0], "t"), 10);
     EXPECT_EQ(number(rows[1], "t"), 30);
@@ -219,7 +221,7 @@ TEST_F(Cast, WarnsAboutRaysFromBelow) {
   hills("10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10");
   // From below up, from above down, from above up.
   rays("x,y,z,dx,dy,dz\n15,15,5,0.1,0,1\n15,15,15,0.1,0,-1\n15,15,15,0.1,0,1\n");
-  const Names arguments{"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv")};
+  const Names arguments{"cast", path("hills.asc"), "--coords", "local", "--rays", path("rays.csv")};
   Names any = arguments;
   any.push_back("--any");
   const auto told = run(any);
@@ -308,7 +310,7 @@ TEST_F(CastInputs, SceneHitsReportObjectAndMaterial) {
 // A terrain's own columns come first, as without the rest.
 TEST_F(CastInputs, TerrainHitsInASceneReportTheCell) {
   const std::string dem = hills(), table = "x,y,z,dx,dy,dz\n15,15,900,0,0,-1\n";
-  const Row alone = cast({dem, "--crs", "local"}, table).at(0),
+  const Row alone = cast({dem, "--coords", "local"}, table).at(0),
             among = cast({write("terrain.json", R"({"objects": [{"heights": {"file": "hills.asc"}}]})")}, table).at(0);
   for (const auto& [column, value] : alone) EXPECT_EQ(among.at(column), value) << column;
   EXPECT_EQ(among.at("status") + among.at("kind") + among.at("object"), "hitheights0");
@@ -325,7 +327,7 @@ TEST_F(CastInputs, MeshHitsReportTheTriangle) {
   EXPECT_FLOAT_EQ(static_cast<float>(number(row, "u")), 0.5f);
   EXPECT_FLOAT_EQ(static_cast<float>(number(row, "v")), 0.25f);
   // On terrain it is an object like the terrain.
-  const Names over{hills(), "--crs", "local", "--mesh", mesh, "--mesh-up", "z", "--mesh-at", "15,15,900"};
+  const Names over{hills(), "--coords", "local", "--mesh", mesh, "--mesh-up", "z", "--mesh-at", "15,15,900"};
   const auto rows = cast(over, "x,y,z,dx,dy,dz\n15,15,1000,0,0,-1\n35,25,1000,0,0,-1\n");
   EXPECT_EQ(rows[0].at("kind") + rows[0].at("object") + rows[0].at("z"), "mesh1900");
   EXPECT_EQ(rows[1].at("kind") + rows[1].at("object") + rows[1].at("col"), "heights03");
@@ -350,8 +352,8 @@ TEST_F(CastInputs, RejectsTerrainOptionsForOtherInputs) {
   rays("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n");
   const std::string function = write("plane.json", "7");
   expect_error({scene(), "--all"}, "--all applies to terrain only (marches of other fields return the first hit only)");
-  expect_error({scene(), "--crs", "map"},
-               "--crs map or lonlat applies to terrain only (other inputs have no georeference)");
+  expect_error({scene(), "--coords", "map"},
+               "--coords map or lonlat applies to terrain only (other inputs have no georeference)");
   expect_error({scene(), "--march", "naive"}, "--march applies to terrain, voxels and functions only");
   expect_error({columns(), volume_[0], volume_[1], "--march", "max-mip"}, "voxel-exhaustive");
   expect_error({columns(), volume_[0], volume_[1], "--wrap", "periodic"}, "--wrap applies to terrain only");
@@ -367,7 +369,7 @@ TEST_F(CastInputs, RejectsTerrainOptionsForOtherInputs) {
 TEST_F(Cast, AppliesSurfaceOptions) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 8 0 0\n0 0 0 0 0");
   const auto cast = [&](const std::string& table, const Names& options) {
-    Names arguments = {"cast", path("hills.asc"), "--crs", "local", "--rays", rays(table)};
+    Names arguments = {"cast", path("hills.asc"), "--coords", "local", "--rays", rays(table)};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -411,7 +413,7 @@ TEST_F(Cast, RenderAcceptsTheSameSurfaces) {
 
 TEST_F(Cast, NotesExplainWhyNothingWasHit) {
   const auto note = [&](const std::string& table, Names more = {}) {
-    Names arguments{"cast", hills(), "--crs", "local", "--rays", rays(table)};
+    Names arguments{"cast", hills(), "--coords", "local", "--rays", rays(table)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -423,14 +425,14 @@ TEST_F(Cast, NotesExplainWhyNothingWasHit) {
   for (const Names& any : {Names{}, {"--any"}}) {
     EXPECT_NE(note(under, any).find("1 of 1 rays start below ground, or enter it through its border"),
               std::string::npos);
-    EXPECT_EQ(note(under, any).find("--crs"), std::string::npos);
-    EXPECT_NE(note(beside, any).find("are the rays in these (--crs)?"), std::string::npos);
+    EXPECT_EQ(note(under, any).find("--coords"), std::string::npos);
+    EXPECT_NE(note(beside, any).find("are the rays in these (--coords)?"), std::string::npos);
   }
 }
 
 TEST_F(Cast, ReadsAndWritesFilesAndStreams) {
   const std::string table = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
-  const Names arguments = {"cast", hills(), "--crs", "local", "--rays"};
+  const Names arguments = {"cast", hills(), "--coords", "local", "--rays"};
   const auto with = [&](Names more) {
     more.insert(more.begin(), arguments.begin(), arguments.end());
     return more;
@@ -452,7 +454,7 @@ TEST_F(Cast, ReadsAndWritesFilesAndStreams) {
 TEST_F(Cast, ClosedPipeIsNotAnError) {
   std::string table = "x,y,z,dx,dy,dz\n";
   for (int i = 0; i < 100000; ++i) table += "15,15,500,0,0,-1\n";
-  const std::string command = fmt::format("'{}' cast '{}' --crs local --rays '{}' 2> '{}' | head -n 1 > '{}'",
+  const std::string command = fmt::format("'{}' cast '{}' --coords local --rays '{}' 2> '{}' | head -n 1 > '{}'",
                                           SCARP_PROGRAM, hills(), rays(table), path("err"), path("out"));
   // The second shell starts it with SIGPIPE ignored, as some daemons do.
   for (const std::string& line : {command, "trap '' PIPE; " + command}) {
@@ -486,7 +488,7 @@ TEST_F(Cast, ErrorsInRaysNameFileAndRow) {
   expect_rays_refused(on_surface + "4,0\n", "line 2 (ray 0): it starts on the surface of cell (4, 0)");
   expect_rays_refused("ray,x,y,z,dx,dy,dz\n1,15,15,500,0,0,-1\n", "column 'ray'");
   expect_rays_refused(header + "-184,36,500,0,0,-1\n1015,2015,500,0,0,-1\n", "line 3 (ray 1): (1015, 2015)",
-                      {"--crs", "lonlat", "--raster-crs", "EPSG:32616"});
+                      {"--coords", "lonlat", "--crs", "EPSG:32616"});
   expect_refused({"--rays", path("no.csv")}, "cannot be opened");
   expect_refused({"--rays", path("")}, "is a directory");
   expect_refused({"--rays", write("rays.npy", "\x93NUMPY")}, "rays.npy");
@@ -495,8 +497,9 @@ TEST_F(Cast, ErrorsInRaysNameFileAndRow) {
 TEST_F(Cast, RejectsInvalidOptions) {
   const std::string good = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
   expect_refused({}, "--rays");
-  expect_rays_refused(good, "--raster-crs", {"--crs", "EPSG:4326"});
-  expect_rays_refused(good, "(specify one, or use map coordinates)", {"--crs", "lonlat"});
+  expect_rays_refused(good, "--coords 'EPSG:4326': expected local, map or lonlat", {"--coords", "EPSG:4326"});
+  expect_rays_refused(good, "--crs 'lonlat': expected a CRS, for example EPSG:4326 (--coords", {"--crs", "lonlat"});
+  expect_rays_refused(good, "(specify one, or use map coordinates)", {"--coords", "lonlat"});
   expect_rays_refused(good, "bilinear or triangles", {"--surface", "spline"});
   expect_rays_refused(good, "none, periodic or shared", {"--wrap", "mirror"});
   expect_rays_refused(good, "not shared", {"--wrap", "shared"});
@@ -504,7 +507,7 @@ TEST_F(Cast, RejectsInvalidOptions) {
   expect_rays_refused(good, "unknown", {"--march", "quick"});
   expect_rays_refused(good, "march 'sphere-trace': is not for terrain (available: exhaustive, max-mip",
                       {"--march", "sphere-trace"});
-  expect_rays_refused(good, "correct --raster-crs or --bounds", {"--raster-crs", "EPSG:4326"});
+  expect_rays_refused(good, "correct --crs or --bounds", {"--crs", "EPSG:4326"});
   hills();
   rays(good);
   for (const std::string output : {"hits.txt", "no/hits.csv"}) {

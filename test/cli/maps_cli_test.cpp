@@ -41,7 +41,7 @@ class MapsCli : public testing::Test {
     dem_ = scratch_.write("dem.asc", text);
   }
   std::string path(const std::string& name) const { return scratch_.path(name); }
-  Names on_dem(const std::string& command) const { return {command, dem_, "--raster-crs", "EPSG:32633"}; }
+  Names on_dem(const std::string& command) const { return {command, dem_, "--crs", "EPSG:32633"}; }
 
   void expect_refused(const Names& arguments, const std::string& what) const {
     const auto before = scratch_.files();
@@ -107,9 +107,9 @@ TEST_F(MapsCli, AcceptsGdalViewshedFlags) {
   const auto ours =
       run(on_dem("viewshed") + Names{"--observer", "500105,5000105", "--observer-height", "3", "--max-distance", "150",
                                      "--visible-value", "255", "-o", path("a.tif")});
-  const auto theirs = run({"viewshed", "-ox",          "500105",       "-oy",        "5000105", "-oz",        "3",
-                           "-md",      "150",          "-vv",          "255",        "-iv",     "0",          "-q",
-                           "-co",      "COMPRESS=LZW", "--raster-crs", "EPSG:32633", dem_,      path("b.tif")});
+  const auto theirs =
+      run({"viewshed", "-ox", "500105", "-oy", "5000105", "-oz",          "3",     "-md",        "150", "-vv",
+           "255",      "-iv", "0",      "-q",  "-co",     "COMPRESS=LZW", "--crs", "EPSG:32633", dem_,  path("b.tif")});
   ASSERT_EQ(ours.status, 0) << ours.err;
   ASSERT_EQ(theirs.status, 0) << theirs.err;
   EXPECT_EQ(theirs.out, "");
@@ -245,7 +245,7 @@ TEST_F(MapsCli, ShadowAcceptsTimes) {
   expect_refused(on_dem("shadow") + Names{"--sun", "90,9", "--sun-per-cell", "-o", path("x.tif")}, "--time");
   expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "--sun-per-cell", "-o", path("x.tif")},
                  "below the horizon");
-  expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
+  expect_refused({"shadow", dem_, "--crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
 }
 
 // The parts together are the whole map, pixel by pixel, and each is georeferenced by its rows.
@@ -258,7 +258,7 @@ TEST_F(MapsCli, PartsMatchTheWhole) {
       Names{"shadow", "--sun", "70,10", "--fraction"},
   };
   for (const Names& map : maps) {
-    const Names words = map + Names{dem_, "--raster-crs", "EPSG:32633", "-o"};
+    const Names words = map + Names{dem_, "--crs", "EPSG:32633", "-o"};
     ASSERT_EQ(run(words + Names{path("whole.tif")}).status, 0);
     const auto whole = open(path("whole.tif"));
     for (int band = 1; band <= whole->GetRasterCount(); ++band) {
@@ -290,7 +290,7 @@ TEST_F(MapsCli, PartsMatchTheWhole) {
 TEST_F(MapsCli, SupportsBilinearSurface) {
   const std::string saddle =
       scratch_.write("saddle.asc", "ncols 2\nnrows 2\nxllcorner -5\nyllcorner -5\ncellsize 10\n0 30\n30 0\n");
-  const Names line{"los", saddle, "--crs", "map", "--cc", "0", "--from", "0,10,8", "--to", "10,0,8"};
+  const Names line{"los", saddle, "--coords", "map", "--cc", "0", "--from", "0,10,8", "--to", "10,0,8"};
   const auto crossings = run(line), bilinear = run(line + Names{"--surface", "bilinear"});
   ASSERT_EQ(bilinear.status, 0) << bilinear.err;
   EXPECT_NE(crossings.out.find("\n1,1,"), std::string::npos) << crossings.out;
@@ -473,8 +473,7 @@ TEST_F(MapsCli, ValidatesPlacesTimesAndFiles) {
   expect_refused(sun + Names{"2026-06-21T09:00"}, "UTC offset");
   expect_refused(sun + Names{"1526-06-21T09:00Z"}, "1900 to 2100");
   for (const char* rule : {"--sun-per-cell", "--refraction"})
-    expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out},
-                   "--raster-crs");
+    expect_refused({"shadow", dem_, "--crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out}, "--crs");
 #endif
   // Found before the work starts.
   const Names there = on_dem("viewshed") + Names{"--observer", "500105,5000105", "--of", "GTiff", "-o"};
@@ -545,8 +544,8 @@ TEST_F(MapsCli, InterruptLeavesNoOutput) {
   const std::string dem = scratch_.write("large.asc", text), towers = scratch_.write("towers.csv", table);
   const auto before = scratch_.files();
   for (const char* mode : {"count", "ground", "angle"}) {
-    Program program({"viewshed", dem, "--raster-crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o",
-                     path("x.tif"), "--preview", path("x.png")});
+    Program program({"viewshed", dem, "--crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o", path("x.tif"),
+                     "--preview", path("x.png")});
 #ifdef SCARP_CAIRO
     // The picture's file is reserved when the work starts.
     for (int i = 0; i < 2000 && scratch_.files() == before; ++i)
@@ -576,7 +575,7 @@ TEST_F(MapsCli, RejectsDegreesWhereThePlaneErrorIsLarge) {
   std::string text = "ncols 200\nnrows 200\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n";
   for (int i = 0; i < 200 * 200; ++i) text += "1 ";
   const std::string dem = scratch_.write("degrees.asc", text);
-  const Names view{"viewshed", dem, "--raster-crs", "EPSG:4326", "--observer", "11.005,46.005", "-o", path("x.tif")};
+  const Names view{"viewshed", dem, "--crs", "EPSG:4326", "--observer", "11.005,46.005", "-o", path("x.tif")};
   expect_refused(view, "gdalwarp -t_srs EPSG:32632");
   const auto near = run(view + Names{"--max-distance", "2000"});
   EXPECT_EQ(near.status, 0) << near.err;

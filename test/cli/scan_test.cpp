@@ -32,7 +32,7 @@ using Names = std::vector<std::string>;
 // Casts into a raster without a CRS, which a note would mention.
 test::Result cast(Names arguments) {
   arguments.insert(arguments.begin(), "cast");
-  if (arguments[1].ends_with(".asc")) arguments.insert(arguments.end(), {"--raster-crs", "none"});
+  if (arguments[1].ends_with(".asc")) arguments.insert(arguments.end(), {"--crs", "none"});
   return run(arguments);
 }
 
@@ -290,9 +290,9 @@ TEST_F(Scan, ErrorsSayWhatToDo) {
   expect_refused({"cast", ground, "--scanner", scanner(R"("pose": {"at": [1, 2], "above": 3})")},
                  "car.json: /pose: there is no ground at 1,2, outside the bounds in map coordinates");
   expect_refused({"cast", ground, "--wrap", "periodic", "--scanner", lidar}, "scanner: has no largest range");
-  expect_refused({"cast", ground, "--scanner", lidar, "--crs", "lonlat"}, "flat.asc: ");
+  expect_refused({"cast", ground, "--scanner", lidar, "--coords", "lonlat"}, "flat.asc: ");
   write("drive.csv", "time,lon,lat,above,heading\n0,1,2,2,90\n1,1.1,2,2,90\n");
-  expect_refused({"cast", ground, "--scanner", scanner(R"("path": "drive.csv")")}, "(give --crs lonlat)");
+  expect_refused({"cast", ground, "--scanner", scanner(R"("path": "drive.csv")")}, "(give --coords lonlat)");
   write("drive.csv", "time,x,y,above,heading\n0,1200,2300,2,90\n1,1300,nan,2,90\n");
   expect_refused({"cast", ground, "--scanner", scanner(R"("path": "drive.csv")")},
                  "drive.csv: line 3: y 'nan' is not a finite number");
@@ -326,10 +326,10 @@ TEST_F(Scan, InterruptsLeaveNothing) {
 // Degrees in steps of 1e-8, and the CRS as WKT 1.
 TEST_F(Scan, LasOfDegreesKeepsMillimetres) {
   const std::string ground = grid("flat.asc", [](int, int) { return 100.0; });
-  const Names raster = {"--raster-crs", "EPSG:4326", "--bounds=10,0,10.01,0.01"};
+  const Names raster = {"--crs", "EPSG:4326", "--bounds=10,0,10.01,0.01"};
   const std::string lidar = scanner(R"("pose": {"at": [10.005, 0.005], "above": 1.5})");
   for (const char* crs : {"map", "lonlat"}) {
-    Names arguments = {"cast", ground, "--scanner", lidar, "--crs", crs, "-o", path("o.las")};
+    Names arguments = {"cast", ground, "--scanner", lidar, "--coords", crs, "-o", path("o.las")};
     arguments.insert(arguments.end(), raster.begin(), raster.end());
     const auto result = run(arguments);
     ASSERT_EQ(result.status, 0) << result.err;
@@ -340,8 +340,8 @@ TEST_F(Scan, LasOfDegreesKeepsMillimetres) {
     EXPECT_EQ(las.substr(375 + 2, 15), "LASF_Projection");
     EXPECT_EQ(las.substr(375 + 54, 7), "GEOGCS[");
   }
-  Names arguments = {"cast",  ground,  "--scanner", scanner(R"("pose": {"at": [500, 500], "above": 1.5})"),
-                     "--crs", "local", "-o",        path("o.las")};
+  Names arguments = {"cast",     ground,  "--scanner", scanner(R"("pose": {"at": [500, 500], "above": 1.5})"),
+                     "--coords", "local", "-o",        path("o.las")};
   arguments.insert(arguments.end(), raster.begin(), raster.end());
   ASSERT_EQ(run(arguments).status, 0);
   EXPECT_EQ(test::text_of(path("o.las")).substr(375 + 2, 9), "LASF_Spec") << "local metres have no CRS";

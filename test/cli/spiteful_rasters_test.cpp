@@ -253,7 +253,7 @@ class Judge {
     const std::string rays =
         out_.write("rays.csv", fmt::format("x,y,z,dx,dy,dz\n{},{},1000,0,0,-1\n{},{},1000,0,0,-1\n", 0.95 * width,
                                            0.95 * depth, 0.05 * width, 0.05 * depth));
-    const Result hits = call("cast", {"--rays", rays, "--crs", "local", "-o", "-"});
+    const Result hits = call("cast", {"--rays", rays, "--coords", "local", "-o", "-"});
     // Heights of the hills: 60 + 60 x 0.95^2 and 60 + 60 x 0.05^2, rounded by half a metre at the samples. In a raster
     // that is 1 % wider than stated the eastern position is 0.6 m lower.
     constexpr double kTolerance = 0.5 + 0.6;
@@ -342,7 +342,7 @@ TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
   const struct {
     const char* name;
     Names words;
-  } cases[] = {{"pipe.csv", {"cast", terrain, "--crs", "local", "--rays"}},
+  } cases[] = {{"pipe.csv", {"cast", terrain, "--coords", "local", "--rays"}},
                {"pipe.cpt", {"render", terrain, "-o", files.path("p.png"), "--ramp"}},
                {"pipe.txt", {"render", terrain, "-o", files.path("p.png"), "--ramp"}},
                {"pipe.fn", {"render", "-o", files.path("p.png"), "--function"}}};

@@ -44,7 +44,6 @@ namespace {
 // Rays are traced and written in pieces: a table of any length needs memory for its rays, not for its hits.
 constexpr std::size_t kPiece = 1 << 16;
 
-constexpr std::string_view kRasterCrs = "--raster-crs";
 constexpr std::string_view kFirstHit = "marches of other fields return the first hit only";
 
 // Below the options in the help.
@@ -58,7 +57,7 @@ constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order
 Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with
 fields of these names.
 
-Coordinates (--crs), also of --mesh-at; z is always in metres:
+Coordinates (--coords), also of --mesh-at; z is always in metres:
   local    metres east and north of the south-west sample, or of the origin of the scene
   map      units of the raster's CRS, for dx,dy as well; dz in metres
   lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
@@ -92,25 +91,6 @@ AllHits all_hits_of(const CastOptions& options) {
   if (march == "max-mip") return all_hits_max_mip;
   if (march == "exhaustive") return all_hits_exhaustive;
   throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march));
-}
-
-// Raster readers mention --crs, which selects the coordinates of the rays here.
-std::string in_words_of_cast(std::string text) {
-  constexpr std::string_view kTheirs = "--crs";
-  for (std::size_t at = 0; (at = text.find(kTheirs, at)) != std::string::npos; at += kRasterCrs.size()) {
-    text.replace(at, kTheirs.size(), kRasterCrs);
-  }
-  return text;
-}
-
-OpenedInput open(const CastOptions& options, InputKind kind) {
-  try {
-    return open_input(kind, options);
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const Error& error) {
-    throw Error(kind == InputKind::terrain ? in_words_of_cast(error.what()) : error.what());
-  }
 }
 
 // Only rasters have a georeference. z of rays and hits is that of the field, exaggerated in all coordinates.
@@ -187,7 +167,7 @@ std::string place_of(const Scene& scene, std::span<const Ray> rays, const Places
   if (bounds.empty() || std::any_of(rays.begin(), rays.end(), over)) return {};
   const std::string place = fmt::format("in {} coordinates {}", name_of(places.frame().coordinates()), bounds);
   return scene.only_heights()
-             ? fmt::format("nothing was hit, and no ray begins over the raster: {}; are the rays in these (--crs)?",
+             ? fmt::format("nothing was hit, and no ray begins over the raster: {}; are the rays in these (--coords)?",
                            place)
              : fmt::format("nothing was hit, and no ray begins over the scene: {}", place);
 }
@@ -288,7 +268,7 @@ class Caster {
     for (HitRow& row : rows) {
       if (!row.hit) continue;
       if (failed == next) {
-        throw Error(fmt::format("{}: its hit is at a place that has no longitude and latitude; use --crs map",
+        throw Error(fmt::format("{}: its hit is at a place that has no longitude and latitude; use --coords map",
                                 table_.where(static_cast<std::size_t>(row.ray))));
       }
       row.position = positions[next++];
@@ -344,10 +324,9 @@ struct WholeInput {
 
 WholeInput open_whole(const CastOptions& options, InputKind kind) {
   const MeshInput mesh(options.mesh);
-  OpenedInput input = open(options, kind);
+  OpenedInput input = open_input(kind, options);
   keep_inputs(options.output, input.files);
-  std::vector<std::string> notes;
-  for (const std::string& note : input.notes) notes.push_back(in_words_of_cast(note));
+  std::vector<std::string> notes = input.notes;
   Places places = places_of(options, input);
   if (kind == InputKind::terrain) {
     if (const std::string note = no_ground_note(*input.scene.only_heights()); !note.empty()) notes.push_back(note);
@@ -421,16 +400,6 @@ void run(CastOptions options, const Command& command) {
   command.require_effect({kind, {}, march_of(options, kind)});
   const AllHits all = all_hits_of(options);  // refuses before files are read
   validate(options.march_settings);
-  if (!options.coordinates.empty()) {
-    try {
-      find_coordinates(options.coordinates);
-    } catch (const Error&) {
-      throw Error(
-          fmt::format("--crs '{}': expected local, map or lonlat, the coordinates of the rays; the CRS of the "
-                      "raster is named with {}",
-                      options.coordinates, kRasterCrs));
-    }
-  }
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
   // The reader of the table may close the pipe, as `head` does: the program then ends silently, as others do.
@@ -462,7 +431,7 @@ void add_cast(Program& program) {
                     "table of hits: .csv or .npy; points of a scanner also .ply or .las; -: CSV to standard output",
                     "csv npy ply las", false);
   add_coordinates_option(command, o.coordinates,
-                         {.names = "--crs",
+                         {.names = "--coords",
                           .help = "coordinates of rays, scanners, hits and --mesh-at",
                           .fallback = "map; local for inputs without a georeference",
                           .common = true});
@@ -480,14 +449,14 @@ void add_cast(Program& program) {
   add_threads_option(command, o.threads);
   add_field_options(command, o.field, BeyondBorders::wraps);
   add_march_options(command, o.march_settings);
-  add_mesh_options(command, o.mesh, "--crs");
+  add_mesh_options(command, o.mesh);
   add_vox_options(command, o.vox);
   add_vox_rounding_options(command, o.vox_look);
   add_function_options(command, o.function, {}, o.march, o.march_settings);
-  add_raster_options(command, o.raster, std::string(kRasterCrs));
+  add_raster_options(command, o.raster);
   command.footer(kTables);
   command.example("scarp cast dem.tif --rays rays.csv -o hits.csv");
-  command.example("scarp cast dem.tif --rays rays.npy --crs local --any -o blocked.npy");
+  command.example("scarp cast dem.tif --rays rays.npy --coords local --any -o blocked.npy");
   command.example("scarp cast city.vox --rays rays.csv");
   command.example("scarp cast dem.tif --scanner lidar.json -o points.las");
   command.runs([options, &command] {

@@ -34,7 +34,7 @@ constexpr const char* kOutput = R"(Output, one row or line per line of sight:
   eye,target    heights above sea, metres
   clearance     least height of the line above the ground, metres; negative if blocked
   clearance_at  distance of that point from the observer
-  block_x,y     position of the first blocking ground, in --crs
+  block_x,y     position of the first blocking ground, in --coords
   block_height  height of that ground above sea, metres
   block_at      its distance from the observer
 GeoJSON has longitude and latitude. With --parts each blocked line is two

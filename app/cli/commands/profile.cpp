@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* kColumns = R"(CSV, a row for each end and each crossing with a grid line:
   distance  from the observer, metres
-  x,y       place, in --crs
+  x,y       place, in --coords
   ground    height above sea, metres
   drop      metres by which the ground appears lower (curvature and refraction)
   sight     height of the line of sight above sea, metres

@@ -32,7 +32,7 @@ constexpr float kScanDegrees = static_cast<float>(180 / std::numbers::pi);
 void place_scanner(ScannerFile& file, const ScanOptions& options, const ScannedScene& scanned) {
   const Places& places = scanned.places;
   if (file.lonlat && places.frame().coordinates() != Coordinates::lonlat)
-    throw Error(fmt::format("{}: its path has columns lon and lat (give --crs lonlat)", options.scanner));
+    throw Error(fmt::format("{}: its path has columns lon and lat (give --coords lonlat)", options.scanner));
   for (std::size_t i = 0; i < file.lidar.path.size(); ++i) {
     dvec3& at = file.lidar.path[i].position;
     at = places.world(at, file.places[i]);
@@ -112,7 +112,7 @@ void take_returns(std::span<const LidarReturn> returns, const CoordinateFrame& f
     point.hit = static_cast<bool>(answer);
   }
   if (frame.from_local(positions))
-    throw Error("a point of the scan is at a place that has no longitude and latitude; use --crs map");
+    throw Error("a point of the scan is at a place that has no longitude and latitude; use --coords map");
   auto next = positions.begin();
   for (ScanPoint& point : points) {
     if (point.hit) point.position = *next++;
@@ -131,7 +131,7 @@ std::string scan_finding(const ScanCounts& counts, const ScannedScene& scanned, 
   if (!over && !bounds.empty() && !scanned.places.frame().from_local(shown)) {
     return fmt::format(
         "nothing was hit: the scanner starts at x {:.8g}, y {:.8g}; the scene is in {} coordinates {} "
-        "(--crs)",
+        "(--coords)",
         shown[0].x, shown[0].y, name_of(scanned.places.frame().coordinates()), bounds);
   }
   if (counts.below > 0) {

@@ -80,8 +80,7 @@ SunSpread sun_spread(const MapInput& input, const std::string& text, bool refrac
   const double height = 0.5 * (input.field().min_height() + input.field().max_height());
   const auto position = [&](double col, double row) {
     const auto at = input.lonlat_of(col, row);
-    if (!at)
-      throw Error(fmt::format("{}: --time needs a raster with a CRS (give --raster-crs, or --sun)", input.path()));
+    if (!at) throw Error(fmt::format("{}: --time needs a raster with a CRS (give --crs, or --sun)", input.path()));
     return sky.at({at->x / kDegreesPerRadian, at->y / kDegreesPerRadian, height}, refraction);
   };
   SunSpread spread{position(last_col / 2, last_row / 2)};

@@ -34,7 +34,7 @@ Raster read(const MapOptions& options) { return read_tiles(options.inputs, optio
 void add_map_options(Command& command, MapOptions& options) {
   add_raster_inputs(command, options.inputs, "elevation model: anything GDAL reads, .npy, .npz, .exr");
   add_coordinates_option(command, options.coordinates,
-                         {.names = "--crs",
+                         {.names = "--coords",
                           .help = "coordinates of places",
                           .fallback = "map; local for inputs without a georeference",
                           .common = true});
@@ -43,7 +43,7 @@ void add_map_options(Command& command, MapOptions& options) {
                                      .unit = "cells",
                                      .range = kAboveZero});
   add_threads_option(command, options.threads);
-  add_raster_options(command, options.raster, "--raster-crs");
+  add_raster_options(command, options.raster);
 }
 
 void add_curvature_option(Command& command, std::optional<double>& coefficient) {
@@ -107,7 +107,7 @@ std::string MapInput::curvature_text() const {
 
 dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   if (lonlat && !lonlat_)
-    throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--raster-crs)", path_, what));
+    throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--crs)", path_, what));
   std::array points{dvec3(place.x, place.y, 0)};
   if ((lonlat ? *lonlat_ : *frame_).to_local(points))
     throw Error(fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS", what, place.x, place.y));
@@ -116,8 +116,8 @@ dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_vi
 
 void MapInput::refuse_outside(const TablePlace& place, std::string_view what, double beyond) const {
   const dvec2 low = place_of(-beyond, field_.rows() - 1 + beyond), high = place_of(field_.cols() - 1 + beyond, -beyond);
-  throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--crs)", what,
-                          place.x, place.y, path_, low.x, high.x, low.y, high.y));
+  throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--coords)",
+                          what, place.x, place.y, path_, low.x, high.x, low.y, high.y));
 }
 
 dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {

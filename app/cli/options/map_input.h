@@ -31,7 +31,7 @@ struct MapOptions {
   std::vector<std::string> typed;
 };
 
-/// Declares IN, --crs, --plane-error, --threads and the raster options.
+/// Declares IN, --coords, --plane-error, --threads and the raster options.
 void add_map_options(Command& command, MapOptions& options);
 /// Declares --cc.
 void add_curvature_option(Command& command, std::optional<double>& coefficient);
@@ -63,7 +63,7 @@ class MapInput {
   dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// The sample nearest to a place, as grid_of(); a place up to half a cell beyond the border counts.
   Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
-  /// Converts a position in columns and rows to map coordinates, degrees or metres, as --crs specifies.
+  /// Converts a position in columns and rows to map coordinates, degrees or metres, as --coords specifies.
   dvec2 place_of(double col, double row) const;
   /// Longitude and latitude in degrees; nullopt without a CRS.
   std::optional<dvec2> lonlat_of(double col, double row) const;

@@ -31,7 +31,7 @@ bool is_mesh_input(const std::vector<std::string>& inputs) {
   return true;
 }
 
-void add_mesh_options(Command& command, MeshOptions& options, std::string_view coordinates) {
+void add_mesh_options(Command& command, MeshOptions& options) {
   // The same options place a mesh that is the input.
   const Rule of_mesh = needs(
       "--mesh FILE", [&command] { return command.given("--mesh"); }, kEveryInput & ~kMesh);
@@ -48,14 +48,13 @@ void add_mesh_options(Command& command, MeshOptions& options, std::string_view c
           .rules = {{"is not available: this scarp was built without Embree (SCARP_EMBREE=OFF)", [] { return false; }}},
 #endif
       });
-  command.add(
-      &options.at,
-      {.names = "--mesh-at",
-       .value = "X,Y[,Z]",
-       .help = fmt::format("position of the mesh in coordinates of {}: its middle, and its lowest point", coordinates),
-       .fallback = "middle of the scene, or nearest to it, on the ground; meshes as input: as in the file",
-       .topic = Topic::mesh,
-       .rules = {of_mesh}});
+  command.add(&options.at,
+              {.names = "--mesh-at",
+               .value = "X,Y[,Z]",
+               .help = "position of the mesh in coordinates of --coords: its middle, and its lowest point",
+               .fallback = "middle of the scene, or nearest to it, on the ground; meshes as input: as in the file",
+               .topic = Topic::mesh,
+               .rules = {of_mesh}});
   command.add(&options.scale, {.names = "--mesh-scale",
                                .help = "length of the file's unit",
                                .unit = "metres",

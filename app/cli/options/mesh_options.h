@@ -20,8 +20,8 @@ struct MeshOptions {
   double scale = 1, turn_deg = 0;
 };
 
-/// Declares --mesh and its settings. `coordinates` is the option that names the coordinates of --mesh-at.
-void add_mesh_options(Command& command, MeshOptions& options, std::string_view coordinates);
+/// Declares --mesh and its settings.
+void add_mesh_options(Command& command, MeshOptions& options);
 /// Declares only --mesh-up, for inputs.
 void add_mesh_up_option(Command& command, MeshOptions& options, std::vector<Rule> rules = {});
 

@@ -25,6 +25,7 @@ CoordinateFrame frame_of(const PlaceRaster& raster, Coordinates coordinates) {
 
 void add_coordinates_option(Command& command, std::string& coordinates, Option option) {
   option.value = "KIND";
+  option.closed = true;
   for (const Coordinates kind : {Coordinates::local, Coordinates::map, Coordinates::lonlat})
     option.choices.emplace_back(name_of(kind));
   option.rules.push_back({"map or lonlat applies to terrain only (other inputs have no georeference)",

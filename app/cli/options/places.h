@@ -16,7 +16,7 @@
 
 namespace scarp::cli {
 
-/// Declares the option that names the coordinates of positions: `option` with its values and its inputs.
+/// Declares --coords, the kind of coordinates of positions: `option` with its values and its inputs.
 void add_coordinates_option(Command& command, std::string& coordinates, Option option);
 
 /// X,Y or X,Y,Z of an option.

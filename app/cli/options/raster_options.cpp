@@ -10,6 +10,7 @@
 
 #include "app/options/numbers.h"
 #include "scarp/base/error.h"
+#include "scarp/source/raster/coordinates.h"
 
 namespace scarp::cli {
 namespace {
@@ -37,6 +38,17 @@ HeightRange height_range_from(const std::string& text) {
   return {n[0], n[1]};
 }
 
+// The words of --coords are no CRS; PROJ would look for one with such a name.
+std::string crs_from(const std::string& text) {
+  for (const Coordinates kind : {Coordinates::local, Coordinates::map, Coordinates::lonlat}) {
+    if (text == name_of(kind)) {
+      throw WrongUsage(fmt::format(
+          "--crs '{}': expected a CRS, for example EPSG:4326 (--coords names the kind of coordinates)", text));
+    }
+  }
+  return text;
+}
+
 double nodata_from(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -55,7 +67,7 @@ void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const
                         .required = required});
 }
 
-void add_raster_options(Command& command, RasterOptions& options, const std::string& crs_option) {
+void add_raster_options(Command& command, RasterOptions& options) {
   // "S,OFFSET" leaves no room for --offset.
   const auto one_offset = [&command] { return command.value("--scale").find(',') == std::string::npos; };
   constexpr Inputs kRasters{kTerrain, "it interprets raster files"};
@@ -120,12 +132,13 @@ void add_raster_options(Command& command, RasterOptions& options, const std::str
                          .value = "NAME",
                          .help = "channel of an .exr file",
                          .fallback = "the only one, else Y, else R"});
-  add(&options.crs, {.names = crs_option,
-                     .value = "CRS",
-                     .help = "coordinate reference system, for example EPSG:4326",
-                     .note = "none: metres",
-                     .fallback = "the file's",
-                     .common = true});
+  add([&options](const std::string& text) { options.crs = crs_from(text); },
+      {.names = "--crs",
+       .value = "CRS",
+       .help = "coordinate reference system, for example EPSG:4326",
+       .note = "none: metres",
+       .fallback = "the file's",
+       .common = true});
   add([&options](const std::string& text) { options.bounds = bounds_from(text); },
       {.names = "--bounds",
        .value = "W,S,E,N",

@@ -20,8 +20,7 @@ constexpr const char* kEveryFile =
 void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const std::string& kinds,
                        bool required = true);
 
-/// Declares --band, --window, --nodata, --scale and the other options that interpret a raster. `crs_option` replaces
-/// --crs if that has another meaning.
-void add_raster_options(Command& command, RasterOptions& options, const std::string& crs_option = "--crs");
+/// Declares --band, --window, --nodata, --scale and the other options that interpret a raster.
+void add_raster_options(Command& command, RasterOptions& options);
 
 }  // namespace scarp::cli

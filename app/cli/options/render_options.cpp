@@ -279,7 +279,6 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
       {.names = "--coords",
        .help = frames ? "coordinates of --eye, --target, --area, --mesh-at and --path"
                       : "coordinates of --eye, --target, --area and --mesh-at",
-       .closed = true,
        .note = "local: metres from the south-west sample, z exaggerated; map: units of the CRS; lonlat: degrees, WGS "
                "84; with map and lonlat z is a height of the file in metres",
        .topic = Topic::camera,
@@ -325,7 +324,7 @@ void declare_picture(Command& command, RenderOptions& o, bool written) {
     add_frame_options(command, o.frames);
     add_depth_options(command, o.depth);
   }
-  add_mesh_options(command, o.mesh, "--coords");
+  add_mesh_options(command, o.mesh);
   add_vox_options(command, o.vox);
   add_vox_rounding_options(command, o.vox_look);
   add_vox_look_options(command, o.vox_look);
