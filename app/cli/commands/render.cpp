@@ -8,9 +8,9 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/picture_format.h"
 #include "app/cli/options/render_options.h"
 #include "app/cli/picture/figure.h"
-#include "app/cli/picture/picture_format.h"
 #include "app/cli/picture/render_run.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"

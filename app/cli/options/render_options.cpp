@@ -12,6 +12,7 @@
 #include "app/cli/options/device_option.h"
 #include "app/cli/options/field_options.h"
 #include "app/cli/options/march_options.h"
+#include "app/cli/options/picture_format.h"
 #include "app/cli/options/places.h"
 #include "app/cli/options/raster_options.h"
 #include "app/cli/options/shared_options.h"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/picture/exr_output.h"
 
-#include <fmt/format.h>
-
-#include "scarp/base/error.h"
 #ifdef SCARP_OPENEXR
 #include "scarp/output/exr.h"
 #endif
@@ -23,8 +20,6 @@ ExrMatrix matrix(const char* name, const glm::dmat4& m) {
 }
 
 }  // namespace
-
-void require_exr(const std::string&) {}
 
 void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
                   const std::optional<DepthRange>& range) {
@@ -55,15 +50,8 @@ void write_layers(ReplaceFile& file, const std::string& path, const PictureLayer
 
 #else
 
-void require_exr(const std::string& path) {
-  throw Error(fmt::format(
-      "output '{}': this scarp was built without OpenEXR (SCARP_OPENEXR=OFF); let the name end in .png", path));
-}
-
-void write_layers(ReplaceFile&, const std::string& path, const PictureLayers&, const Camera&,
-                  const std::optional<DepthRange>&) {
-  require_exr(path);
-}
+void write_layers(ReplaceFile&, const std::string&, const PictureLayers&, const Camera&,
+                  const std::optional<DepthRange>&) {}
 
 #endif
 

@@ -11,12 +11,10 @@
 
 namespace scarp::cli {
 
-/// Throws Error in a build without OpenEXR.
-void require_exr(const std::string& path);
-
 /// R, G, B (half), Z, N.X, N.Y, N.Z, P.X, P.Y, P.Z (float) and steps (uint), worldToCamera and worldToNDC in the
-/// header. Writes to the temporary file of `file` and commits it; throws Error as write_exr() does. With `range` also
-/// writes `depth` (float), the depth buffer value for these planes.
+/// header. Does nothing without OpenEXR: picture_format_of() rejects such outputs. Writes to the temporary file of
+/// `file` and commits it; throws Error as write_exr() does. With `range` also writes `depth` (float), the depth buffer
+/// value for these planes.
 void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
                   const std::optional<DepthRange>& range);
 

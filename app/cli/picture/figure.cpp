@@ -11,6 +11,7 @@
 #include <cmath>
 #include <variant>
 
+#include "app/cli/options/vox_input.h"
 #include "app/cli/picture/contour_labels.h"
 #include "app/cli/picture/graticule.h"
 #include "scarp/render/camera/compass.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/cli/options/figure_options.h"
-#include "app/cli/picture/picture_format.h"
+#include "app/cli/options/picture_format.h"
 #include "scarp/base/georeference.h"
 #include "scarp/output/figure.h"
 #include "scarp/render/frame/picture.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/cli/options/map_input.h"
-#include "app/cli/picture/picture_format.h"
+#include "app/cli/options/picture_format.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/raster_map.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/cli/picture/picture_format.h"
+#include "app/cli/options/picture_format.h"
 #include "scarp/base/georeference.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/figure.h"

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "app/cli/options/mesh_options.h"
-#include "app/cli/picture/picture_format.h"
+#include "app/cli/options/picture_format.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 

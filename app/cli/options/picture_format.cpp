@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/picture/picture_format.h"
+#include "app/cli/options/picture_format.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "app/cli/picture/exr_output.h"
 #include "app/options/option.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -22,13 +21,17 @@ constexpr std::array<PictureFormat, 5> kFormats = {{
     {PictureKind::exr, "EXR", "exr", "layers", true, false, false},
 }};
 
-void require_library(const PictureFormat& format, const std::string& output) {
-  if (format.kind == PictureKind::exr) require_exr(output);
+void require_library([[maybe_unused]] const PictureFormat& format, [[maybe_unused]] const std::string& output) {
+  [[maybe_unused]] const auto require = [&](PictureKind kind, std::string_view library, std::string_view option) {
+    if (format.kind != kind) return;
+    throw Error(fmt::format("output '{}': this scarp was built without {} ({}=OFF); let the name end in .png", output,
+                            library, option));
+  };
+#ifndef SCARP_OPENEXR
+  require(PictureKind::exr, "OpenEXR", "SCARP_OPENEXR");
+#endif
 #ifndef SCARP_CAIRO
-  if (format.kind == PictureKind::pdf) {
-    throw Error(fmt::format(
-        "output '{}': this scarp was built without Cairo (SCARP_CAIRO=OFF); let the name end in .png", output));
-  }
+  require(PictureKind::pdf, "Cairo", "SCARP_CAIRO");
 #endif
 }
 
