@@ -17,7 +17,7 @@ measured() {
   awk '{ printf "%.2f %.2f %d", $1, $2 + $3, $4 / 1024 }' times
 }
 
-"$scarp" generate --size 2048 --seed 1 --wavelength 512 -o small.tif >/dev/null 2>&1
+"$scarp" generate --size 2048 --seed 1 --feature-size 512 -o small.tif >/dev/null 2>&1
 {
   echo "# machine: $(sed -n '/^model name/{s/.*: //p;q}' /proc/cpuinfo), $(nproc) cores, Linux $(uname -r), $(gdalinfo --version)"
   echo "# command: large_raster.sh SCARP $side"

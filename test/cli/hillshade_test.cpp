@@ -36,7 +36,7 @@ std::vector<std::uint8_t> gdaldem(const std::string& path, int* side) {
 TEST(Hillshade, MatchesGdaldem) {
   const test::Scratch scratch;
   const std::string dem = scratch.path("dem.tif"), picture = scratch.path("hillshade.png");
-  ASSERT_EQ(test::run({"generate", "--size", "257", "--seed", "3", "--wavelength", "40", "-o", dem}).status, 0);
+  ASSERT_EQ(test::run({"generate", "--size", "257", "--seed", "3", "--feature-size", "40", "-o", dem}).status, 0);
   int side = 0;
   const std::vector<std::uint8_t> expected = gdaldem(dem, &side);
   ASSERT_EQ(side, 257);

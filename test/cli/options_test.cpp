@@ -132,7 +132,7 @@ TEST(Options, RejectNumbersOutOfRange) {
       {{"render", "--waves", "0.6"}, "--waves '0.6': expected a number from 0 to 0.5"},
       {{"render", "--naive-min-step", "1.5"}, "--naive-min-step '1.5': expected a number above 0 and at most 1"},
       {{"render", "--rounded", "0.6"}, "--rounded '0.6': expected a number from 0 to 0.5"},
-      {{"generate", "--wavelength", "1"}, "--wavelength '1': expected a finite number, 2 or more"},
+      {{"generate", "--feature-size", "1"}, "--feature-size '1': expected a finite number, 2 or more"},
       {{"info", "--extent", "2e9"}, "--extent '2e9': expected a number above 0 and at most 1073741824"},
   };
   for (const auto& c : cases) {

@@ -119,8 +119,8 @@ TEST(ProceduralDemHeights, RejectSettingsOutOfRange) {
   broken([](ProceduralDem& s) { s.cell_m = 0; });
   broken([](ProceduralDem& s) { s.cell_m = std::nan(""); });
   broken([](ProceduralDem& s) { s.cell_m = 1e300; });
-  broken([](ProceduralDem& s) { s.wavelength = 1; });
-  broken([](ProceduralDem& s) { s.wavelength = std::nan(""); });
+  broken([](ProceduralDem& s) { s.feature_size = 1; });
+  broken([](ProceduralDem& s) { s.feature_size = std::nan(""); });
 }
 
 TEST(ProceduralDemHeights, StopOnRequest) {

@@ -110,11 +110,11 @@ void add_generate(Program& program) {
                                   .help = "distance between samples",
                                   .unit = "metres",
                                   .range = {.least = 0, .most = kLargestProceduralCell, .above_least = true}});
-  command.add(&o.terrain.wavelength, {.names = "--wavelength",
-                                      .help = "size of the largest features in samples",
-                                      .range = {.least = 2},
-                                      .fallback = "1024, or half the longer side if that is less",
-                                      .excludes = {"--function"}});
+  command.add(&o.terrain.feature_size, {.names = "--feature-size",
+                                        .help = "size of the largest features in samples",
+                                        .range = {.least = 2},
+                                        .fallback = "1024, or half the longer side if that is less",
+                                        .excludes = {"--function"}});
   add_threads_option(command, o.threads);
   command.example("scarp generate --size 4097 --seed 7 -o dem.tif");
   command.runs([options, &command] {

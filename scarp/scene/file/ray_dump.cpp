@@ -48,7 +48,7 @@ std::string text_of(const RayDump& dump) {
       fmt::format("surface {}\nwrap {}\nsolid {}\n", name_of(to.surface), name_of(to.wrap), to.solid ? "yes" : "no");
   if (const auto& dem = dump.generator) {
     return text + fmt::format("generate {} {} {:a} {:a}\n", scarp::name_of(dem->kind), dem->seed, dem->cell_m,
-                              dem->wavelength);
+                              dem->feature_size);
   }
   field.visit([&](const auto& grid) {
     for (int row = 0; row < grid.rows; ++row) {
@@ -243,7 +243,7 @@ class DumpReader {
     dem.kind = choice("kind", {"fbm", "ridged"}) == 0 ? TerrainKind::fbm : TerrainKind::ridged;
     dem.seed = whole<std::uint64_t>("seed");
     dem.cell_m = number("cell");
-    dem.wavelength = number("wavelength");
+    dem.feature_size = number("feature size");
     with_line([&] { validate(dem); });
     generator_ = dem;
   }

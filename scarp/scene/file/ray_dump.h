@@ -7,7 +7,7 @@
 //   cell_x 0x1p+0                         the settings, in any order; what is left out has its default:
 //   ...                                   cell_y scale offset exaggeration nodata surface wrap solid
 //   row 0x1p+0 nan 0x1.8p+1               the samples, from north to south, one line for each row; or
-//   generate ridged 1 0x1p+0 0x0p+0       instead of rows, a procedural DEM: kind, seed, cell in metres, wavelength
+//   generate ridged 1 0x1p+0 0x0p+0       instead of rows, a procedural DEM: kind, seed, cell in metres, feature size
 //   ray                                   starts a ray over the field above; several may follow
 //   origin 0x1p+0 0x1p-1 0x1p+3
 //   direction 0x0p+0 0x0p+0 -0x1p+0

@@ -66,7 +66,7 @@ Raster generated(const Json& json) {
   dem.seed = json.value("seed", dem.seed);
   if (json.contains("size")) dem.cols = json["size"][0], dem.rows = json["size"][1];
   dem.cell_m = json.value("cell", dem.cell_m);
-  dem.wavelength = json.value("wavelength", dem.wavelength);
+  dem.feature_size = json.value("feature_size", dem.feature_size);
   Raster raster;
   raster.samples = generate_dem(dem);
   raster.cols = dem.cols, raster.rows = dem.rows;

@@ -22,7 +22,7 @@ constexpr int kRowsPerPiece = 8;
 constexpr double kFbmGain = 0.47;
 constexpr double kRidgedGain = 0.46;
 
-// Heights per metre of wavelength, chosen so that mean slopes are about 20 degrees at the default wavelength.
+// Heights per metre of wavelength, chosen so that mean slopes are about 20 degrees at the default feature size.
 constexpr double kFbmRelief = 0.20;
 constexpr double kFbmBase = 0.11;  // lifts most valleys above 0
 constexpr double kRidgedRelief = 0.11;
@@ -95,8 +95,8 @@ class GradientNoise {
 class ProceduralTerrain {
  public:
   explicit ProceduralTerrain(const ProceduralDem& s) : kind_(s.kind) {
-    wavelength_ =
-        s.wavelength > 0 ? s.wavelength : std::max(kFinestWavelength, std::min(1024.0, std::max(s.cols, s.rows) / 2.0));
+    wavelength_ = s.feature_size > 0 ? s.feature_size
+                                     : std::max(kFinestWavelength, std::min(1024.0, std::max(s.cols, s.rows) / 2.0));
     for (double w = wavelength_; w >= kFinestWavelength && octaves_ < kMostOctaves; w /= 2) {
       noise_[octaves_].reseed(mix(s.seed * kMostOctaves + static_cast<std::uint64_t>(octaves_) + 1));
       ++octaves_;
@@ -163,9 +163,9 @@ void validate(const ProceduralDem& s) {
     throw Error(fmt::format("procedural terrain: cells of {} m (must be above 0 and at most {} m)", s.cell_m,
                             kLargestProceduralCell));
   }
-  if (s.wavelength != 0 && !(s.wavelength >= kFinestWavelength && s.wavelength <= kLargestWavelength)) {
-    throw Error(fmt::format("procedural terrain: wavelength of {} cells (must be {} to {}, or 0 for the default)",
-                            s.wavelength, kFinestWavelength, kLargestWavelength));
+  if (s.feature_size != 0 && !(s.feature_size >= kFinestWavelength && s.feature_size <= kLargestWavelength)) {
+    throw Error(fmt::format("procedural terrain: feature size of {} cells (must be {} to {}, or 0 for the default)",
+                            s.feature_size, kFinestWavelength, kLargestWavelength));
   }
 }
 

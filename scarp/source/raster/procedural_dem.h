@@ -9,7 +9,7 @@
 // of libm, no fused multiply-add).
 //
 // Source: K. Perlin, "Improving noise", SIGGRAPH 2002; F. K. Musgrave in D. Ebert et al., "Texturing and modeling", 3rd
-// ed., 2003, chapter 16 (fBm, ridged multifractal). Cost: about 9 octaves at the default wavelength, some 200 ns per
+// ed., 2003, chapter 16 (fBm, ridged multifractal). Cost: about 9 octaves at the default feature size, some 200 ns per
 // sample on one core.
 #pragma once
 
@@ -46,7 +46,7 @@ struct ProceduralDem {
   TerrainKind kind = TerrainKind::fbm;
   double cell_m =
       30;  ///< sample spacing in metres, > 0, <= 1000000; relief is proportional to it, so slopes stay the same
-  double wavelength = 0;  ///< of the largest features, in cells, >= 2; 0: min(1024, half the longer side)
+  double feature_size = 0;  ///< wavelength of the first octave, in cells, >= 2; 0: min(1024, half the longer side)
 };
 
 /// Throws Error for a setting out of range.

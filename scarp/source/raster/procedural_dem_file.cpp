@@ -60,16 +60,15 @@ GDALDatasetUniquePtr create(const std::string& path, const std::string& file, co
 
 void write_procedural_dem(const std::string& path, const ProceduralDem& settings, const Progress& progress) {
   validate(settings);
-  const std::string wavelength =
-      settings.wavelength > 0 ? fmt::format(", wavelength {} cells", settings.wavelength) : "";
-  write_computed_dem(
-      path,
-      {settings.cols, settings.rows, settings.cell_m,
-       fmt::format("procedural terrain: {}, seed {}{}", name_of(settings.kind), settings.seed, wavelength),
-       [&](int row, int rows, float* out) {
-         fill_rectangle(settings, 0, row, settings.cols, rows, out, settings.cols);
-       }},
-      progress);
+  const std::string features =
+      settings.feature_size > 0 ? fmt::format(", features of {} cells", settings.feature_size) : "";
+  write_computed_dem(path,
+                     {settings.cols, settings.rows, settings.cell_m,
+                      fmt::format("procedural terrain: {}, seed {}{}", name_of(settings.kind), settings.seed, features),
+                      [&](int row, int rows, float* out) {
+                        fill_rectangle(settings, 0, row, settings.cols, rows, out, settings.cols);
+                      }},
+                     progress);
 }
 
 void write_computed_dem(const std::string& path, const ComputedDem& settings, const Progress& progress) {
