@@ -117,17 +117,14 @@ ReliefRange heights_around(const HeightFunction& function, double extent) {
   return range;
 }
 
-RenderInput function(OpenedInput opened, const RenderOptions& options, const PictureFiles& files) {
+RenderInput function(OpenedInput opened, const RenderOptions& options) {
   const double extent = options.function.extent;
   const HeightFunction function = std::move(*opened.function);
   PictureSubject subject;
-  subject.files = files;
   subject.across = extent, subject.function_extent = extent;
   subject.own.haze = kFunctionHaze, subject.own.ao_distance = extent / 8;
   subject.heights = heights_around(function, extent);
-  const std::size_t materials = resolve(options.picture, subject).materials.size();
-  const auto last = static_cast<std::uint32_t>(std::max<std::size_t>(materials, 1) - 1);
-  RenderInput input{Scene(opened.scene.fields(), {{.material = last}}), std::move(subject)};
+  RenderInput input{Scene(opened.scene.fields(), {{.material = kFunctionMaterial}}), std::move(subject)};
   input.march = opened.scene.marches() +
                 (options.function.preset.empty() ? "" : fmt::format(" as in {}", options.function.preset));
   const ViewSettings typed = view_of(options.camera, look_of(options.picture));
@@ -146,14 +143,14 @@ RenderInput function(OpenedInput opened, const RenderOptions& options, const Pic
   return input;
 }
 
-RenderInput with_defaults(InputKind kind, OpenedInput opened, const RenderOptions& options, const PictureFiles& files) {
+RenderInput with_defaults(InputKind kind, OpenedInput opened, const RenderOptions& options) {
   switch (kind) {
     case InputKind::terrain:
       return terrain(std::move(opened), options);
     case InputKind::scene:
       return scene_file(std::move(opened), options);
     case InputKind::function:
-      return function(std::move(opened), options, files);
+      return function(std::move(opened), options);
     case InputKind::voxels:
     case InputKind::mesh:
       break;
@@ -184,7 +181,7 @@ bool reads_all_samples(const RenderOptions& options) {
   return options.full || measures || options.field.wrap == Wrap::shared_border;
 }
 
-RenderInput open_render_input(InputKind kind, const RenderOptions& options, const PictureFiles& files, ImageSize size) {
+RenderInput open_render_input(InputKind kind, const RenderOptions& options, ImageSize size) {
   const InputOptions input_options = input_of(kind, options, size);
   OpenedInput opened = open_input(kind, input_options, options.picture.ramp);
   stop_if_interrupted();
@@ -194,7 +191,7 @@ RenderInput open_render_input(InputKind kind, const RenderOptions& options, cons
   read.insert(read.end(), overlay.files.begin(), overlay.files.end());
   keep_inputs(options.output, read);
   const std::optional<SolidRange> numbers = opened.numbers;
-  RenderInput input = with_defaults(kind, std::move(opened), options, files);
+  RenderInput input = with_defaults(kind, std::move(opened), options);
   input.numbers = numbers;
   input.subject.files.drape = std::move(overlay.drape);
   input.subject.interpolate = options.march_settings.fixed_step.interpolate;

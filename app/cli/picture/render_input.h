@@ -35,9 +35,9 @@ struct RenderInput {
   std::function<FieldView(const Scene&, const ViewSettings&, const PictureSettings&)> framed{};
 };
 
-/// Reads the inputs and builds their accelerators. `files` are those of read_picture_files(), `size` is the default
-/// size of pictures. Throws Error naming the file.
-RenderInput open_render_input(InputKind kind, const RenderOptions& options, const PictureFiles& files, ImageSize size);
+/// Reads the inputs and builds their accelerators. `size` is the default size of pictures. Throws Error naming the
+/// file.
+RenderInput open_render_input(InputKind kind, const RenderOptions& options, ImageSize size);
 
 /// Returns whether rasters of any size are read completely; otherwise large ones are averaged.
 bool reads_all_samples(const RenderOptions& options);

@@ -51,7 +51,7 @@ void RenderStage::open() {
   Watch watch;
   const MeshInput mesh(options_.mesh);
   const PictureFiles files = read_picture_files(options_.picture_files, options_.picture);
-  input_ = open_render_input(kind_, options_, files, size_);
+  input_ = open_render_input(kind_, options_, size_);
   stop_if_interrupted();
   read_s_ = watch.lap();
   places_.emplace(input_.raster, find_coordinates(options_.camera.coordinates), exaggeration());

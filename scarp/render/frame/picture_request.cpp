@@ -16,17 +16,17 @@ void take(std::optional<T>& asked, const std::optional<T>& own) {
   if (!asked) asked = own;
 }
 
-// Meadows, dry grass and snow by height, rock on steep slopes; or one of the ramps. The last one is that of the
-// function.
+// kFunctionMaterial: meadows, dry grass and snow by height, rock on steep slopes; or one of the ramps.
 std::vector<Material> function_materials(const ReliefRange& range, const std::string& ramp) {
-  if (!ramp.empty()) return {HeightRamp{ramp, range.low, range.high}};
   const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
-  return {HeightStops{{{at(0.0), {0.40f, 0.47f, 0.30f}},
-                       {at(0.35), {0.50f, 0.53f, 0.33f}},
-                       {at(0.6), {0.62f, 0.57f, 0.42f}},
-                       {at(0.8), {0.66f, 0.62f, 0.57f}},
-                       {at(0.88), {0.93f, 0.94f, 0.96f}}}},
-          PlainColour{{0.47f, 0.43f, 0.40f}}, Blend{Blend::By::slope, 30, 45, 0, 1}};
+  std::vector<Material> materials{HeightStops{{{at(0.0), {0.40f, 0.47f, 0.30f}},
+                                               {at(0.35), {0.50f, 0.53f, 0.33f}},
+                                               {at(0.6), {0.62f, 0.57f, 0.42f}},
+                                               {at(0.8), {0.66f, 0.62f, 0.57f}},
+                                               {at(0.88), {0.93f, 0.94f, 0.96f}}}},
+                                  PlainColour{{0.47f, 0.43f, 0.40f}}, Blend{Blend::By::slope, 30, 45, 0, 1}};
+  if (!ramp.empty()) materials[kFunctionMaterial] = HeightRamp{ramp, range.low, range.high};
+  return materials;
 }
 
 double haze_distance_of(double haze, double extent) { return haze > 0 ? -extent / std::log1p(-haze) : kUnlimited; }

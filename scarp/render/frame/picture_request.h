@@ -94,6 +94,8 @@ struct PictureSubject {
 /// Returns the size of a map of a box: its longer side has the requested number of pixels.
 ImageSize size_of_map(const WorldBox& box, int longer_side);
 
+/// The material of terrain functions in the settings of their pictures.
+constexpr std::uint32_t kFunctionMaterial = 2;
 /// Default haze of terrain functions over PictureSubject::function_extent.
 constexpr double kFunctionHaze = 0.2;
 /// Returns the distance in metres at which rays over a terrain function may end: haze hides all but 1/64 of everything
