@@ -207,8 +207,7 @@ class Maker {
 
 }  // namespace
 
-std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales,
-                                 const std::function<bool(const cli::Declared&)>& at_once) {
+std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales) {
   const cli::Use use{opening.kind, name_of(opening.options->picture.look),
                      cli::march_of(*opening.options, opening.kind)};
   const Maker maker(opening, scales);
@@ -216,10 +215,7 @@ std::vector<Control> controls_of(const Opening& opening, const ControlScales& sc
   for (const cli::Declared& declared : opening.command().options()) {
     if (declared.positional() || !has(kShown, declared.option.topic) || has(kNone, declared.name)) continue;
     if (!cli::has_effect(declared, use)) continue;
-    if (std::optional<Control> control = maker.of(declared)) {
-      control->at_once = at_once(declared);
-      controls.push_back(std::move(*control));
-    }
+    if (std::optional<Control> control = maker.of(declared)) controls.push_back(std::move(*control));
   }
   return controls;
 }

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,7 +28,6 @@ struct Control {
   cli::Topic topic = cli::Topic::picture;
   bool common = false;  ///< shown by a plain `--help`
   ControlKind kind = ControlKind::flag;
-  bool at_once = false;  ///< takes effect while it moves; others reopen the input, and wait until the mouse is released
   bool inverted = false;  ///< a flag that starts with "no-": on means that the option is not given
   bool worded = false;    ///< a flag with the values true and false
   bool on = false;        ///< flags
@@ -53,10 +51,8 @@ struct ControlScales {
   std::string march{};                 ///< in use
 };
 
-/// The controls of the options that have an effect, in the order of their declarations. `at_once` returns whether an
-/// option applies without reopening the input.
-std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales,
-                                 const std::function<bool(const cli::Declared&)>& at_once);
+/// The controls of the options that have an effect, in the order of their declarations.
+std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales);
 
 /// The change that sets the option to the value of the control.
 OptionChange change_of(const Control& control);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "app/cli/commands.h"
@@ -108,24 +107,6 @@ Opening changed(const Opening& before, const OptionChange& change) {
     }
     std::erase_if(used, [&](const GivenOption& one) { return contains(idle, one.name); });
   }
-}
-
-std::vector<std::string> differences(const Opening& a, const Opening& b) {
-  const auto values_of = [](const Opening& opening) {
-    std::map<std::string, std::vector<std::string>> values;
-    for (const cli::Command::Typed& one : opening.command().all_typed()) values[one.option->name] = one.values;
-    return values;
-  };
-  const auto of_a = values_of(a), of_b = values_of(b);
-  std::vector<std::string> names;
-  for (const auto& [name, values] : of_a) {
-    const auto other = of_b.find(name);
-    if (other == of_b.end() || other->second != values) names.push_back(name);
-  }
-  for (const auto& [name, values] : of_b) {
-    if (!of_a.contains(name)) names.push_back(name);
-  }
-  return names;
 }
 
 }  // namespace scarp::viewer

@@ -49,7 +49,4 @@ struct OptionChange {
 /// effect.
 Opening changed(const Opening& before, const OptionChange& change);
 
-/// The names of the options whose values differ.
-std::vector<std::string> differences(const Opening& a, const Opening& b);
-
 }  // namespace scarp::viewer

@@ -41,8 +41,18 @@ void draw_help(bool& open) {
   ImGui::End();
 }
 
+using Reopens = std::function<bool(const OptionChange&)>;
+
+// Whether to apply the control's new value, after its slider was drawn: while it moves, or, if the input has to be
+// reopened, when the mouse is released.
+bool applies(const Control& control, bool moved, const Reopens& reopens) {
+  const bool released = ImGui::IsItemDeactivatedAfterEdit();
+  return (moved || released) && (reopens(change_of(control)) ? released : moved);
+}
+
 // A slider for a number; returns whether to apply it.
-bool draw_slider(const char* label, Control& control, double& value, double least, double most, bool whole) {
+bool draw_slider(const char* label, Control& control, double& value, double least, double most, bool whole,
+                 const Reopens& reopens) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (control.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
   bool moved;
@@ -55,7 +65,7 @@ bool draw_slider(const char* label, Control& control, double& value, double leas
     moved = ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most), "%.4g", flags);
     if (moved) value = number;
   }
-  return control.at_once ? moved : ImGui::IsItemDeactivatedAfterEdit();
+  return applies(control, moved, reopens);
 }
 
 bool draw_choice(Control& control) {
@@ -71,34 +81,34 @@ bool draw_choice(Control& control) {
   return changed;
 }
 
-bool draw_pair(Control& control) {
+bool draw_pair(Control& control, const Reopens& reopens) {
   auto low = static_cast<float>(control.numbers[0]), high = static_cast<float>(control.numbers[1]);
   const float step = std::max((high - low) / 200, 0.01f);
-  bool moved = ImGui::DragFloatRange2(control.label.c_str(), &low, &high, step, static_cast<float>(control.least),
-                                      static_cast<float>(control.most), "%.4g", nullptr, ImGuiSliderFlags_AlwaysClamp);
+  const bool moved =
+      ImGui::DragFloatRange2(control.label.c_str(), &low, &high, step, static_cast<float>(control.least),
+                             static_cast<float>(control.most), "%.4g", nullptr, ImGuiSliderFlags_AlwaysClamp);
   if (moved) control.numbers = {low, high, 0};
-  if (!control.at_once) moved = ImGui::IsItemDeactivatedAfterEdit();
-  return moved && low < high;
+  return low < high && applies(control, moved, reopens);
 }
 
 // Returns whether the option's value changed.
-bool draw_value(Control& control) {
+bool draw_value(Control& control, const Reopens& reopens) {
   switch (control.kind) {
     case ControlKind::flag:
       return ImGui::Checkbox(control.label.c_str(), &control.on);
     case ControlKind::choice:
       return draw_choice(control);
     case ControlKind::number:
-      return draw_slider(control.label.c_str(), control, control.numbers[0], control.least, control.most,
-                         control.whole);
+      return draw_slider(control.label.c_str(), control, control.numbers[0], control.least, control.most, control.whole,
+                         reopens);
     case ControlKind::pair:
-      return draw_pair(control);
+      return draw_pair(control, reopens);
     case ControlKind::angles: {
       const bool azimuth =
-          draw_slider((control.label + " azimuth").c_str(), control, control.numbers[0], 0, 360, false);
+          draw_slider((control.label + " azimuth").c_str(), control, control.numbers[0], 0, 360, false, reopens);
       ImGui::SetNextItemWidth(scaled(kControlWidth));
       const bool altitude =
-          draw_slider((control.label + " altitude").c_str(), control, control.numbers[1], 0, 90, false);
+          draw_slider((control.label + " altitude").c_str(), control, control.numbers[1], 0, 90, false, reopens);
       return azimuth || altitude;
     }
     case ControlKind::colour:
@@ -108,10 +118,10 @@ bool draw_value(Control& control) {
   std::copy(control.numbers.begin(), control.numbers.end(), rgb);
   const bool moved = ImGui::ColorEdit3(control.label.c_str(), rgb, ImGuiColorEditFlags_NoInputs);
   if (moved) std::copy_n(rgb, 3, control.numbers.begin());
-  return control.at_once ? moved : ImGui::IsItemDeactivatedAfterEdit();
+  return applies(control, moved, reopens);
 }
 
-bool draw_control(Control& control) {
+bool draw_control(Control& control, const Reopens& reopens) {
   ImGui::PushID(control.option.c_str());
   bool changed = false;
   if (control.may_rest) {
@@ -125,7 +135,7 @@ bool draw_control(Control& control) {
   if (!control.rests) {
     const float box = control.may_rest ? ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x : 0;
     ImGui::SetNextItemWidth(scaled(kControlWidth) - box);
-    changed |= draw_value(control);
+    changed |= draw_value(control, reopens);
   }
   if (ImGui::IsItemHovered()) {
     ImGui::BeginTooltip();
@@ -137,10 +147,10 @@ bool draw_control(Control& control) {
 }
 
 // The common options, then the others under the headings of their topics.
-std::optional<OptionChange> draw_controls(std::vector<Control>& controls) {
+std::optional<OptionChange> draw_controls(std::vector<Control>& controls, const Reopens& reopens) {
   std::optional<OptionChange> change;
   const auto draw = [&](Control& control) {
-    if (draw_control(control)) change = change_of(control);
+    if (draw_control(control, reopens)) change = change_of(control);
   };
   for (Control& control : controls) {
     if (control.common) draw(control);
@@ -227,7 +237,7 @@ PanelActions draw_panel(PanelState& state) {
       const auto mode = static_cast<MoveMode>(i);
       if (ImGui::RadioButton(kModes[i], state.mode == mode)) actions.mode = mode;
     }
-    actions.change = draw_controls(state.controls);
+    actions.change = draw_controls(state.controls, state.reopens);
     actions.compare = draw_comparisons(state);
     if (state.mode == MoveMode::fly || state.mode == MoveMode::walk) ImGui::Text("%.1f m/s", state.speed);
     ImGui::Separator();

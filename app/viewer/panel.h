@@ -2,6 +2,7 @@
 // The panel over the picture: settings, the cost of the picture, readings under the cursor.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,9 @@ namespace scarp::viewer {
 
 /// The state that the panel shows and changes.
 struct PanelState {
-  std::vector<Control> controls{};         ///< numbers move in place; a change is an action
+  std::vector<Control> controls{};  ///< numbers move in place; a change is an action
+  /// Whether a change reopens the input: sliders then apply it when the mouse is released, otherwise while they move.
+  std::function<bool(const OptionChange&)> reopens{};
   std::vector<std::string> comparisons{};  ///< possible comparisons
   std::string compared{};                  ///< in use; empty: nothing
   MoveMode mode = MoveMode::orbit;         ///< a change is an action

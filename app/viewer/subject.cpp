@@ -56,7 +56,7 @@ Subject::Side Subject::open(Opening opening) const {
   const ImageSize film = film_size(options.picture, width_, height_);
   if (options.picture.width || entry_of(look_of(options.picture)).large_pixels)
     options.picture = for_window(options.picture, width_, height_);
-  auto opened = std::make_shared<Opened>(opening, std::move(options), film);
+  auto opened = std::make_shared<Opened>(opening.kind, std::move(options), film);
   opened->stage.open();
   return side_by(opened, std::move(opening));
 }
@@ -71,16 +71,16 @@ Subject::Side Subject::side_by(const std::shared_ptr<Opened>& opened, Opening op
 }
 
 Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or_like) const {
+  const cli::InputRequest request = input_request(opening.kind, *opening.options);
   for (const Side* side : {&like, or_like}) {
-    if (!side) continue;
-    const cli::RenderStage& stage = side->opened->stage;
-    const std::vector<std::string> names = differences(side->opened->opening, opening);
-    if (stage.serves(*opening.options) && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
-          return stage.serves(*opening.command().find(name));
-        }))
-      return side_by(side->opened, std::move(opening));
+    if (side && side->opened->stage.serves(request)) return side_by(side->opened, std::move(opening));
   }
   return open(std::move(opening));
+}
+
+bool Subject::reopens(const OptionChange& change) const {
+  const Opening next = changed(main_.opening, change);
+  return !stage().serves(input_request(next.kind, *next.options));
 }
 
 bool Subject::change(const OptionChange& change) {
@@ -193,7 +193,7 @@ std::vector<Control> Subject::controls(const std::optional<StepScale>& steps) co
   if (steps) scales.steps_low = steps->low, scales.steps_high = steps->high;
   scales.marches = marches_for(opening().kind);
   scales.march = stage().given_scene().marches();
-  return controls_of(opening(), scales, [&](const cli::Declared& declared) { return stage().serves(declared); });
+  return controls_of(opening(), scales);
 }
 
 }  // namespace scarp::viewer

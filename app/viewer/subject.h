@@ -34,6 +34,9 @@ class Subject {
   /// changed: also for options of the window itself, kWindowOptions.
   bool change(const OptionChange& change);
 
+  /// Whether change() would reopen the input. Throws Error for a change that the options reject.
+  bool reopens(const OptionChange& change) const;
+
   /// Reopens the input, as after a change of its file. If it throws Error, nothing has changed.
   void reopen();
 
@@ -53,11 +56,9 @@ class Subject {
   std::vector<Control> controls(const std::optional<StepScale>& steps) const;
 
  private:
-  // The stage belongs to the worker once opened; the options record how the inputs were opened.
+  // The stage belongs to the worker once opened.
   struct Opened {
-    Opened(Opening of, cli::RenderOptions options, ImageSize size)
-        : opening(std::move(of)), stage(opening.kind, std::move(options), size) {}
-    Opening opening;
+    Opened(cli::InputKind kind, cli::RenderOptions options, ImageSize size) : stage(kind, std::move(options), size) {}
     cli::RenderStage stage;
     std::optional<Scene> judges{};  // once requested
   };

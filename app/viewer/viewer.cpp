@@ -64,6 +64,7 @@ class Viewer {
     glfw_ = std::make_unique<Glfw>(width_, height_, title());
     if (!played_) listen();
     imgui_ = std::make_unique<Imgui>(glfw_->get(), !played_);
+    panel_.reopens = [this](const OptionChange& change) { return reopens(change); };
     presenter_ = std::make_unique<Presenter>(glfw_->get(), options_.window_device, options_.validation);
     worker_ = std::make_unique<PictureWorker>([] { glfwPostEmptyEvent(); });
   }
@@ -104,8 +105,8 @@ class Viewer {
   void navigate(const Camera& first) {
     const cli::RenderInput& input = subject_->stage().input();
     // The CPU traces rays of single points.
-    navigator_ =
-        std::make_unique<Navigator>(subject_->stage().given_scene(), first, input.view.fov_deg, input.subject.across);
+    navigator_ = std::make_unique<Navigator>(subject_->stage().given_scene(), first, subject_->stage().view().fov_deg,
+                                             input.subject.across);
     frames_ = std::make_unique<ReadingFrames>(input.raster);
     camera_.reset();
     line_from_.reset();
@@ -133,6 +134,14 @@ class Viewer {
   // If it fails, for example because the file is gone, the window keeps its current state.
   void change(const OptionChange& change) {
     attempt([&] { return subject_->change(change); });
+  }
+  // Errors are shown when the change is made.
+  bool reopens(const OptionChange& change) const {
+    try {
+      return subject_->reopens(change);
+    } catch (const std::exception&) {
+      return false;
+    }
   }
   void reopen() {
     attempt([&] {

@@ -15,6 +15,8 @@ struct NaiveSettings {
   double min_step = 1.0 / 512;  ///< minimum step as a fraction of the ray's length to the field's border, > 0
   double tolerance = 0.001;     ///< height above ground that counts as a hit, per unit of distance, >= 0
   int max_steps = 1024;         ///< >= 1
+
+  bool operator==(const NaiveSettings&) const = default;
 };
 
 /// `fixed-step`: one sample every `step`; hits at the first sample that is no longer above the ground.
@@ -22,6 +24,8 @@ struct FixedStepSettings {
   double step = 0.5;        ///< cells, their shorter side, > 0
   bool interpolate = true;  ///< whether Refinement::none means `secant` here
   int max_steps = 16384;    ///< >= 1
+
+  bool operator==(const FixedStepSettings&) const = default;
 };
 
 /// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t; t counted from t_min.
@@ -29,6 +33,8 @@ struct RelaxedSettings {
   double step_factor = 0.4;   ///< of the vertical distance h, > 0
   double tolerance = 0.0015;  ///< height off the ground that counts as a hit, per unit of distance, > 0
   int max_steps = 300;        ///< >= 1
+
+  bool operator==(const RelaxedSettings&) const = default;
 };
 
 /// `lipschitz`: t += shrink * h, stops where shrink * h <= tolerance * t; t counted from t_min.
@@ -36,23 +42,31 @@ struct LipschitzSettings {
   double shrink = 0;  ///< of the vertical distance h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
   double tolerance = 0.0005;  ///< distance to the ground that counts as a hit, per unit of distance travelled, >= 0
   int max_steps = 1024;       ///< >= 1
+
+  bool operator==(const LipschitzSettings&) const = default;
 };
 
 /// `max-mip-bisect`: halvings of the interval in the finest cell.
 struct BisectSettings {
   int halvings = 16;  ///< 1..60
+
+  bool operator==(const BisectSettings&) const = default;
 };
 
 /// `lipschitz-local`.
 struct LipschitzLocalSettings {
   double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps = 1024;     ///< >= 1
+
+  bool operator==(const LipschitzLocalSettings&) const = default;
 };
 
 /// `sphere-trace`: t += distance, closes in on the surface by bounds of segments.
 struct SphereTraceSettings {
   double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps = 1024;     ///< >= 1
+
+  bool operator==(const SphereTraceSettings&) const = default;
 };
 
 /// How naive, fixed-step and relaxed refine their last interval: from the last sample where the hit test failed to the
@@ -75,6 +89,8 @@ struct SamplingSettings {
   /// Height in metres that counts as a hit for naive and relaxed at any distance, >= 0. Naive rays that start on the
   /// surface start within it: they hit only where they are deeper below ground.
   double tolerance = 0;
+
+  bool operator==(const SamplingSettings&) const = default;
 };
 
 /// Settings that apply only to marches over terrain functions, which have neither cells nor an end.
@@ -82,6 +98,8 @@ struct FunctionMarchSettings {
   double reach = std::numeric_limits<double>::infinity();  ///< all marches: maximum length of a ray in metres, > 0
   double step = 5;                                         ///< fixed-step: step in metres, in place of cells, > 0
   double step_share = 0;  ///< fixed-step: minimum step as a fraction of the distance travelled, >= 0
+
+  bool operator==(const FunctionMarchSettings&) const = default;
 };
 
 struct MarchSettings {
@@ -94,6 +112,8 @@ struct MarchSettings {
   SamplingSettings sampling;
   FunctionMarchSettings function;
   SphereTraceSettings sphere_trace;
+
+  bool operator==(const MarchSettings&) const = default;
 };
 
 /// The refinement of fixed-step: `interpolate` means a secant.

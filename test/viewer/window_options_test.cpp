@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/commands.h"
 #include "app/viewer/controls.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/reading.h"
@@ -108,9 +109,8 @@ TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
   std::vector<Control> controls = subject.controls({});
   const Control samples = control(controls, "--samples");
   EXPECT_EQ(samples.kind, ControlKind::number);
-  EXPECT_TRUE(samples.whole && samples.at_once && samples.common);
+  EXPECT_TRUE(samples.whole && samples.common);
   EXPECT_EQ(samples.most, 4096);
-  EXPECT_FALSE(control(controls, "--exaggeration").at_once);
   EXPECT_EQ(control(controls, "--exaggeration").numbers[0], 1);
   EXPECT_EQ(control(controls, "--no-shadows").label, "shadows");
   EXPECT_TRUE(control(controls, "--no-shadows").on);
@@ -192,6 +192,47 @@ TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
   }
   EXPECT_TRUE(subject.change({"--exaggeration", "3"}));
   EXPECT_EQ(subject.stage().exaggeration(), 3);
+}
+
+// Sliders of these options wait for the release of the mouse.
+TEST_F(WindowOptions, ReopenIfTheInputDependsOnThem) {
+  const Subject ground(opening_of(file), 16, 12), holes(with(opening_of(file), {{"--nodata", "nan"}}), 16, 12),
+      large(with(opening_of(file), {{"--look", "comanche"}}), 16, 12);
+  for (const OptionChange& change : {OptionChange{"--samples", "8"},
+                                     {"--water", "7"},
+                                     {"--contours", "3"},
+                                     {"--look", "steps"},
+                                     {"--full", "true"},
+                                     {"--haze", "0.3"}}) {
+    EXPECT_FALSE(ground.reopens(change)) << change.option;
+    EXPECT_FALSE(holes.reopens(change)) << change.option;
+  }
+  EXPECT_FALSE(large.reopens({"--pixel-size", "5"}));
+  EXPECT_FALSE(large.reopens({"--reach", "50"}));
+  for (const OptionChange& change : {OptionChange{"--exaggeration", "2"},
+                                     {"--no-plinth", "true"},
+                                     {"--solid", "true"},
+                                     {"--march", "naive"},
+                                     {"--nodata", "3"},
+                                     {"--crs", "none"},
+                                     {"--overlay", "image.png"}})
+    EXPECT_TRUE(ground.reopens(change)) << change.option;
+  EXPECT_TRUE(holes.reopens({"--nodata", {}}));
+  EXPECT_THROW(ground.reopens({"--samples", "-1"}), cli::WrongUsage);
+
+  // Rays over functions end where haze hides everything, unless their reach is given.
+  auto program = std::make_shared<cli::Program>(cli::about_scarp());
+  auto options = std::make_shared<cli::ViewOptions>();
+  cli::Command& command = declare_view(*program, *options);
+  command.runs([] {});
+  command.run({{command.find("--function"), {"hills"}}});
+  const Opening opening = settle_opening(program, options, command);
+  const Subject hills(opening, 16, 12), near(with(opening, {{"--function-reach", "9000"}}), 16, 12);
+  EXPECT_TRUE(hills.reopens({"--haze", "0.3"}));
+  EXPECT_FALSE(near.reopens({"--haze", "0.3"}));
+  EXPECT_TRUE(hills.reopens({"--extent", "3000"}));
+  for (const OptionChange& change : {OptionChange{"--ramp", "viridis"}, {"--contours", "30"}, {"--ground", "natural"}})
+    EXPECT_FALSE(hills.reopens(change)) << change.option;
 }
 
 TEST_F(WindowOptions, SidesDifferInOneOption) {

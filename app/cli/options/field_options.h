@@ -16,6 +16,8 @@ enum class BeyondBorders { none, wraps, mirrors };
 struct Exaggeration {
   bool given = false;   ///< a factor, or `auto`
   bool chosen = false;  ///< `auto`: by the relief of the raster
+
+  bool operator==(const Exaggeration&) const = default;
 };
 /// Returns the factor at which a relief is a tenth of the longer side of the ground, both in metres, rounded down to 1,
 /// 2 or 5 times a power of ten; at least 1.

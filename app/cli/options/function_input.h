@@ -19,6 +19,8 @@ struct FunctionInput {
   std::string function;  // a name or a file; empty: none
   std::string preset;
   double extent = 6000;
+
+  bool operator==(const FunctionInput&) const = default;
 };
 
 /// Declares --function and, unless its help is empty, --extent.

@@ -319,10 +319,10 @@ PictureFiles read_picture_files(const PictureFileNames& names, const PictureRequ
   return files;
 }
 
-OverlayFiles read_overlay_files(const PictureFileNames& names, const Georeference& georeference, int cols, int rows,
+OverlayFiles read_overlay_files(const std::string& name, const Georeference& georeference, int cols, int rows,
                                 bool mirror, std::int64_t most_pixels) {
-  if (names.overlay.empty()) return {};
-  Overlay overlay = read_overlay(names.overlay, georeference, cols, rows, most_pixels);
+  if (name.empty()) return {};
+  Overlay overlay = read_overlay(name, georeference, cols, rows, most_pixels);
   ColourImage& image = overlay.image;
   return {std::make_shared<Drape>(Drape{image.width,
                                         image.height,

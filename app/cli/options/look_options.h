@@ -33,9 +33,9 @@ struct OverlayFiles {
   std::shared_ptr<const Drape> drape;
   std::vector<std::string> files;  ///< all files that were opened
 };
-/// Reads the image for a raster of `cols` x `rows` samples, or for any scene if there is no georeference. With more
-/// than `most_pixels` over the raster it is averaged. Throws Error naming the file.
-OverlayFiles read_overlay_files(const PictureFileNames& files, const Georeference& georeference, int cols, int rows,
+/// Reads the image `name`, unless that is empty, for a raster of `cols` x `rows` samples, or for any scene if there is
+/// no georeference. With more than `most_pixels` over the raster it is averaged. Throws Error naming the file.
+OverlayFiles read_overlay_files(const std::string& name, const Georeference& georeference, int cols, int rows,
                                 bool mirror, std::int64_t most_pixels);
 
 }  // namespace scarp::cli

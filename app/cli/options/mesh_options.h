@@ -18,6 +18,8 @@ namespace scarp::cli {
 struct MeshOptions {
   std::string file, at, up = "y";
   double scale = 1, turn_deg = 0;
+
+  bool operator==(const MeshOptions&) const = default;
 };
 
 /// Declares --mesh and its settings.

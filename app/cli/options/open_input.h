@@ -41,6 +41,8 @@ struct InputOptions {
   /// Whether the camera will move: large rasters are read for any view, and the CPU traces rays in addition to
   /// `device`.
   bool moves = false;
+
+  bool operator==(const InputOptions&) const = default;
 };
 
 /// Returns the kind of the inputs, by their names and options. Throws Error or WrongUsage if there is none or several.

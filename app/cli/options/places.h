@@ -24,6 +24,8 @@ struct TypedPlace {
   double x = 0, y = 0;
   std::optional<double> z{};
   std::string text{};  ///< for messages
+
+  bool operator==(const TypedPlace&) const = default;
 };
 /// Throws Error "OPTION 'TEXT': expected ...".
 TypedPlace typed_place(const std::string& text, std::string_view option);

@@ -25,12 +25,16 @@ constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: from over t
 struct TypedView {
   double azimuth_deg = 0, elevation_deg = 0;
   std::optional<double> distance{};
+
+  bool operator==(const TypedView&) const = default;
 };
 
 /// --area: edges in coordinates of --coords, with the text for messages.
 struct TypedArea {
   double west = 0, south = 0, east = 0, north = 0;
   std::string text;
+
+  bool operator==(const TypedArea&) const = default;
 };
 
 /// The viewpoint of a picture.
@@ -42,6 +46,8 @@ struct CameraOptions {
   std::optional<TypedArea> area;
   std::string coordinates = "local";
   bool top = false;
+
+  bool operator==(const CameraOptions&) const = default;
 };
 
 struct RenderOptions : InputOptions {

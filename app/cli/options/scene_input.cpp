@@ -62,8 +62,8 @@ PictureRequest request_of(const SceneFile& file) {
   return r;
 }
 
-void check_effect(const PictureRequest& asked, const SceneFile& file) {
-  const PictureRequest all = merged(asked, request_of(file));
+void check_effect(const PictureRequest& asked, const PictureRequest& own) {
+  const PictureRequest all = merged(asked, own);
   require(all.water_level.has_value(),
           {{"--water-colour", asked.water_srgb.has_value()},
            {"--turbidity", asked.water_turbidity.has_value()},
@@ -84,7 +84,7 @@ void check_effect(const PictureRequest& asked, const SceneFile& file) {
   const bool scatters = all.sky == SkyKind::scattering;
   require(scatters, {{"--sky-turbidity", asked.sky_turbidity.has_value()}},
           "without --sky scattering, or such a sky in the scene file");
-  if (scatters && file.fog && file.fog->sun_tint)
+  if (scatters && own.sun_tint)
     throw Error("--sky scattering has no effect on the sun_tint of the fog in the scene file (remove the key)");
   require(!scatters, {{"--sun-tint", asked.sun_tint.has_value()}},
           "with a scattering sky, which colours the fog (add --sky plain)");
@@ -95,14 +95,14 @@ void check_effect(const PictureRequest& asked, const SceneFile& file) {
           "without --samples N, or samples in the scene file");
 }
 
-ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look look) {
+ViewSettings view_of(const SceneCamera& own, const CameraOptions& camera, Look look) {
   ViewSettings view = view_of(camera, look);
   if (!camera.view) {
-    view.azimuth_deg = file.camera.azimuth_deg.value_or(view.azimuth_deg);
-    view.elevation_deg = file.camera.elevation_deg.value_or(view.elevation_deg);
-    view.distance = file.camera.distance.value_or(view.distance);
+    view.azimuth_deg = own.azimuth_deg.value_or(view.azimuth_deg);
+    view.elevation_deg = own.elevation_deg.value_or(view.elevation_deg);
+    view.distance = own.distance.value_or(view.distance);
   }
-  if (!camera.fov_deg) view.fov_deg = file.camera.fov_deg.value_or(view.fov_deg);
+  if (!camera.fov_deg) view.fov_deg = own.fov_deg.value_or(view.fov_deg);
   return view;
 }
 

@@ -18,10 +18,10 @@ bool is_scene_input(const std::vector<std::string>& inputs);
 
 /// Returns the picture request of the file itself.
 PictureRequest request_of(const SceneFile& file);
-/// Throws Error naming the first option of the request that has no effect together with the file.
-void check_effect(const PictureRequest& asked, const SceneFile& file);
-/// Returns the view of the options, completed by that of the file, which has no eye.
-ViewSettings view_of(const SceneFile& file, const CameraOptions& camera, Look look);
+/// Throws Error naming the first option of the request that has no effect together with `own`, the request of a file.
+void check_effect(const PictureRequest& asked, const PictureRequest& own);
+/// Returns the view of the options, completed by that of a file, which has no eye.
+ViewSettings view_of(const SceneCamera& own, const CameraOptions& camera, Look look);
 
 /// Describes a scene: for --json, and as lines of text.
 nlohmann::ordered_json describe_scene(const std::string& path);

@@ -22,6 +22,8 @@ struct VoxOptions {
   std::string volume;  ///< empty: not a volume
   std::optional<double> solid_from;
   std::string up = "z";
+
+  bool operator==(const VoxOptions&) const = default;
 };
 
 /// Typed options for the look of voxels.
@@ -31,6 +33,8 @@ struct VoxLookOptions {
   VoxelRounding rounding;
   bool corner_ao = false;
   bool coarse = false;
+
+  bool operator==(const VoxLookOptions&) const = default;
 };
 
 /// Whether the input is a voxel file: by its extension, or because --volume was given. Throws Error if there are other

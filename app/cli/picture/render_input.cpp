@@ -8,7 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/scene_input.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -24,16 +23,23 @@ constexpr std::int64_t kSamplesPerPixel = 16;
 
 // The samples that a picture shows. A small picture has as many as one of 1000 x 1000 pixels, which reads equally fast;
 // views of a part have as many as rasters that are read completely.
-std::int64_t samples_shown(const RenderOptions& options, ImageSize size) {
+std::int64_t samples_shown(const RenderOptions& options) {
   constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const CameraOptions& camera = options.camera;
-  const PictureSettings picture = resolve(options.picture, {.size = size});
+  const PictureSettings picture = resolve(options.picture, {});
   if (options.moves || camera.eye || camera.area || !options.frames.path.empty() ||
       view_of(camera, picture.look).distance < 1 || camera.fov_deg || entry_of(picture.look).large_pixels)
     return kMost;
   // The longer side is the width; the other one follows from the raster.
   const int height = camera.top && !options.picture.width ? picture.width : picture.height;
   return std::clamp(kSamplesPerPixel * picture.width * height, kLeast, kMost);
+}
+
+// Returns whether rasters of any size are read completely; otherwise large ones are averaged.
+bool reads_all_samples(const RenderOptions& options) {
+  const bool measures = entry_of(look_of(options.picture)).measures;
+  // The shared border would be averaged with its neighbours.
+  return options.full || measures || options.field.wrap == Wrap::shared_border;
 }
 
 FieldView framed_by_box(const Scene& scene, const ViewSettings& view, const PictureSettings& picture) {
@@ -61,11 +67,10 @@ void require_ground(const HeightField& field, const std::string& path) {
                     path));
 }
 
-RenderInput terrain(OpenedInput opened, const RenderOptions& options) {
+RenderInput terrain(OpenedInput opened, bool plinth) {
   const HeightField& field = *opened.scene.only_heights();
   require_ground(field, opened.path);
-  RenderInput input{options.no_plinth ? opened.scene : with_plinth(opened.scene)};
-  input.view = view_of(options.camera, look_of(options.picture));
+  RenderInput input{plinth ? with_plinth(opened.scene) : opened.scene};
   input.subject.across = default_reach(field);
   input.subject.heights = {field.min_height(), field.max_height()};
   input.subject.exaggeration = field.settings().exaggeration;
@@ -79,9 +84,8 @@ RenderInput terrain(OpenedInput opened, const RenderOptions& options) {
 }
 
 // Voxels and meshes.
-RenderInput model(OpenedInput opened, const RenderOptions& options) {
+RenderInput model(OpenedInput opened, const InputOptions& options) {
   RenderInput input{std::move(opened.scene)};
-  input.view = view_of(options.camera, look_of(options.picture));
   input.coarse_voxels = options.vox_look.coarse;
   input.subject.own.sun_azimuth_deg = kModelSunAzimuth;
   input.subject.own.haze = 0;
@@ -90,15 +94,12 @@ RenderInput model(OpenedInput opened, const RenderOptions& options) {
   return input;
 }
 
-RenderInput scene_file(OpenedInput opened, const RenderOptions& options) {
+RenderInput scene_file(OpenedInput opened, const InputOptions& options) {
   RenderInput input{std::move(opened.scene)};
   const SceneFile& document = *opened.document;
-  check_effect(options.picture, document);
   input.subject.own = request_of(document);
-  input.view = view_of(document, options.camera, look_of(options.picture));
+  input.camera = document.camera;
   input.coarse_voxels = document.picture.coarse_voxels || options.vox_look.coarse;
-  input.viewed = document.camera.azimuth_deg || document.camera.elevation_deg || document.camera.distance;
-  input.eye = document.camera.eye, input.target = document.camera.target;
   input.framed = framed_by_box;
   measure(input);
   return input;
@@ -117,22 +118,18 @@ ReliefRange heights_around(const HeightFunction& function, double extent) {
   return range;
 }
 
-RenderInput function(OpenedInput opened, const RenderOptions& options) {
-  const double extent = options.function.extent;
+RenderInput function(OpenedInput opened, const FunctionInput& options) {
+  const double extent = options.extent;
   const HeightFunction function = std::move(*opened.function);
   PictureSubject subject;
   subject.across = extent, subject.function_extent = extent;
   subject.own.haze = kFunctionHaze, subject.own.ao_distance = extent / 8;
   subject.heights = heights_around(function, extent);
   RenderInput input{Scene(opened.scene.fields(), {{.material = kFunctionMaterial}}), std::move(subject)};
-  input.march = opened.scene.marches() +
-                (options.function.preset.empty() ? "" : fmt::format(" as in {}", options.function.preset));
-  const ViewSettings typed = view_of(options.camera, look_of(options.picture));
-  input.view = options.camera.view ? typed : kFunctionView;
-  if (options.camera.fov_deg) input.view.fov_deg = typed.fov_deg;
-  input.target = dvec3(0, 0, function.value(0, 0));
-  input.framed = [function, extent, target = *input.target](const Scene&, const ViewSettings& of,
-                                                            const PictureSettings& picture) {
+  input.march = opened.scene.marches() + (options.preset.empty() ? "" : fmt::format(" as in {}", options.preset));
+  input.camera.target = dvec3(0, 0, function.value(0, 0));
+  input.framed = [function, extent, target = *input.camera.target](const Scene&, const ViewSettings& of,
+                                                                   const PictureSettings& picture) {
     constexpr double kDegree = 3.14159265358979323846 / 180;
     validate(of);
     dvec3 eye = target + of.distance * extent * towards(of.azimuth_deg * kDegree, of.elevation_deg * kDegree, 0);
@@ -143,68 +140,54 @@ RenderInput function(OpenedInput opened, const RenderOptions& options) {
   return input;
 }
 
-RenderInput with_defaults(InputKind kind, OpenedInput opened, const RenderOptions& options) {
-  switch (kind) {
+RenderInput with_defaults(const InputRequest& request, OpenedInput opened) {
+  switch (request.kind) {
     case InputKind::terrain:
-      return terrain(std::move(opened), options);
+      return terrain(std::move(opened), request.plinth);
     case InputKind::scene:
-      return scene_file(std::move(opened), options);
+      return scene_file(std::move(opened), request.input);
     case InputKind::function:
-      return function(std::move(opened), options);
+      return function(std::move(opened), request.input.function);
     case InputKind::voxels:
     case InputKind::mesh:
       break;
   }
-  return model(std::move(opened), options);
-}
-
-// The input of rays: large rasters in the detail of the picture, functions up to the view distance.
-InputOptions input_of(InputKind kind, const RenderOptions& options, ImageSize size) {
-  InputOptions input = options;
-  if (kind == InputKind::terrain && !reads_all_samples(options)) {
-    input.raster.decimation.emplace();
-    input.raster.decimation->samples = samples_shown(options, size);
-  }
-  double& reach = input.march_settings.function.reach;
-  if (kind == InputKind::function && std::isinf(reach))
-    reach = function_reach(options.picture, options.function.extent);
-  return input;
+  return model(std::move(opened), request.input);
 }
 
 }  // namespace
 
-// Applies to looks that measure.
-bool reads_all_samples(const RenderOptions& options) {
-  const Look look = look_of(options.picture);
-  const bool measures = entry_of(look).measures;
-  // The shared border would be averaged with its neighbours.
-  return options.full || measures || options.field.wrap == Wrap::shared_border;
+InputRequest input_request(InputKind kind, const RenderOptions& options) {
+  InputRequest request{.kind = kind,
+                       .input = options,
+                       .overlay = options.picture_files.overlay,
+                       .plinth = !options.no_plinth,
+                       .voxel_drawing = options.voxel_drawing,
+                       .camera = options.camera};
+  if (kind == InputKind::terrain && !reads_all_samples(options))
+    request.input.raster.decimation.emplace().samples = samples_shown(options);
+  double& reach = request.input.march_settings.function.reach;
+  if (kind == InputKind::function && std::isinf(reach))
+    reach = function_reach(options.picture, options.function.extent);
+  if (!options.vox.volume.empty()) request.ramp = options.picture.ramp;
+  if (!request.overlay.empty()) request.overlay_pixels = samples_shown(options);
+  return request;
 }
 
-RenderInput open_render_input(InputKind kind, const RenderOptions& options, ImageSize size) {
-  const InputOptions input_options = input_of(kind, options, size);
-  OpenedInput opened = open_input(kind, input_options, options.picture.ramp);
+RenderInput open_render_input(const InputRequest& request) {
+  const InputOptions& options = request.input;
+  OpenedInput opened = open_input(request.kind, options, request.ramp);
   stop_if_interrupted();
-  std::vector<std::string> notes = opened.notes, read = opened.files;
-  OverlayFiles overlay = read_overlay_files(options.picture_files, opened.georeference, opened.cols, opened.rows,
-                                            options.field.mirror, samples_shown(options, size));
-  read.insert(read.end(), overlay.files.begin(), overlay.files.end());
-  keep_inputs(options.output, read);
+  OverlayFiles overlay = read_overlay_files(request.overlay, opened.georeference, opened.cols, opened.rows,
+                                            options.field.mirror, request.overlay_pixels);
+  std::vector<std::string> notes = opened.notes, files = opened.files;
+  files.insert(files.end(), overlay.files.begin(), overlay.files.end());
   const std::optional<SolidRange> numbers = opened.numbers;
-  RenderInput input = with_defaults(kind, std::move(opened), options);
-  input.numbers = numbers;
+  RenderInput input = with_defaults(request, std::move(opened));
+  input.notes = std::move(notes), input.files = std::move(files), input.numbers = numbers;
   input.subject.files.drape = std::move(overlay.drape);
   input.subject.interpolate = options.march_settings.fixed_step.interpolate;
-  input.all_samples = reads_all_samples(options);
-  if (kind == InputKind::function) input.function_reach = input_options.march_settings.function.reach;
-  const Look look = look_of(options.picture);
-  const bool in_perspective = !options.camera.top && entry_of(look).lit;
-  if (kind == InputKind::terrain && in_perspective && !options.exaggeration.given) {
-    const double side = default_reach(*input.scene.terrain());
-    const ReliefRange& heights = input.subject.heights;
-    if (const std::string note = flatness_note(heights.high - heights.low, side); !note.empty()) notes.push_back(note);
-  }
-  input.notes = std::move(notes), input.files = std::move(read);
+  if (request.kind == InputKind::function) input.function_reach = options.march_settings.function.reach;
   return input;
 }
 

@@ -58,7 +58,7 @@ class Render {
   void make_all() {
     const FrameOptions& frames = options().frames;
     const std::vector<Camera> cameras = frame_cameras(
-        frames, stage_.input().view, stage_.picture().width, stage_.picture().height,
+        frames, stage_.view(), stage_.picture().width, stage_.picture().height,
         [&](const ViewSettings& turned) { return stage_.framed(turned); }, stage_.path_places());
     std::vector<std::string> inputs = options().typed;
     inputs.insert(inputs.end(), stage_.input().files.begin(), stage_.input().files.end());

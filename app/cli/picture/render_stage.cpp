@@ -9,8 +9,10 @@
 #include <glm/common.hpp>
 #include <limits>
 
+#include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/mesh_options.h"
 #include "app/cli/options/picture_format.h"
+#include "app/cli/options/scene_input.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 
@@ -49,12 +51,16 @@ double reach_of(const PictureRequest& asked, double across, const Scene& scene, 
 
 void RenderStage::open() {
   Watch watch;
-  const MeshInput mesh(options_.mesh);
+  const MeshInput mesh(request_.input.mesh);
   const PictureFiles files = read_picture_files(options_.picture_files, options_.picture);
-  input_ = open_render_input(kind_, options_, size_);
+  input_ = open_render_input(request_);
+  keep_inputs(options_.output, input_.files);
+  if (request_.kind == InputKind::scene) check_effect(options_.picture, input_.subject.own);
   stop_if_interrupted();
   read_s_ = watch.lap();
-  places_.emplace(input_.raster, find_coordinates(options_.camera.coordinates), exaggeration());
+  view_ = chosen_view();
+  if (const std::string note = note_on_relief(); !note.empty()) input_.notes.push_back(note);
+  places_.emplace(input_.raster, find_coordinates(request_.camera.coordinates), exaggeration());
   input_.scene = mesh.with_mesh(std::move(input_.scene), *places_);
   input_.notes.insert(input_.notes.end(), mesh.notes().begin(), mesh.notes().end());
   if (input_.coarse_voxels) {
@@ -66,13 +72,43 @@ void RenderStage::open() {
   subject_ = input_.subject;
   subject_.files.ramp_stops = files.ramp_stops, subject_.files.detail_texture = files.detail_texture;
   subject_.size = size_;
-  if (options_.camera.top) subject_.map = map_box();
+  if (request_.camera.top) subject_.map = map_box();
   if (!options_.output.empty()) subject_.alpha = picture_format_of(options_.output).map;
   picture_ = picture(options_, nullptr);
   facts_.heights = subject_.heights;
-  facts_.area = options_.camera.area.has_value();
+  facts_.area = request_.camera.area.has_value();
   facts_.function_reach = input_.function_reach;
   build_s_ = watch.lap();
+}
+
+// --view replaces all of a function's own view, the view angle included.
+ViewSettings RenderStage::chosen_view() const {
+  const CameraOptions& camera = request_.camera;
+  const ViewSettings view = view_of(input_.camera, camera, look_of(options_.picture));
+  if (request_.kind != InputKind::function || camera.view) return view;
+  ViewSettings own = kFunctionView;
+  if (camera.fov_deg) own.fov_deg = view.fov_deg;
+  return own;
+}
+
+// For lit pictures in perspective.
+std::string RenderStage::note_on_relief() const {
+  const bool shows_relief = !request_.camera.top && entry_of(look_of(options_.picture)).lit;
+  if (request_.kind != InputKind::terrain || !shows_relief || request_.input.exaggeration.given) return {};
+  const ReliefRange& heights = input_.subject.heights;
+  return flatness_note(heights.high - heights.low, input_.subject.across);
+}
+
+bool RenderStage::serves(InputRequest asked) const {
+  InputRequest read = request_;
+  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least. With fewer
+  // samples the raster was read completely.
+  const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
+  if (4 * samples < Decimation{}.above) asked.input.raster.decimation = read.input.raster.decimation;
+  // NaN, a value of --nodata, differs from itself.
+  std::optional<double>&a = asked.input.raster.nodata, &b = read.input.raster.nodata;
+  if (a && b && std::isnan(*a) && std::isnan(*b)) a.reset(), b.reset();
+  return asked == read;
 }
 
 PictureSettings RenderStage::picture(const RenderOptions& options, const Camera* camera) const {
@@ -86,7 +122,7 @@ PictureSettings RenderStage::picture(const RenderOptions& options, const Camera*
 }
 
 void RenderStage::put_on_device(const Scene& scene) {
-  there_ = scene_on_device(options_.device, scene, options_.voxel_drawing);
+  there_ = scene_on_device(request_.input.device, scene, request_.voxel_drawing);
   scene_ = there_.scene;
 }
 
@@ -99,42 +135,18 @@ std::string RenderStage::on_device() const {
 WorldBox RenderStage::scene_box() const {
   const WorldBox& box = scene_.box();
   if (!box.empty() || !scene_.endless()) return picture_box(scene_);
-  return scene_.terrain() ? picture_box(scene_)
-                          : WorldBox{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
+  return scene_.terrain()
+             ? picture_box(scene_)
+             : WorldBox{input_.camera.target.value_or(dvec3(0.0)), input_.camera.target.value_or(dvec3(0.0))};
 }
 
 void RenderStage::finish(Camera& camera, const RenderOptions& options) {
   camera.set_reach(reach_of(options.picture, subject_.across, scene_, scene_box(), camera));
   // The judge must stop where the march does.
-  if (kind_ == InputKind::function && look_of(options.picture) == Look::error)
+  if (request_.kind == InputKind::function && look_of(options.picture) == Look::error)
     camera.set_reach(std::min(camera.reach(), input_.function_reach));
   if (input_.coarse_voxels)
     put_on_device(input_.scene.coarser(detail_of(camera, resolve(options.picture, subject_).aa)));
-}
-
-bool RenderStage::serves(const Declared& option) const {
-  switch (option.option.topic) {
-    case Topic::picture:
-      return option.name != "--no-plinth";
-    case Topic::ground:
-      // Functions have materials by --ramp, and volumes colours.
-      return option.name != "--overlay" && kind_ != InputKind::function && kind_ != InputKind::voxels;
-    case Topic::light:
-      // Rays over functions end where haze hides everything.
-      return option.name != "--haze" || kind_ != InputKind::function;
-    case Topic::water:
-    case Topic::fog:
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool RenderStage::serves(const RenderOptions& options) const {
-  if (kind_ != InputKind::terrain || reads_all_samples(options) == input_.all_samples) return true;
-  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least.
-  const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
-  return 4 * samples < Decimation{}.above;
 }
 
 Camera RenderStage::framed(const ViewSettings& view) {
@@ -150,7 +162,7 @@ double RenderStage::exaggeration() const {
 
 dvec3 RenderStage::typed_eye() const {
   constexpr std::string_view kEye = "--eye";
-  const TypedPlace& eye = *options_.camera.eye;
+  const TypedPlace& eye = *request_.camera.eye;
   if (eye.z) return places_->world(eye, input_.scene, kEye);
   return above_surface(places_->world(dvec3(eye.x, eye.y, 0), kEye), kEye);
 }
@@ -159,7 +171,7 @@ dvec3 RenderStage::typed_eye() const {
 dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
   dvec3 eye = places_->on_surface(at, input_.scene, what);
   if (picture_.water) eye.z = std::max(eye.z, picture_.water->level * exaggeration());
-  return eye + dvec3(0, 0, *options_.camera.eye_above * exaggeration());
+  return eye + dvec3(0, 0, *request_.camera.eye_above * exaggeration());
 }
 
 // The area that --top shows.
@@ -169,7 +181,7 @@ WorldBox RenderStage::map_box() const {
         "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
         "--eye and --target)");
   WorldBox box = picture_box(scene_);
-  const auto& area = options_.camera.area;
+  const auto& area = request_.camera.area;
   if (!area) return box;
   constexpr std::string_view kArea = "--area";
   const dvec3 low = places_->world(dvec3(area->west, area->south, 0), kArea),
@@ -181,26 +193,27 @@ WorldBox RenderStage::map_box() const {
 }
 
 Camera RenderStage::camera() {
-  const CameraOptions& asked = options_.camera;
+  const CameraOptions& asked = request_.camera;
+  const SceneCamera& own = input_.camera;
   const int width = picture_.width, height = picture_.height;
   if (asked.top) return Camera::top(map_box(), width, height);
   if (asked.eye) {
-    const dvec3 target = asked.target    ? places_->world(*asked.target, input_.scene, "--target")
-                         : input_.target ? *input_.target
-                                         : picture_box(scene_).middle();
-    return Camera::look_at(typed_eye(), target, input_.view.fov_deg, width, height);
+    const dvec3 target = asked.target ? places_->world(*asked.target, input_.scene, "--target")
+                         : own.target ? *own.target
+                                      : picture_box(scene_).middle();
+    return Camera::look_at(typed_eye(), target, view_.fov_deg, width, height);
   }
   if (!asked.view) {
-    if (input_.eye) return Camera::look_at(*input_.eye, *input_.target, input_.view.fov_deg, width, height);
-    if (picture_.look == Look::comanche && scene_.terrain() && !input_.viewed)
-      return flight_camera(*scene_.terrain(), picture_.grid_north_azimuth, input_.view.fov_deg, width, height);
+    if (own.eye) return Camera::look_at(*own.eye, *own.target, view_.fov_deg, width, height);
+    if (picture_.look == Look::comanche && scene_.terrain() && !own.azimuth_deg && !own.elevation_deg && !own.distance)
+      return flight_camera(*scene_.terrain(), picture_.grid_north_azimuth, view_.fov_deg, width, height);
   }
-  return framed(input_.view);
+  return framed(view_);
 }
 
 PathPlaces RenderStage::path_places() const {
   PathPlaces path{*places_, input_.scene};
-  if (options_.camera.eye_above)
+  if (request_.camera.eye_above)
     path.above_surface = [this](const dvec3& at, const std::string& what) { return above_surface(at, what); };
   return path;
 }

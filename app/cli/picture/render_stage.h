@@ -21,7 +21,7 @@ class RenderStage {
  public:
   /// The options must be consistent with each other; `size` is the default size of pictures.
   RenderStage(InputKind kind, RenderOptions options, ImageSize size = PictureSubject{}.size)
-      : options_(std::move(options)), kind_(kind), size_(size) {}
+      : options_(std::move(options)), request_(input_request(kind, options_)), size_(size) {}
   RenderStage(const RenderStage&) = delete;
   RenderStage& operator=(const RenderStage&) = delete;
 
@@ -29,17 +29,20 @@ class RenderStage {
   void open();
 
   const RenderOptions& options() const { return options_; }
-  InputKind kind() const { return kind_; }
+  /// Whether options with this request have the same scene, and picture() accepts them.
+  bool serves(InputRequest asked) const;
   /// The settings of the options, for any camera.
   const PictureSettings& picture() const { return picture_; }
-  /// The settings of the options, or of others that serves() accepts, for a camera; null: for any camera. Throws Error
-  /// naming a file, or a setting that is out of range.
+  /// The settings of the options, or of others whose request serves() accepts, for a camera; null: for any camera.
+  /// Throws Error naming a file, or a setting that is out of range.
   PictureSettings picture(const RenderOptions& options, const Camera* camera) const;
   PictureSettings picture(const Camera& camera) const { return picture(options_, &camera); }
   /// The scene as it was read. scene() may have coarser voxels or be on a device.
   const Scene& given_scene() const { return input_.scene; }
   const Scene& scene() const { return scene_; }
   const RenderInput& input() const { return input_; }
+  /// The view of the options, else of the input, else the default.
+  const ViewSettings& view() const { return view_; }
   const Places& places() const { return *places_; }
   const SceneOnDevice& there() const { return there_; }
   const BlankFacts& facts() const { return facts_; }
@@ -63,24 +66,21 @@ class RenderStage {
   void finish(Camera& camera) { finish(camera, options_); }
   void finish(Camera& camera, const RenderOptions& options);
 
-  /// Whether the opened input supports pictures with another value of the option.
-  bool serves(const Declared& option) const;
-  /// Whether it supports them with other options, which differ only by such options. They may need other samples of a
-  /// large raster.
-  bool serves(const RenderOptions& options) const;
-
  private:
+  ViewSettings chosen_view() const;
+  std::string note_on_relief() const;
   WorldBox map_box() const;
   void put_on_device(const Scene& scene);
   dvec3 typed_eye() const;
   dvec3 above_surface(const dvec3& at, std::string_view what) const;
 
   const RenderOptions options_;
-  InputKind kind_;
+  const InputRequest request_;
   ImageSize size_;
   PictureSubject subject_{};
   PictureSettings picture_{};
   RenderInput input_{Scene({}, {})};
+  ViewSettings view_{};
   std::optional<Places> places_;
   Scene scene_{{}, {}};
   SceneOnDevice there_{Scene({}, {}), {}};

@@ -34,6 +34,8 @@ struct VoxelRounding {
   bool each = false;  ///< rounds every voxel separately
 
   explicit operator bool() const { return radius > 0; }
+
+  bool operator==(const VoxelRounding&) const = default;
 };
 
 /// Throws Error naming the setting out of range.

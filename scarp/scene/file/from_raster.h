@@ -14,6 +14,8 @@ struct FieldOptions {
   Wrap wrap = Wrap::none;
   bool mirror = false;  ///< the raster and its mirror images as one (source/mirrored.h); `wrap` is periodic then
   bool solid = false;
+
+  bool operator==(const FieldOptions&) const = default;
 };
 
 /// Returns the surface of a raster, with the georeference's cell lengths on the ground. Moves the samples. Throws Error

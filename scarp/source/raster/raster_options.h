@@ -18,6 +18,8 @@ struct RasterWindow {
   int row = 0;   ///< >= 0
   int cols = 0;  ///< >= 1
   int rows = 0;  ///< >= 1
+
+  bool operator==(const RasterWindow&) const = default;
 };
 
 /// Outer edges of a raster (of its pixels, not its samples), in units of its CRS.
@@ -26,12 +28,16 @@ struct MapBounds {
   double south = 0;
   double east = 0;   ///< > west
   double north = 0;  ///< > south
+
+  bool operator==(const MapBounds&) const = default;
 };
 
 /// Heights of the smallest and the largest sample value.
 struct HeightRange {
   double low = 0;
   double high = 1;  ///< > low
+
+  bool operator==(const HeightRange&) const = default;
 };
 
 /// RasterOptions::crs for a raster without a CRS, regardless of the file: map units are metres.
@@ -41,6 +47,8 @@ inline constexpr std::string_view kNoCrs = "none";
 struct Decimation {
   std::int64_t above = 64'000'000;    ///< > 0
   std::int64_t samples = 16'000'000;  ///< at least 4, at most `above`
+
+  bool operator==(const Decimation&) const = default;
 };
 
 /// How to read a raster. Members that are set override the file.
@@ -63,6 +71,8 @@ struct RasterOptions {
   std::string channel;                   ///< channel of an EXR; default: the only one, else Y, else R
   std::string key;                       ///< array in a .npz; default: the only one with heights
   std::optional<Decimation> decimation;  ///< default: all samples
+
+  bool operator==(const RasterOptions&) const = default;
 };
 
 }  // namespace scarp

@@ -24,6 +24,8 @@ struct RawFormat {
   std::int64_t offset = 0;
   /// Whether the offset was given: the file may then continue after the samples.
   bool has_offset = false;
+
+  bool operator==(const RawFormat&) const = default;
 };
 
 /// Parses the text above. Throws Error, in one line with the text and the expected form: anything else, extents below

@@ -34,6 +34,8 @@ struct VoxInstance {
 struct VoxSceneOptions {
   int frame = 0;        ///< of animations, >= 0; beyond the last frame: see vox_animation.h
   bool hidden = false;  ///< whether to include hidden nodes and layers
+
+  bool operator==(const VoxSceneOptions&) const = default;
 };
 
 /// Returns instances in file order, which decides overlaps: from version 200 on the first wins, before that the last.
