@@ -22,9 +22,9 @@ export DISPLAY=:$(<display)
 
 difference() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.3f", b - a }'; }
 # The first picture of a kind that was presented after a time, for a generation above a number: its time.
-presented() { # STAGE_PATTERN AFTER ABOVE
-  awk -F, -v stage="$1" -v after="$2" -v above="$3" \
-    '$1 == "present" && $4 ~ stage && $2 > after && $3 > above { print $2; exit }' $times
+presented() { # PASS_PATTERN AFTER ABOVE
+  awk -F, -v pass="$1" -v after="$2" -v above="$3" \
+    '$1 == "present" && $4 ~ pass && $2 > after && $3 > above { print $2; exit }' $times
 }
 # Waits for the picture of the view as it is.
 until_converged() { # AFTER ABOVE

@@ -15,7 +15,7 @@ namespace scarp::viewer {
 namespace {
 
 constexpr std::array<const char*, 4> kModes = {"orbit", "fly", "walk", "top"};
-constexpr std::array<const char*, 4> kStages = {"moving", "full resolution", "refining", "complete"};
+constexpr std::array<const char*, 4> kPasses = {"moving", "full resolution", "refining", "complete"};
 // Pixels at a scale of 1.
 constexpr float kControlWidth = 160, kTextWidth = 350, kProfileHeight = 70, kMargin = 10;
 
@@ -186,13 +186,13 @@ void draw_cost(const PanelState& state) {
   if (!state.shown || state.shown->sides.empty()) return;
   const WorkedPicture& shown = *state.shown;
   const Image& image = shown.sides.front().image;
-  std::string stage = kStages[static_cast<std::size_t>(shown.stage)];
-  if (shown.stage == PictureStage::refining) {
-    stage += fmt::format(" (aa {}", shown.aa);
-    stage += shown.samples > 0 ? fmt::format(", {} samples)", shown.samples) : ")";
+  std::string pass = kPasses[static_cast<std::size_t>(shown.pass)];
+  if (shown.pass == PicturePass::refining) {
+    pass += fmt::format(" (aa {}", shown.aa);
+    pass += shown.samples > 0 ? fmt::format(", {} samples)", shown.samples) : ")";
   }
   const std::string time = state.times ? fmt::format(", {:.0f} ms", 1e3 * shown.seconds) : std::string();
-  ImGui::Text("%s, %d x %d%s%s", stage.c_str(), image.width, image.height, time.c_str(), state.busy ? " ..." : "");
+  ImGui::Text("%s, %d x %d%s%s", pass.c_str(), image.width, image.height, time.c_str(), state.busy ? " ..." : "");
   if (state.times && image.width > 0 && shown.seconds > 0) {
     constexpr double kMillion = 1e6;
     ImGui::Text("%.2g million pixels per second on %s",

@@ -17,7 +17,7 @@ constexpr int kLeastRows = 90;
 constexpr double kLeastSeconds = 1e-6;
 // Fraction of the measured rate: pictures of one view differ in cost.
 constexpr double kCaution = 0.8;
-// Between the costs of two stages at rest.
+// Between the costs of two passes at rest.
 constexpr int kGrowth = 4;
 
 class Watch {
@@ -96,9 +96,9 @@ int PictureWorker::rows_for(double pixels_per_second, int width, int height) {
 }
 
 std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings& settings) {
-  std::vector<PictureSettings> stages{settings};
+  std::vector<PictureSettings> passes{settings};
   // Other looks trace one ray per pixel.
-  if (!entry_of(settings.look).lit) return stages;
+  if (!entry_of(settings.look).lit) return passes;
   for (PictureSettings next = settings; next.aa > 1 || next.samples > 0;) {
     // Anti-aliasing multiplies the rays of samples, and costs as its square.
     if (next.aa > 1) {
@@ -107,10 +107,10 @@ std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings&
       next.samples /= kGrowth;
       if (next.samples < kGrowth) next.samples = 0;
     }
-    stages.push_back(next);
+    passes.push_back(next);
   }
-  std::reverse(stages.begin(), stages.end());
-  return stages;
+  std::reverse(passes.begin(), passes.end());
+  return passes;
 }
 
 bool PictureWorker::outdated(std::uint64_t generation) const {
@@ -153,7 +153,7 @@ bool PictureWorker::deliver(WorkedPicture worked) {
   return !failed;
 }
 
-// Returns whether the next stage is wanted, as the two below.
+// Returns whether the next pass is wanted, as the two below.
 bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t generation) {
   std::int64_t most_pixels = 0;  // of one side
   WorkedPicture worked = begun(request, generation);
@@ -180,24 +180,24 @@ bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t gene
 }
 
 bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t generation) {
-  std::vector<std::vector<PictureSettings>> stages;
+  std::vector<std::vector<PictureSettings>> passes;
   std::size_t count = 1;
   for (const PictureSide& side : request.sides) {
-    stages.push_back(refinement_of(side.settings));
-    count = std::max(count, stages.back().size());
+    passes.push_back(refinement_of(side.settings));
+    count = std::max(count, passes.back().size());
   }
   std::vector<Picture> before;
   for (std::size_t i = 0; i < count; ++i) {
     WorkedPicture worked = begun(request, generation);
-    worked.stage = i + 1 == count ? PictureStage::converged : i == 0 ? PictureStage::full : PictureStage::refining;
+    worked.pass = i + 1 == count ? PicturePass::converged : i == 0 ? PicturePass::full : PicturePass::refining;
     const Watch watch;
     const bool done = attempt(worked, [&] {
-      for (std::size_t s = 0; s < stages.size(); ++s) {
-        // All sides are complete at the last stage.
-        const std::size_t last = stages[s].size() - 1, left = count - 1 - i;
-        const PictureSettings& settings = stages[s][last - std::min(last, left)];
+      for (std::size_t s = 0; s < passes.size(); ++s) {
+        // All sides are complete at the last pass.
+        const std::size_t last = passes[s].size() - 1, left = count - 1 - i;
+        const PictureSettings& settings = passes[s][last - std::min(last, left)];
         if (i > 0 && left >= last) {
-          worked.sides.push_back(before[s]);  // its only stage so far
+          worked.sides.push_back(before[s]);  // its only pass so far
           continue;
         }
         if (s == 0) worked.aa = settings.aa, worked.samples = settings.samples;

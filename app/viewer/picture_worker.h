@@ -7,9 +7,9 @@
 //   at rest        the settings as requested: the picture of `scarp render`
 //   afterwards     some rays of the picture are judged
 //
-// A picture may have two sides, such as the same view by two marches. Each stage renders both.
+// A picture may have two sides, such as the same view by two marches. Each pass renders both.
 //
-// Each request has a number, its generation. A newer request cancels all stages of the older one except the first,
+// Each request has a number, its generation. A newer request cancels all passes of the older one except the first,
 // which is shown even if the view keeps moving.
 #pragma once
 
@@ -28,7 +28,7 @@
 
 namespace scarp::viewer {
 
-enum class PictureStage { moving, full, refining, converged };
+enum class PicturePass { moving, full, refining, converged };
 
 struct PictureSide {
   PictureSettings settings;  ///< of the converged picture
@@ -41,13 +41,13 @@ struct PictureSide {
 struct ViewRequest {
   std::function<Camera(int width, int height)> camera;
   std::vector<PictureSide> sides;  ///< at least one
-  bool moving = false;             ///< more requests will follow soon: only the first stage is started
+  bool moving = false;             ///< more requests will follow soon: only the first pass is started
 };
 
 struct WorkedPicture {
   std::vector<Picture> sides{};
-  PictureStage stage = PictureStage::moving;
-  int aa = 1, samples = 0;    ///< of this stage
+  PicturePass pass = PicturePass::moving;
+  int aa = 1, samples = 0;    ///< of this pass
   bool large_pixels = false;  ///< at least one side has the look comanche
   std::uint64_t generation = 0;
   double seconds = 0;
@@ -76,12 +76,12 @@ class PictureWorker {
   /// Whether there is work to do.
   bool busy() const;
 
-  /// Pictures per second of the first stage.
+  /// Pictures per second of the first pass.
   static constexpr double kFramesPerSecond = 30;
-  /// Rows of the first stage: as many as can be rendered in a frame, of at most `height`, by the pixels per second of
-  /// the last first stage.
+  /// Rows of the first pass: as many as can be rendered in a frame, of at most `height`, by the pixels per second of
+  /// the last first pass.
   static int rows_for(double pixels_per_second, int width, int height);
-  /// The settings of the stages at rest, from one sample per pixel to the requested ones. Each costs at least about
+  /// The settings of the passes at rest, from one sample per pixel to the requested ones. Each costs at least about
   /// four times the previous one, so all except the last together cost a third of the last.
   static std::vector<PictureSettings> refinement_of(const PictureSettings& settings);
 

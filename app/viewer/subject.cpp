@@ -48,8 +48,8 @@ Subject::Subject(Opening opening, int width, int height)
     : width_(width),
       height_(height),
       main_(open(std::move(opening))),
-      first_camera_(main_.opened->stage.camera()),
-      device_(stage().there().device.empty() ? "the CPU" : stage().there().device) {}
+      first_camera_(main_.opened->prepared.camera()),
+      device_(prepared().there().device.empty() ? "the CPU" : prepared().there().device) {}
 
 Subject::Side Subject::open(Opening opening) const {
   cli::RenderOptions options = *opening.options;
@@ -57,30 +57,30 @@ Subject::Side Subject::open(Opening opening) const {
   if (options.picture.width || entry_of(look_of(options.picture)).large_pixels)
     options.picture = for_window(options.picture, width_, height_);
   auto opened = std::make_shared<Opened>(opening.kind, std::move(options), film);
-  opened->stage.open();
+  opened->prepared.open();
   return side_by(opened, std::move(opening));
 }
 
 // The options of the opening then have the current values, for the controls.
 Subject::Side Subject::side_by(const std::shared_ptr<Opened>& opened, Opening opening) {
-  const cli::RenderStage& stage = opened->stage;
+  const cli::PreparedScene& prepared = opened->prepared;
   auto options = std::make_shared<const cli::RenderOptions>(*opening.options);
-  PictureSettings settings = stage.picture(*options, nullptr);
-  opening.options->picture = merged(options->picture, stage.input().subject.own);
+  PictureSettings settings = prepared.picture(*options, nullptr);
+  opening.options->picture = merged(options->picture, prepared.input().subject.own);
   return {std::move(opening), opened, std::move(options), std::move(settings)};
 }
 
 Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or_like) const {
   const cli::InputRequest request = input_request(opening.kind, *opening.options);
   for (const Side* side : {&like, or_like}) {
-    if (side && side->opened->stage.serves(request)) return side_by(side->opened, std::move(opening));
+    if (side && side->opened->prepared.serves(request)) return side_by(side->opened, std::move(opening));
   }
   return open(std::move(opening));
 }
 
 bool Subject::reopens(const OptionChange& change) const {
   const Opening next = changed(main_.opening, change);
-  return !stage().serves(input_request(next.kind, *next.options));
+  return !prepared().serves(input_request(next.kind, *next.options));
 }
 
 bool Subject::change(const OptionChange& change) {
@@ -120,7 +120,7 @@ OptionChange Subject::comparison() const {
 
 std::string Subject::comparable() const {
   if (compared_.starts_with("look")) return "look " + std::string(name_of(main_.options->picture.look));
-  return "march " + stage().given_scene().marches();
+  return "march " + prepared().given_scene().marches();
 }
 
 std::optional<Subject::Side> Subject::beside(const Side& main) const {
@@ -144,26 +144,26 @@ PictureSide Subject::picture_side(const Side& side, int width, int height) {
   shown->picture = for_window(shown->picture, width, height);
   const std::shared_ptr<const cli::RenderOptions> options = shown;
   PictureSide picture;
-  picture.settings = side.opened->stage.picture(*options, nullptr);
+  picture.settings = side.opened->prepared.picture(*options, nullptr);
   picture.render = [opened = side.opened, options](const Camera& seen, const PictureSettings& asked,
                                                    const Progress& progress) {
     Camera camera = seen;
-    cli::RenderStage& stage = opened->stage;
-    stage.finish(camera, *options);
+    cli::PreparedScene& prepared = opened->prepared;
+    prepared.finish(camera, *options);
     PictureSettings settings = asked;
-    settings.fog.visibility = stage.picture(*options, &camera).fog.visibility;
-    cli::look_through(stage.there(), camera, entry_of(settings.look).antialiased ? settings.aa : 1);
-    return render_picture(stage.scene(), camera, settings, progress);
+    settings.fog.visibility = prepared.picture(*options, &camera).fog.visibility;
+    cli::look_through(prepared.there(), camera, entry_of(settings.look).antialiased ? settings.aa : 1);
+    return render_picture(prepared.scene(), camera, settings, progress);
   };
   // Coarser voxels differ in every picture, and the look comanche has its own rays.
-  if (side.opened->stage.input().coarse_voxels || entry_of(picture.settings.look).large_pixels) return picture;
+  if (side.opened->prepared.input().coarse_voxels || entry_of(picture.settings.look).large_pixels) return picture;
   picture.judge = [opened = side.opened, options](const Camera& seen,
                                                   const Progress& progress) -> std::optional<JudgedRays> {
     Camera camera = seen;
     cli::RenderOptions judged = *options;
     judged.picture.look = Look::error;  // rays end where the judge's rays end
-    opened->stage.finish(camera, judged);
-    const Scene& scene = opened->stage.scene();
+    opened->prepared.finish(camera, judged);
+    const Scene& scene = opened->prepared.scene();
     if (!opened->judges) opened->judges = scene.judge();
     if (opened->judges->marches() == scene.marches()) return {};
     return judge_rays(scene, *opened->judges, sampled_rays(camera), kOneCell, progress);
@@ -185,14 +185,14 @@ std::vector<const Opening*> Subject::openings() const {
 
 std::vector<Control> Subject::controls(const std::optional<StepScale>& steps) const {
   ControlScales scales;
-  const cli::RenderInput& input = stage().input();
-  scales.exaggeration = stage().exaggeration();
+  const cli::RenderInput& input = prepared().input();
+  scales.exaggeration = prepared().exaggeration();
   scales.low = input.subject.heights.low / input.subject.exaggeration;
   scales.high = input.subject.heights.high / input.subject.exaggeration;
   if (input.subject.across > 0) scales.across = input.subject.across;
   if (steps) scales.steps_low = steps->low, scales.steps_high = steps->high;
   scales.marches = marches_for(opening().kind);
-  scales.march = stage().given_scene().marches();
+  scales.march = prepared().given_scene().marches();
   return controls_of(opening(), scales);
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/picture/render_stage.h"
+#include "app/cli/picture/prepared_scene.h"
 #include "app/viewer/controls.h"
 #include "app/viewer/opening.h"
 #include "app/viewer/picture_worker.h"
@@ -22,7 +22,7 @@ class Subject {
   Subject(Opening opening, int width, int height);
 
   const Opening& opening() const { return main_.opening; }
-  const cli::RenderStage& stage() const { return main_.opened->stage; }
+  const cli::PreparedScene& prepared() const { return main_.opened->prepared; }
   /// The settings of the picture, for any camera and of any size.
   const PictureSettings& settings() const { return main_.settings; }
   /// The camera of the options.
@@ -30,8 +30,8 @@ class Subject {
   /// Where rays are traced: a device's name, or "the CPU".
   const std::string& device() const { return device_; }
 
-  /// Changes an option. Returns whether the input was reopened, which replaces stage(). If it throws Error, nothing has
-  /// changed: also for options of the window itself, kWindowOptions.
+  /// Changes an option. Returns whether the input was reopened, which replaces prepared(). If it throws Error, nothing
+  /// has changed: also for options of the window itself, kWindowOptions.
   bool change(const OptionChange& change);
 
   /// Whether change() would reopen the input. Throws Error for a change that the options reject.
@@ -56,10 +56,11 @@ class Subject {
   std::vector<Control> controls(const std::optional<StepScale>& steps) const;
 
  private:
-  // The stage belongs to the worker once opened.
+  // The scene belongs to the worker once opened.
   struct Opened {
-    Opened(cli::InputKind kind, cli::RenderOptions options, ImageSize size) : stage(kind, std::move(options), size) {}
-    cli::RenderStage stage;
+    Opened(cli::InputKind kind, cli::RenderOptions options, ImageSize size)
+        : prepared(kind, std::move(options), size) {}
+    cli::PreparedScene prepared;
     std::optional<Scene> judges{};  // once requested
   };
   struct Side {

@@ -11,7 +11,7 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr std::array<const char*, 4> kStageNames = {"moving", "full", "refining", "converged"};
+constexpr std::array<const char*, 4> kPassNames = {"moving", "full", "refining", "converged"};
 
 // A clock shared with other programs.
 double unix_seconds() {
@@ -26,7 +26,7 @@ Timings::Timings(const std::string& file) {
   if (!file_) throw Error(fmt::format("'{}' cannot be written", file));
   // A line at a time: readers follow the file while the window is open.
   std::setvbuf(file_, nullptr, _IOLBF, BUFSIZ);
-  std::fputs("what,unix_s,generation,stage,columns,rows,render_s\n", file_);
+  std::fputs("what,unix_s,generation,pass,columns,rows,render_s\n", file_);
 }
 
 Timings::~Timings() {
@@ -41,7 +41,7 @@ void Timings::present(const WorkedPicture& shown) {
   if (!file_) return;
   const Image& image = shown.sides.front().image;
   fmt::print(file_, "present,{:.6f},{},{},{},{},{:.6f}\n", unix_seconds(), shown.generation,
-             kStageNames[static_cast<std::size_t>(shown.stage)], image.width, image.height, shown.seconds);
+             kPassNames[static_cast<std::size_t>(shown.pass)], image.width, image.height, shown.seconds);
 }
 
 }  // namespace scarp::viewer

@@ -103,10 +103,10 @@ class Viewer {
   }
 
   void navigate(const Camera& first) {
-    const cli::RenderInput& input = subject_->stage().input();
+    const cli::RenderInput& input = subject_->prepared().input();
     // The CPU traces rays of single points.
-    navigator_ = std::make_unique<Navigator>(subject_->stage().given_scene(), first, subject_->stage().view().fov_deg,
-                                             input.subject.across);
+    navigator_ = std::make_unique<Navigator>(subject_->prepared().given_scene(), first,
+                                             subject_->prepared().view().fov_deg, input.subject.across);
     frames_ = std::make_unique<ReadingFrames>(input.raster);
     camera_.reset();
     line_from_.reset();
@@ -151,12 +151,12 @@ class Viewer {
   }
   // `changed` returns whether the input was reopened; the view stays.
   void attempt(const std::function<bool()>& changed) {
-    const double height = subject_->stage().exaggeration();
+    const double height = subject_->prepared().exaggeration();
     const Pose pose = navigator_->pose();
     try {
       if (changed()) {
         navigate(subject_->first_camera());
-        navigator_->set_pose(with_heights_times(pose, subject_->stage().exaggeration() / height));
+        navigator_->set_pose(with_heights_times(pose, subject_->prepared().exaggeration() / height));
       }
       panel_.message.clear();
     } catch (const std::exception& error) {
@@ -296,8 +296,8 @@ class Viewer {
       return;
     }
     constexpr double kAbove = 1.7;  // metres, of eyes at both ends
-    const cli::RenderStage& stage = subject_->stage();
-    panel_.line = measure_line(stage.given_scene(), *line_from_, point, kAbove, stage.exaggeration());
+    const cli::PreparedScene& prepared = subject_->prepared();
+    panel_.line = measure_line(prepared.given_scene(), *line_from_, point, kAbove, prepared.exaggeration());
     line_from_.reset();
     panel_.measures = false;
   }
@@ -437,7 +437,7 @@ class Viewer {
   }
 
   bool is_complete() const {
-    return shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_;
+    return shown_ && shown_->pass == PicturePass::converged && shown_->generation == generation_;
   }
   // Independent of the displayed picture: recordings end at the same view, regardless of rendering times.
   bool compares() const { return !subject_->compared().empty(); }
@@ -458,9 +458,9 @@ class Viewer {
 
   std::optional<Reading> reading_at(const dvec2& at) const {
     if (!camera_) return {};
-    const cli::RenderStage& stage = subject_->stage();
+    const cli::PreparedScene& prepared = subject_->prepared();
     try {
-      return read_under(stage.given_scene(), *camera_, at, *frames_, stage.exaggeration());
+      return read_under(prepared.given_scene(), *camera_, at, *frames_, prepared.exaggeration());
     } catch (const Error&) {
       return {};  // fields available only on the device
     }
@@ -549,8 +549,8 @@ class Viewer {
   }
 
   std::string command(std::size_t side, const std::string& output) const {
-    return render_command(*subject_->openings()[side], subject_->stage().places(), navigator_->pose(), width_, height_,
-                          output);
+    return render_command(*subject_->openings()[side], subject_->prepared().places(), navigator_->pose(), width_,
+                          height_, output);
   }
 
   void copy_command() {

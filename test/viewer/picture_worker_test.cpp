@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The thread that renders a window's pictures: stages, interruption by newer requests, errors, and shutdown.
+// The thread that renders a window's pictures: passes, interruption by newer requests, errors, and shutdown.
 #include "app/viewer/picture_worker.h"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ class Worker : public testing::Test {
   std::optional<WorkedPicture> converged(PictureWorker& worker) {
     for (;;) {
       auto worked = next(worker);
-      if (!worked || worked->stage == PictureStage::converged) return worked;
+      if (!worked || worked->pass == PicturePass::converged) return worked;
     }
   }
 
@@ -78,7 +78,7 @@ class Worker : public testing::Test {
   std::chrono::milliseconds render_time_ = 5ms;
 };
 
-TEST_F(Worker, RunsAllStages) {
+TEST_F(Worker, RunsAllPasses) {
   const auto worker = make();
   const auto generation = worker->request(request(false));
   const auto last = converged(*worker);
@@ -120,7 +120,7 @@ TEST_F(Worker, SidesHaveTheirOwnSizes) {
   for (const dvec2& size : cameras) EXPECT_TRUE(size.x == 40 && size.y == 30) << size.x << ' ' << size.y;
 }
 
-TEST_F(Worker, SkipsIdenticalStages) {
+TEST_F(Worker, SkipsIdenticalPasses) {
   const auto worker = make();
   worker->request(request(false, 1, 0));
   ASSERT_TRUE(converged(*worker));
@@ -135,17 +135,17 @@ TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
   for (const auto& [aa, samples] : {std::pair{1, 0}, {2, 0}, {4, 64}, {3, 5}, {16, 0}, {1, 4096}}) {
     PictureSettings settings;
     settings.aa = aa, settings.samples = samples;
-    const std::vector<PictureSettings> stages = PictureWorker::refinement_of(settings);
-    EXPECT_EQ(cost_of(stages.front()), 1) << aa << ' ' << samples;
-    EXPECT_EQ(stages.back().aa, aa);
-    EXPECT_EQ(stages.back().samples, samples);
+    const std::vector<PictureSettings> passes = PictureWorker::refinement_of(settings);
+    EXPECT_EQ(cost_of(passes.front()), 1) << aa << ' ' << samples;
+    EXPECT_EQ(passes.back().aa, aa);
+    EXPECT_EQ(passes.back().samples, samples);
     double before_the_last = 0;
-    for (std::size_t i = 0; i + 1 < stages.size(); ++i) {
-      before_the_last += cost_of(stages[i]);
-      EXPECT_GT(cost_of(stages[i + 1]), 3 * cost_of(stages[i]));
+    for (std::size_t i = 0; i + 1 < passes.size(); ++i) {
+      before_the_last += cost_of(passes[i]);
+      EXPECT_GT(cost_of(passes[i + 1]), 3 * cost_of(passes[i]));
     }
     // For 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
-    EXPECT_LE(before_the_last, cost_of(stages.back()) / 3 + 3) << aa << ' ' << samples;
+    EXPECT_LE(before_the_last, cost_of(passes.back()) / 3 + 3) << aa << ' ' << samples;
   }
   PictureSettings counted;
   counted.look = Look::steps, counted.aa = 4, counted.samples = 64;
@@ -197,19 +197,19 @@ TEST_F(Worker, JudgesTheCompletePicture) {
   EXPECT_FALSE(worker->take_verdict());
 }
 
-TEST_F(Worker, RendersOnlyTheFirstStageWhileMoving) {
+TEST_F(Worker, RendersOnlyTheFirstPassWhileMoving) {
   const auto worker = make();
   worker->request(request(true));
   const auto worked = next(*worker);
   ASSERT_TRUE(worked);
-  EXPECT_EQ(worked->stage, PictureStage::moving);
+  EXPECT_EQ(worked->pass, PicturePass::moving);
   std::this_thread::sleep_for(30ms);
   EXPECT_FALSE(worker->busy());
   EXPECT_FALSE(worker->take());
 }
 
 TEST_F(Worker, NewerRequestCancelsTheOlderOne) {
-  render_time_ = 20s;  // the second stage would take that long
+  render_time_ = 20s;  // the second pass would take that long
   const auto worker = make();
   render_time_ = 5ms;
   worker->request(request(false));

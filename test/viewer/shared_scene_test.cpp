@@ -99,7 +99,7 @@ TEST(SharedScene, CanBeQueriedWhileRendering) {
   std::optional<WorkedPicture> worked;
   for (int i = 0; i < 60'000; ++i) {
     worked = worker.take();
-    if (worked && worked->generation == generation && worked->stage == PictureStage::converged) break;
+    if (worked && worked->generation == generation && worked->pass == PicturePass::converged) break;
     std::this_thread::sleep_for(1ms);
   }
   ASSERT_TRUE(worked);

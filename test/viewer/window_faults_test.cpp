@@ -145,7 +145,7 @@ TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
 }
 
 TEST_F(WindowFaults, CtrlCEndsItWhileConverging) {
-  // A picture that takes minutes. The window skips stages that were replaced before it could show them, the full one
+  // A picture that takes minutes. The window skips passes that were replaced before it could show them, the full one
   // too. Shells start background jobs with this signal ignored.
   std::ofstream(folder_ / "end.sh")
       << "env --default-signal=INT '" SCARP_VIEW

@@ -191,7 +191,7 @@ TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
     before = picture;
   }
   EXPECT_TRUE(subject.change({"--exaggeration", "3"}));
-  EXPECT_EQ(subject.stage().exaggeration(), 3);
+  EXPECT_EQ(subject.prepared().exaggeration(), 3);
 }
 
 // Sliders of these options wait for the release of the mouse.
@@ -300,7 +300,7 @@ TEST_F(WindowOptions, SingleRaysUseTheCpu) {
     GTEST_SKIP() << error.what();
   }
   const Camera camera = subject->first_camera();
-  const Scene& scene = subject->stage().given_scene();
+  const Scene& scene = subject->prepared().given_scene();
   Navigator navigator(scene, camera, 50, 64);
   Pose pose;
   pose.mode = MoveMode::walk, pose.eye = {32, 32, 100};
@@ -341,7 +341,7 @@ TEST_F(WindowOptions, LargePixelsFillTheWindow) {
     EXPECT_EQ(settings.height, one.height) << one.size;
     EXPECT_EQ(picture_of(subject).size(), static_cast<std::size_t>(3 * one.width * one.height * one.side * one.side))
         << one.size;
-    const std::string command = render_command(subject.opening(), subject.stage().places(), Pose{}, 64, 48, "a.png");
+    const std::string command = render_command(subject.opening(), subject.prepared().places(), Pose{}, 64, 48, "a.png");
     EXPECT_TRUE(command.starts_with("scarp render " + file + one.size)) << command;
   }
 }
@@ -355,7 +355,7 @@ TEST_F(WindowOptions, CompareOtherLooksWithLargePixels) {
     EXPECT_EQ(settings.width, look ? 64 : 16) << comparison;
     EXPECT_EQ(settings.height, look ? 48 : 12) << comparison;
     const std::string command =
-        render_command(*subject.openings()[1], subject.stage().places(), Pose{}, 64, 48, "a.png");
+        render_command(*subject.openings()[1], subject.prepared().places(), Pose{}, 64, 48, "a.png");
     EXPECT_NE(command.find(look ? " -o a.png --size 64x48 " : " --pixel-size=4 "), std::string::npos) << command;
     EXPECT_EQ(command.find("--lowres 16x12") == std::string::npos, look) << command;
   }
@@ -372,7 +372,7 @@ TEST_F(WindowOptions, CommandContainsTheMeshPosition) {
   triangle.close();
   Subject subject(with(opening_of(map), {{"--mesh", mesh}, {"--mesh-at", "1004,2002"}, {"--coords", "map"}}), 64, 48);
   const auto command = [&] {
-    return render_command(subject.opening(), subject.stage().places(), Pose{}, 80, 40, "a.png");
+    return render_command(subject.opening(), subject.prepared().places(), Pose{}, 80, 40, "a.png");
   };
   EXPECT_TRUE(command().starts_with("scarp render " + map + " --mesh=" + mesh + " --mesh-at=3,1 -o a.png"))
       << command();

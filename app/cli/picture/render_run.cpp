@@ -16,7 +16,7 @@
 #include "app/cli/picture/figure.h"
 #include "app/cli/picture/findings.h"
 #include "app/cli/picture/picture_output.h"
-#include "app/cli/picture/render_stage.h"
+#include "app/cli/picture/prepared_scene.h"
 #include "app/cli/picture/seen.h"
 #include "app/cli/progress.h"
 #include "app/options/numbers.h"
@@ -29,16 +29,16 @@ namespace {
 
 class Render {
  public:
-  Render(InputKind kind, RenderOptions options) : stage_(kind, std::move(options)) {}
+  Render(InputKind kind, RenderOptions options) : prepared_(kind, std::move(options)) {}
 
   void run() {
     // Reserved first, so that an unwritable path is reported before the work.
     ReplaceFile file(options().output);
-    stage_.open();
+    prepared_.open();
     if (options().frames.several()) return make_all();
-    Camera camera = stage_.camera();
-    stage_.finish(camera);
-    const PictureSettings settings = stage_.picture(camera);
+    Camera camera = prepared_.camera();
+    prepared_.finish(camera);
+    const PictureSettings settings = prepared_.picture(camera);
     const auto begin = std::chrono::steady_clock::now();
     const Picture picture = make(file, options().output, settings, camera, terminal_progress("render"));
     const double render_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -46,86 +46,87 @@ class Render {
     tell_of_contours(settings, camera);
     if (!blank_.tell()) tell_if_buried(camera, "the eye");
     fmt::print("{}: {} x {} pixels; {}read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options().output,
-               written_.width, written_.height, stage_.input().march.empty() ? "" : stage_.input().march + "; ",
-               stage_.read_seconds(), stage_.build_seconds(), render_s, stage_.on_device());
+               written_.width, written_.height, prepared_.input().march.empty() ? "" : prepared_.input().march + "; ",
+               prepared_.read_seconds(), prepared_.build_seconds(), render_s, prepared_.on_device());
     print_findings(picture);
   }
 
  private:
-  const RenderOptions& options() const { return stage_.options(); }
+  const RenderOptions& options() const { return prepared_.options(); }
   const PictureFormat& format() const { return picture_format_of(options().output); }
 
   void make_all() {
     const FrameOptions& frames = options().frames;
     const std::vector<Camera> cameras = frame_cameras(
-        frames, stage_.view(), stage_.picture().width, stage_.picture().height,
-        [&](const ViewSettings& turned) { return stage_.framed(turned); }, stage_.path_places());
+        frames, prepared_.view(), prepared_.picture().width, prepared_.picture().height,
+        [&](const ViewSettings& turned) { return prepared_.framed(turned); }, prepared_.path_places());
     std::vector<std::string> inputs = options().typed;
-    inputs.insert(inputs.end(), stage_.input().files.begin(), stage_.input().files.end());
+    inputs.insert(inputs.end(), prepared_.input().files.begin(), prepared_.input().files.end());
     // Without --overwrite no file is overwritten.
     for (int i = 0; frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options().output, i), inputs);
     make_frames(frames, options().output, cameras, [&](Camera camera, const std::string& name) {
-      stage_.finish(camera);
+      prepared_.finish(camera);
       ReplaceFile file(name);
       const int blank_before = blank_.count();
-      make(file, name, stage_.picture(), camera, [](double) { return caught_signal() == 0; });
+      make(file, name, prepared_.picture(), camera, [](double) { return caught_signal() == 0; });
       if (!format().layers && blank_.count() == blank_before)
         tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
     tell_notes();
-    if (!cameras.empty()) tell_of_contours(stage_.picture(), cameras.front());
+    if (!cameras.empty()) tell_of_contours(prepared_.picture(), cameras.front());
     blank_.tell();
   }
 
   // Renders and writes one picture. Returns the findings; layers have none.
   Picture make(ReplaceFile& file, const std::string& name, const PictureSettings& settings, const Camera& camera,
                const Progress& progress) {
-    look_through(stage_.there(), camera, entry_of(settings.look).antialiased || format().layers ? settings.aa : 1);
+    look_through(prepared_.there(), camera, entry_of(settings.look).antialiased || format().layers ? settings.aa : 1);
     if (format().layers) {
-      const PictureLayers layers = render_layers(stage_.scene(), camera, settings, progress);
+      const PictureLayers layers = render_layers(prepared_.scene(), camera, settings, progress);
       look_if_blank(name, settings, camera, has_one_colour(layers));
       write_layers(file, name, layers, camera, depth_range_of(options().depth));
       written_ = {layers.width, layers.height};
       return {};
     }
-    const FigureSubject subject{stage_.scene(),
+    const FigureSubject subject{prepared_.scene(),
                                 camera,
                                 options().camera.top,
-                                stage_.input().numbers,
-                                stage_.input().raster.georeference,
-                                stage_.input().raster.cols,
-                                stage_.input().raster.rows};
+                                prepared_.input().numbers,
+                                prepared_.input().raster.georeference,
+                                prepared_.input().raster.cols,
+                                prepared_.input().raster.rows};
     std::optional<Figure> figure = figure_of(options().figure, settings, subject);
-    Picture picture = render_picture(stage_.scene(), camera, settings, progress);
+    Picture picture = render_picture(prepared_.scene(), camera, settings, progress);
     // The look of errors should be green throughout.
     look_if_blank(name, settings, camera, settings.look != Look::error && has_one_colour(picture.image));
     add_legend(options().figure, settings, subject, picture, figure);
     std::optional<MapPlace> place;
     if (format().map) {
-      place = place_of_map(camera, picture.image.width, picture.image.height, stage_.input().raster.georeference,
-                           stage_.input().raster.cols, stage_.input().raster.rows);
+      place = place_of_map(camera, picture.image.width, picture.image.height, prepared_.input().raster.georeference,
+                           prepared_.input().raster.cols, prepared_.input().raster.rows);
     }
     written_ = write_picture(file, name, format(), picture.image, figure, place, options().figure.dots_per_inch);
     return picture;
   }
 
   void look_if_blank(const std::string& name, const PictureSettings& settings, const Camera& camera, bool one_colour) {
-    BlankFacts facts = stage_.facts();
+    BlankFacts facts = prepared_.facts();
     facts.one_colour = one_colour;
-    blank_.add(name, why_blank(stage_.scene(), camera, settings, facts));
+    blank_.add(name, why_blank(prepared_.scene(), camera, settings, facts));
   }
 
   // Last: what fails prints one line alone.
   void tell_notes() const {
-    for (const std::string& note : stage_.input().notes) fmt::print(stderr, "note: {}\n", note);
-    if (const std::string note = note_on_low_water(stage_.scene(), stage_.picture(), stage_.facts()); !note.empty())
+    for (const std::string& note : prepared_.input().notes) fmt::print(stderr, "note: {}\n", note);
+    if (const std::string note = note_on_low_water(prepared_.scene(), prepared_.picture(), prepared_.facts());
+        !note.empty())
       fmt::print(stderr, "note: {}\n", note);
-    if (format().map && !stage_.input().raster.georeference.present)
+    if (format().map && !prepared_.input().raster.georeference.present)
       fmt::print(stderr, "note: the input has no georeference, nor has {}\n", options().output);
-    if (stage_.raised() > 0) {
+    if (prepared_.raised() > 0) {
       fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
-                 options().frames.several() ? "up to " : "", metres_text(stage_.raised()));
+                 options().frames.several() ? "up to " : "", metres_text(prepared_.raised()));
     }
   }
 
@@ -133,12 +134,12 @@ class Render {
   void tell_of_contours(const PictureSettings& settings, const Camera& camera) const {
     const double interval = settings.ground.contours;
     if (!(interval > 0)) return;
-    const PaintExtent extent = paint_extent(stage_.scene(), settings);
+    const PaintExtent extent = paint_extent(prepared_.scene(), settings);
     const double low = extent.low / extent.exaggeration, high = extent.high / extent.exaggeration;
     if (std::ceil(low / interval) > std::floor(high / interval)) {
       fmt::print(stderr, "note: --contours {:g}: no line lies between {:.6g} and {:.6g} m, the heights of the scene\n",
                  interval, low, high);
-    } else if (const auto better = better_contours(stage_.scene(), camera, settings)) {
+    } else if (const auto better = better_contours(prepared_.scene(), camera, settings)) {
       fmt::print(stderr,
                  "note: --contours {:g}: the lines are closer than pixels and left out nearly everywhere; --contours "
                  "{:g} shows them\n",
@@ -148,12 +149,12 @@ class Render {
 
   // From below the ground its underside is invisible.
   void tell_if_buried(const Camera& camera, const std::string& whose) const {
-    const auto ground = stage_.scene().height(camera.eye().x, camera.eye().y);
+    const auto ground = prepared_.scene().height(camera.eye().x, camera.eye().y);
     if (!ground || camera.eye().z >= *ground) return;
     fmt::print(stderr, "note: {} is {} m below the ground\n", whose, metres_text(*ground - camera.eye().z));
   }
 
-  RenderStage stage_;
+  PreparedScene prepared_;
   WrittenSize written_;
   BlankPictures blank_;
 };

@@ -53,15 +53,15 @@ void FrameTile::add(std::vector<Seen>& all, std::size_t point, const Ray& ray) {
 }
 
 bool FrameTile::next(RayRound& round) {
-  if (stage_ == Stage::look) {
+  if (round_ == RoundKind::look) {
     if (!asked_ && look(round)) return true;
     take_look(round);
-    stage_ = Stage::sent;
+    round_ = RoundKind::sent;
     if (ask_sent(round)) return true;
   }
-  if (stage_ == Stage::sent) {
+  if (round_ == RoundKind::sent) {
     take_sent(round);
-    stage_ = Stage::light;
+    round_ = RoundKind::light;
     return ask_light(round);
   }
   take_light(round);

@@ -69,7 +69,7 @@ class FrameTile {
     SceneSurface surface;
     LightRays asked;
   };
-  enum class Stage { look, sent, light };
+  enum class RoundKind { look, sent, light };
 
   // Pictures of iterations: there are no colours.
   bool shows_steps() const;
@@ -106,7 +106,7 @@ class FrameTile {
   std::vector<MirrorPoint> mirrors_;
   std::vector<const Hit*> sent_from_;                    // surfaces on which rays of sent_ start; null: those of water
   std::vector<std::optional<Water::Meeting>> meetings_;  // by point; empty without water
-  Stage stage_ = Stage::look;
+  RoundKind round_ = RoundKind::look;                    // of the current round
   bool asked_ = false;
   std::size_t asked_points_ = 0;
   std::vector<Open> open_;

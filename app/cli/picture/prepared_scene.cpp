@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/picture/render_stage.h"
+#include "app/cli/picture/prepared_scene.h"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ double reach_of(const PictureRequest& asked, double across, const Scene& scene, 
 
 }  // namespace
 
-void RenderStage::open() {
+void PreparedScene::open() {
   Watch watch;
   const MeshInput mesh(request_.input.mesh);
   const PictureFiles files = read_picture_files(options_.picture_files, options_.picture);
@@ -82,7 +82,7 @@ void RenderStage::open() {
 }
 
 // --view replaces all of a function's own view, the view angle included.
-ViewSettings RenderStage::chosen_view() const {
+ViewSettings PreparedScene::chosen_view() const {
   const CameraOptions& camera = request_.camera;
   const ViewSettings view = view_of(input_.camera, camera, look_of(options_.picture));
   if (request_.kind != InputKind::function || camera.view) return view;
@@ -92,14 +92,14 @@ ViewSettings RenderStage::chosen_view() const {
 }
 
 // For lit pictures in perspective.
-std::string RenderStage::note_on_relief() const {
+std::string PreparedScene::note_on_relief() const {
   const bool shows_relief = !request_.camera.top && entry_of(look_of(options_.picture)).lit;
   if (request_.kind != InputKind::terrain || !shows_relief || request_.input.exaggeration.given) return {};
   const ReliefRange& heights = input_.subject.heights;
   return flatness_note(heights.high - heights.low, input_.subject.across);
 }
 
-bool RenderStage::serves(InputRequest asked) const {
+bool PreparedScene::serves(InputRequest asked) const {
   InputRequest read = request_;
   // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least. With fewer
   // samples the raster was read completely.
@@ -111,7 +111,7 @@ bool RenderStage::serves(InputRequest asked) const {
   return asked == read;
 }
 
-PictureSettings RenderStage::picture(const RenderOptions& options, const Camera* camera) const {
+PictureSettings PreparedScene::picture(const RenderOptions& options, const Camera* camera) const {
   PictureSubject subject = subject_;
   if (camera) subject.box = scene_box();
   if (options.picture_files != options_.picture_files) {
@@ -121,18 +121,18 @@ PictureSettings RenderStage::picture(const RenderOptions& options, const Camera*
   return resolve(options.picture, subject, camera);
 }
 
-void RenderStage::put_on_device(const Scene& scene) {
+void PreparedScene::put_on_device(const Scene& scene) {
   there_ = scene_on_device(request_.input.device, scene, request_.voxel_drawing);
   scene_ = there_.scene;
 }
 
-std::string RenderStage::on_device() const {
+std::string PreparedScene::on_device() const {
   if (there_.device.empty()) return {};
   const std::string drawn = drawn_by(there_);
   return fmt::format(", on {}{}{}", there_.device, drawn.empty() ? "" : ", ", drawn);
 }
 
-WorldBox RenderStage::scene_box() const {
+WorldBox PreparedScene::scene_box() const {
   const WorldBox& box = scene_.box();
   if (!box.empty() || !scene_.endless()) return picture_box(scene_);
   return scene_.terrain()
@@ -140,7 +140,7 @@ WorldBox RenderStage::scene_box() const {
              : WorldBox{input_.camera.target.value_or(dvec3(0.0)), input_.camera.target.value_or(dvec3(0.0))};
 }
 
-void RenderStage::finish(Camera& camera, const RenderOptions& options) {
+void PreparedScene::finish(Camera& camera, const RenderOptions& options) {
   camera.set_reach(reach_of(options.picture, subject_.across, scene_, scene_box(), camera));
   // The judge must stop where the march does.
   if (request_.kind == InputKind::function && look_of(options.picture) == Look::error)
@@ -149,18 +149,18 @@ void RenderStage::finish(Camera& camera, const RenderOptions& options) {
     put_on_device(input_.scene.coarser(detail_of(camera, resolve(options.picture, subject_).aa)));
 }
 
-Camera RenderStage::framed(const ViewSettings& view) {
+Camera PreparedScene::framed(const ViewSettings& view) {
   const FieldView found = input_.framed(scene_, view, picture_);
   raised_ = std::max(raised_, found.raised);
   return found.camera;
 }
 
-double RenderStage::exaggeration() const {
+double PreparedScene::exaggeration() const {
   const HeightField* field = input_.scene.terrain();
   return field ? field->settings().exaggeration : 1;
 }
 
-dvec3 RenderStage::typed_eye() const {
+dvec3 PreparedScene::typed_eye() const {
   constexpr std::string_view kEye = "--eye";
   const TypedPlace& eye = *request_.camera.eye;
   if (eye.z) return places_->world(eye, input_.scene, kEye);
@@ -168,14 +168,14 @@ dvec3 RenderStage::typed_eye() const {
 }
 
 // --eye-above over the surface at (x, y) of `at`, or over water that covers it.
-dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
+dvec3 PreparedScene::above_surface(const dvec3& at, std::string_view what) const {
   dvec3 eye = places_->on_surface(at, input_.scene, what);
   if (picture_.water) eye.z = std::max(eye.z, picture_.water->level * exaggeration());
   return eye + dvec3(0, 0, *request_.camera.eye_above * exaggeration());
 }
 
 // The area that --top shows.
-WorldBox RenderStage::map_box() const {
+WorldBox PreparedScene::map_box() const {
   if (scene_.box().empty() && scene_.endless() && !scene_.terrain())
     throw Error(
         "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
@@ -192,7 +192,7 @@ WorldBox RenderStage::map_box() const {
   return box;
 }
 
-Camera RenderStage::camera() {
+Camera PreparedScene::camera() {
   const CameraOptions& asked = request_.camera;
   const SceneCamera& own = input_.camera;
   const int width = picture_.width, height = picture_.height;
@@ -211,7 +211,7 @@ Camera RenderStage::camera() {
   return framed(view_);
 }
 
-PathPlaces RenderStage::path_places() const {
+PathPlaces PreparedScene::path_places() const {
   PathPlaces path{*places_, input_.scene};
   if (request_.camera.eye_above)
     path.above_surface = [this](const dvec3& at, const std::string& what) { return above_surface(at, what); };

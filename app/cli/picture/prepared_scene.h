@@ -17,13 +17,13 @@
 
 namespace scarp::cli {
 
-class RenderStage {
+class PreparedScene {
  public:
   /// The options must be consistent with each other; `size` is the default size of pictures.
-  RenderStage(InputKind kind, RenderOptions options, ImageSize size = PictureSubject{}.size)
+  PreparedScene(InputKind kind, RenderOptions options, ImageSize size = PictureSubject{}.size)
       : options_(std::move(options)), request_(input_request(kind, options_)), size_(size) {}
-  RenderStage(const RenderStage&) = delete;
-  RenderStage& operator=(const RenderStage&) = delete;
+  PreparedScene(const PreparedScene&) = delete;
+  PreparedScene& operator=(const PreparedScene&) = delete;
 
   /// Reads the inputs and builds their accelerators. Throws Error naming the file.
   void open();
