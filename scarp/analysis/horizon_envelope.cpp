@@ -16,7 +16,7 @@ constexpr double kBeside = 2;
 
 }  // namespace
 
-HorizonEnvelope::HorizonEnvelope(const HorizonJudge& judge) : judge_(judge) {
+HorizonEnvelope::HorizonEnvelope(const HorizonEdges& edges) : edges_(edges) {
   Piece nothing;
   nothing.begin = -kInfinity;
   nothing.line.s0 = -kInfinity;
@@ -61,7 +61,7 @@ HorizonEnvelope::Answer HorizonEnvelope::test(std::size_t i, double u, double s,
     if (difference > bound) return true;
     if (difference < -(bound + piece.slack)) return false;
     if (piece.slack > 0) visible = false;
-    return bound > 0 && judge_.edge_above_target(piece.line, target) > 0;
+    return bound > 0 && edges_.edge_above_target(piece.line, target) > 0;
   };
   const Piece& piece = pieces_[i];
   if (blocks(piece)) return Answer::blocked;
@@ -86,7 +86,7 @@ HorizonEnvelope::Comparison HorizonEnvelope::compare(const HorizonSegment& segme
     const auto own_end = [&](HorizonSample sample) {
       if (blurred(i, u)) return kUnsure;
       if (sample == piece.line.from || sample == piece.line.to) return 0;
-      return -judge_.edge_above(piece.line, sample);
+      return -edges_.edge_above(piece.line, sample);
     };
     if (u == segment.begin && !segment.begin_cut) {
       result.sign = own_end(segment.first);
@@ -94,7 +94,7 @@ HorizonEnvelope::Comparison HorizonEnvelope::compare(const HorizonSegment& segme
       result.sign = own_end(segment.last);
     } else if (u == piece.begin ? piece.blur == 0 : u == pieces_[i + 1].begin && pieces_[i + 1].blur == 0) {
       for (const HorizonSample& sample : {piece.line.from, piece.line.to}) {
-        if (judge_.position(sample) == u) result.sign = judge_.edge_above(segment.line, sample);
+        if (edges_.position(sample) == u) result.sign = edges_.edge_above(segment.line, sample);
       }
     }
   }

@@ -57,9 +57,9 @@ struct HorizonSegment {
 };
 
 /// Exact answers about edges and samples.
-class HorizonJudge {
+class HorizonEdges {
  public:
-  virtual ~HorizonJudge() = default;
+  virtual ~HorizonEdges() = default;
   /// Returns the sign of the edge's height minus the sample's, at the sample's position within the edge.
   virtual int edge_above(const HorizonLine& edge, HorizonSample sample) const = 0;
   /// Returns the same for the target on a sample.
@@ -78,8 +78,8 @@ class HorizonEnvelope {
     double blur = 0;   ///< uncertainty of `begin`; 0 for a sample's position
   };
 
-  /// `judge` must outlive the envelope.
-  explicit HorizonEnvelope(const HorizonJudge& judge);
+  /// `edges` must outlive the envelope.
+  explicit HorizonEnvelope(const HorizonEdges& edges);
 
   /// Pieces from u = -infinity on; each ends where the next starts. The last is a sentinel at +infinity.
   const std::vector<Piece>& pieces() const { return pieces_; }
@@ -110,7 +110,7 @@ class HorizonEnvelope {
                     const Comparison& right);
   bool blurred(std::size_t piece, double u) const;
 
-  const HorizonJudge& judge_;
+  const HorizonEdges& edges_;
   std::vector<Piece> pieces_, merged_;
 };
 

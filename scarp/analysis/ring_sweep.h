@@ -85,14 +85,14 @@ class RingSweep {
   static constexpr int kStrip = BlockMaxima::kSide;  // rings loaded together: a line of the cache if they are columns
 
   /// [low, high]: the part of the horizon that counts. `target_raise`: height of targets above samples.
-  RingSweep(const SampleGrid<T>& grid, const RingFrame& frame, const HorizonJudge& judge, double low, double high,
+  RingSweep(const SampleGrid<T>& grid, const RingFrame& frame, const HorizonEdges& edges, double low, double high,
             double target_raise)
       : grid_(grid),
         frame_(frame),
         low_(low),
         high_(high),
         target_raise_(target_raise),
-        horizon_(judge),
+        horizon_(edges),
         bins_(low, high),
         stride_(((frame.sides() + kLine - 1) / kLine | 1) * kLine),
         heights_(static_cast<std::size_t>(kStrip + 1) * static_cast<std::size_t>(stride_)),

@@ -16,7 +16,7 @@ inline double sight_u(const RingFrame& frame, HorizonSample s) {
   return static_cast<double>(frame.y(s.side)) / frame.x(s.ring);
 }
 
-class SightEdges : public HorizonJudge {
+class SightEdges : public HorizonEdges {
  public:
   SightEdges(const Viewpoint& view, const RingFrame& frame) : view_(view), frame_(frame) {}
 

@@ -32,7 +32,7 @@ struct SweptSun {
   static Node origin(const HeightField& field, const SunRay& ray);
 };
 
-class SunEdges : public HorizonJudge {
+class SunEdges : public HorizonEdges {
  public:
   SunEdges(const SightGround& ground, const SweptSun& sun) : ground_(ground), sun_(sun) {}
 

@@ -159,7 +159,7 @@ class Scene {
   std::uint32_t terrain_object() const { return terrain_object_; }
   /// Returns the side of the smallest cell or voxel of all objects, in metres; 0 if none has cells or voxels.
   double cell_side() const;
-  /// Returns the same objects with reference marches (SceneField::judge()). The result has no back end.
+  /// Returns the same objects with marches that judge others (SceneField::judge()). The result has no back end.
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;

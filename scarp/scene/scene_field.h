@@ -127,7 +127,7 @@ class SceneField {
   virtual std::int64_t elements() const { return 0; }
   /// Returns a version of the field with voxels 2^level times as large; null: the field itself.
   virtual std::shared_ptr<const SceneField> coarser(int) const { return nullptr; }
-  /// Returns the same field with its reference march, which loses no hit. Null if it already uses it.
+  /// Returns the same field with the march that judges others: it loses no hit. Null if it already uses it.
   virtual std::shared_ptr<const SceneField> judge() const { return nullptr; }
 
   /// Number of edits of the samples or voxels of the field so far; nullopt for fields that cannot be edited.

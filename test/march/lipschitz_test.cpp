@@ -81,11 +81,11 @@ TEST(Lipschitz, KeepsItsGuaranteeWithASmallerFactor) {
   EXPECT_EQ(lipschitz_guarantee(proven.lipschitz, target.slope), Guarantee::conservative);
   EXPECT_EQ(lipschitz_caveat(proven.lipschitz, target.slope), "");
   for (const Ray& ray : rays_over_waves(200)) {
-    const Hit judge = march_exhaustive(target, ray), hit = march_lipschitz(target, ray, smaller);
+    const Hit oracle = march_exhaustive(target, ray), hit = march_lipschitz(target, ray, smaller);
     EXPECT_EQ(march_lipschitz(target, ray, proven), march_lipschitz(target, ray));
-    EXPECT_TRUE(hit.status == judge.status || hit.status == HitStatus::exhausted);
+    EXPECT_TRUE(hit.status == oracle.status || hit.status == HitStatus::exhausted);
     if (hit) {
-      EXPECT_LE(hit.t, judge.t);
+      EXPECT_LE(hit.t, oracle.t);
     }
   }
 }
@@ -93,7 +93,7 @@ TEST(Lipschitz, KeepsItsGuaranteeWithASmallerFactor) {
 TEST(Lipschitz, NeverPassesTheSurface) {
   const int kFields = cases(40, 10, 4);
   constexpr int kRays = 50;
-  int hits = 0, exhausted = 0, judged_hits = 0;
+  int hits = 0, exhausted = 0, oracle_hits = 0;
   for (const FieldKind& fields : spiteful_fields()) {
     for (const RayKind& rays : spiteful_rays()) {
       // Their squares overflow: the sampling marches are not made for them.
@@ -107,13 +107,13 @@ TEST(Lipschitz, NeverPassesTheSurface) {
           const Ray ray = rays.make(field, random);
           // From the surface the first cell is skipped.
           if (ray.start == RayStart::on_surface) continue;
-          const Hit hit = march_lipschitz(target, ray), judge = march_exhaustive(target, ray);
-          hits += bool(hit), exhausted += hit.status == HitStatus::exhausted, judged_hits += bool(judge);
-          if (!judge || hit.status == HitStatus::exhausted || hit.status == HitStatus::below) continue;
+          const Hit hit = march_lipschitz(target, ray), oracle = march_exhaustive(target, ray);
+          hits += bool(hit), exhausted += hit.status == HitStatus::exhausted, oracle_hits += bool(oracle);
+          if (!oracle || hit.status == HitStatus::exhausted || hit.status == HitStatus::below) continue;
           // 2^-18 of a cell: the distance that a ray leaving a block may pass at the rim of a hole. It may miss a touch
-          // that the judge allows within rounding (32 roundings, as in oracle_test.cpp).
+          // that the oracle hits within rounding (32 roundings, as in oracle_test.cpp).
           const double cell = std::max(field.settings().cell_x, field.settings().cell_y) / length(ray.direction);
-          if (hit && hit.t <= judge.t + 0x1p-18 * cell) continue;
+          if (hit && hit.t <= oracle.t + 0x1p-18 * cell) continue;
           Ray before = ray;
           before.t_max = hit ? std::min(hit.t, ray.t_max) : ray.t_max;
           const auto is_under = [&](double t) {
@@ -123,16 +123,16 @@ TEST(Lipschitz, NeverPassesTheSurface) {
             return ground && p.z < *ground - 0x1p-48 * reach * (1 + target.slope);
           };
           // From below the ground it may pass a short stretch above it.
-          const double later = judge.t + 0x1p-10 * cell;
-          EXPECT_FALSE(is_under(later) && later < before.t_max && !is_under(judge.t - 0x1p-10 * cell))
-              << fields.name << ", " << rays.name << ": passed t = " << judge.t << ", got "
+          const double later = oracle.t + 0x1p-10 * cell;
+          EXPECT_FALSE(is_under(later) && later < before.t_max && !is_under(oracle.t - 0x1p-10 * cell))
+              << fields.name << ", " << rays.name << ": passed t = " << oracle.t << ", got "
               << (hit ? fmt::format("{}", hit.t) : "a miss");
         }
       }
     }
   }
   // Most hits are found, not given up.
-  EXPECT_GT(hits, judged_hits / 2);
+  EXPECT_GT(hits, oracle_hits / 2);
   RecordProperty("hits", hits);
   RecordProperty("exhausted", exhausted);
 }

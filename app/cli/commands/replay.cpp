@@ -34,7 +34,7 @@ class Replay {
   explicit Replay(const RayDump& dump)
       : dump_(dump), pyramid_(dump.field), target_{&dump.field, &pyramid_, slope_bound(dump.field)} {
     lines_.push_back({"march", "guarantee", "status", "t", "cell", "u", "v", "clearance", "any", "hits", ""});
-    judge_ = march_exhaustive(target_, dump.ray);
+    oracle_ = march_exhaustive(target_, dump.ray);
     for (const HeightMarchEntry& march : height_marches()) {
       if (takes(march.fields, dump.field)) add(march);
     }
@@ -70,7 +70,7 @@ class Replay {
 
     const char* wrong = "";
     if (march.guarantee == Guarantee::exact) {
-      if (!same(judge_, hit)) wrong = "differs";
+      if (!same(oracle_, hit)) wrong = "differs";
       if (any && *any != static_cast<bool>(hit)) wrong = "contradicts itself";
       if (all && (all->empty() == static_cast<bool>(hit) || (hit && all->front().t != hit.t)))
         wrong = "contradicts itself";
@@ -115,7 +115,7 @@ class Replay {
   const RayDump& dump_;
   MaxPyramid pyramid_;
   HeightTarget target_;
-  Hit judge_;
+  Hit oracle_;
   std::vector<Line> lines_;
   bool agrees_ = true;
 };

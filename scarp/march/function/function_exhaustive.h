@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reference for marches over terrain functions: the first crossing of a ray by bisection in interval arithmetic.
+// The oracle of marches over terrain functions: the first crossing of a ray by bisection in interval arithmetic.
 //
 // The part of the ray over the ground is halved, leftmost interval first, until an interval is provably free of the
 // ground or shorter than 1e-9 of that part. The tree of the function is evaluated in intervals by separate code, which

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `exhaustive`: the reference for all other marches. Intersects every cell below the ray independently, in double, row
+// `exhaustive`: the oracle of all other marches. Intersects every cell below the ray independently, in double, row
 // by row of the raster, without an accelerator; then reads the pieces in order of t.
 //
 // Guarantee: exact (to rounding). Deliberately shares no code with the other marches, so that no mistake is made twice.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reference for marches over distance fields: the first crossing of a ray by bisection in interval arithmetic, like
+// The oracle of marches over distance fields: the first crossing of a ray by bisection in interval arithmetic, like
 // function_exhaustive.h for functions.
 //
 // The tree of the shape is evaluated in intervals by separate code, which shares with the marches only the settings and

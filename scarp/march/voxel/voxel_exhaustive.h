@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `voxel-exhaustive`: tests solid voxels one by one, in rationals. The reference for the voxel marches; it shares no
+// `voxel-exhaustive`: tests solid voxels one by one, in rationals. The oracle of the voxel marches; it shares no
 // code with them except the quantised ray, which is the query itself.
 //
 // A voxel is visited if the ray enters it along all three axes before it leaves it along one:

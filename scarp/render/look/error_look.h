@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The look `error` shows where a march is wrong. Every pixel's ray is compared with the reference march of the field
+// The look `error` shows where a march is wrong. Every pixel's ray is compared with the judge of the field
 // (SceneField::judge()): `exhaustive` for height fields, `voxel-planes` for voxels, `lipschitz-local` for functions,
 // `sphere-trace` with the finest tolerance for shapes.
 //

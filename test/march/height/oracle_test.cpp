@@ -2,8 +2,8 @@
 // Every march of the table against the exhaustive one, on spiteful fields and rays.
 //
 // Two correct programs may round differently, but the difference is bounded: a ray moved by the rounding of its own
-// coordinates (numerics.md: delta) is as good as the ray itself. An exact march must therefore agree with the judge. If
-// it does not, it must pass no hit that the ray and all its neighbours within delta certainly have, and its own hit
+// coordinates (numerics.md: delta) is as good as the ray itself. An exact march must therefore agree with the oracle.
+// If it does not, it must pass no hit that the ray and all its neighbours within delta certainly have, and its own hit
 // must be on the surface and not on the way out of the ground. The use of neighbours is counted, so that it cannot
 // become a loophole.
 //
