@@ -85,6 +85,24 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+#ifdef SCARP_BENCH_NANOVDB
+// The voxels of columns that rays can hit: from each top down to the lowest one beside it.
+void set_visible_voxels(int side, const std::vector<std::int32_t>& tops, const NanovdbPeer::Set& set) {
+  const auto top = [&](int x, int y) {
+    return x < 0 || y < 0 || x >= side || y >= side
+               ? 0
+               : tops[static_cast<std::size_t>(x) + static_cast<std::size_t>(side) * static_cast<std::size_t>(y)];
+  };
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const int end = top(x, y);
+      for (int z = std::min({end - 1, top(x - 1, y), top(x + 1, y), top(x, y - 1), top(x, y + 1)}); z < end; ++z)
+        set({x, y, z}, static_cast<float>(1 + z % 255));
+    }
+  }
+}
+#endif
+
 void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& report) {
   FieldOptions ground_options;
   ground_options.size = std::max(options.side, 33);
@@ -117,21 +135,8 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
 #ifdef SCARP_BENCH_NANOVDB
   std::unique_ptr<NanovdbPeer> nanovdb;
   if (options.nanovdb.value_or(true)) {
-    const auto top = [&](int x, int y) {
-      return x < 0 || y < 0 || x >= options.side || y >= options.side
-                 ? 0
-                 : tops[static_cast<std::size_t>(x) +
-                        static_cast<std::size_t>(options.side) * static_cast<std::size_t>(y)];
-    };
-    nanovdb = std::make_unique<NanovdbPeer>([&](const NanovdbPeer::Set& set) {
-      for (int y = 0; y < options.side; ++y) {
-        for (int x = 0; x < options.side; ++x) {
-          const int end = top(x, y);
-          for (int z = std::min({end - 1, top(x - 1, y), top(x + 1, y), top(x, y - 1), top(x, y + 1)}); z < end; ++z)
-            set({x, y, z}, static_cast<float>(1 + z % 255));
-        }
-      }
-    });
+    nanovdb = std::make_unique<NanovdbPeer>(
+        [&](const NanovdbPeer::Set& set) { set_visible_voxels(options.side, tops, set); });
     for (VoxelEngine& engine : nanovdb->engines()) engines.push_back(std::move(engine));
   }
 #endif

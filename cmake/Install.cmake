@@ -55,8 +55,8 @@ set(marches_as_text height/max_mip height/height_marches)
 set(function_marches_as_text function/function_marches function/lipschitz_local shape/sphere_trace)
 set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/voxel_marks.glsl.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
     scarp/accel/shape_buffers.glsl.h)
-foreach(name ${marches_as_text} ${function_marches_as_text} naive fixed_step relaxed lipschitz
-        march_state sampling sampling_marches two_float ray_states height/ray_frame height/float_ray height/two_float_ray
+foreach(name ${marches_as_text} ${function_marches_as_text} sampling/naive sampling/fixed_step sampling/relaxed
+        sampling/lipschitz sampling/sampling sampling/sampling_marches march_state two_float ray_states height/ray_frame height/float_ray height/two_float_ray
         height/cell_surface height/surface_normal height/height_probe height/max_mip_easy height/textures function/noise function/function_heights
         voxel/voxel_wide voxel/voxel_walk voxel/voxel_planes voxel/voxel_spheres voxel/voxel_cubes voxel/voxel_bricks
         voxel/voxel_marches voxel/voxel_double voxel/voxel_quantise voxel/voxel_float_ray voxel/voxel_textures

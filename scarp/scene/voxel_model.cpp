@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
+#include "scarp/accel/brick_masks.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
+#include "scarp/accel/octant_cubes.h"
 #include "scarp/scene/lattice_place.h"
 
 namespace scarp {
@@ -31,6 +36,10 @@ void require_marchable(const VoxelMarchEntry& march, const ivec3& size) {
     require_accelerable(size, march.name, march.accelerator == VoxelAccelerator::octants ? 8 : 1);
 }
 
+struct VoxelModel::Accelerator {
+  std::variant<std::monostate, EmptySpheres, EmptyCubes, OctantCubes, BrickMasks> of;
+};
+
 VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette, Extent extent,
                        std::vector<VoxelMaterial> materials)
     : grid_(std::move(grid)),
@@ -38,19 +47,21 @@ VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector
       palette_(std::move(palette)),
       materials_(std::move(materials)),
       extent_(extent),
-      file_place_(std::make_shared<LatticePlace>(LatticeRotation{}, ivec3(0))) {
+      file_place_(std::make_shared<LatticePlace>(LatticeRotation{}, ivec3(0))),
+      accelerator_(std::make_unique<Accelerator>()) {
+  auto& built = accelerator_->of;
   switch (march.accelerator) {
     case VoxelAccelerator::spheres:
-      built_.emplace<EmptySpheres>(grid_);
+      built.emplace<EmptySpheres>(grid_);
       break;
     case VoxelAccelerator::cubes:
-      built_.emplace<EmptyCubes>(grid_);
+      built.emplace<EmptyCubes>(grid_);
       break;
     case VoxelAccelerator::octants:
-      built_.emplace<OctantCubes>(grid_);
+      built.emplace<OctantCubes>(grid_);
       break;
     case VoxelAccelerator::bricks:
-      built_.emplace<BrickMasks>(grid_);
+      built.emplace<BrickMasks>(grid_);
       break;
     case VoxelAccelerator::none:
       break;
@@ -58,14 +69,18 @@ VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector
   box_ = extent_ == Extent::grid ? grid_.box() : grid_.bounds();
 }
 
+VoxelModel::VoxelModel(VoxelModel&&) noexcept = default;
+VoxelModel& VoxelModel::operator=(VoxelModel&&) noexcept = default;
+VoxelModel::~VoxelModel() = default;
+
 void VoxelModel::set_file_place(const LatticePlace& place) { file_place_ = std::make_shared<LatticePlace>(place); }
 
 VoxelTarget VoxelModel::target() const {
   VoxelTarget target{&grid_, box_};
-  target.spheres = std::get_if<EmptySpheres>(&built_);
-  target.cubes = std::get_if<EmptyCubes>(&built_);
-  target.octants = std::get_if<OctantCubes>(&built_);
-  target.bricks = std::get_if<BrickMasks>(&built_);
+  target.spheres = std::get_if<EmptySpheres>(&accelerator_->of);
+  target.cubes = std::get_if<EmptyCubes>(&accelerator_->of);
+  target.octants = std::get_if<OctantCubes>(&accelerator_->of);
+  target.bricks = std::get_if<BrickMasks>(&accelerator_->of);
   return target;
 }
 
@@ -87,7 +102,7 @@ void VoxelModel::update(const VoxelBox& changed) {
       [&](auto& built) {
         if constexpr (!std::is_same_v<decltype(built), std::monostate&>) built.update(grid_, changed);
       },
-      built_);
+      accelerator_->of);
   if (extent_ == Extent::bounds) box_ = grid_.bounds();
 }
 
@@ -98,8 +113,8 @@ std::size_t VoxelModel::bytes() const {
         if constexpr (!std::is_same_v<decltype(built), const std::monostate&>) bytes = built.bytes() - sizeof(built);
         return bytes;
       },
-      built_);
-  return sizeof(*this) - sizeof(grid_) + grid_.bytes() + palette_.size() * sizeof(VoxelColour) +
+      accelerator_->of);
+  return sizeof(*this) + sizeof(Accelerator) - sizeof(grid_) + grid_.bytes() + palette_.size() * sizeof(VoxelColour) +
          materials_.size() * sizeof(VoxelMaterial) + heap;
 }
 

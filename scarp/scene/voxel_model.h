@@ -6,13 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <variant>
 #include <vector>
 
-#include "scarp/accel/brick_masks.h"
-#include "scarp/accel/empty_cubes.h"
-#include "scarp/accel/empty_spheres.h"
-#include "scarp/accel/octant_cubes.h"
 #include "scarp/base/edit_count.h"
 #include "scarp/march/voxel/voxel_table.h"
 #include "scarp/scene/voxel_material.h"
@@ -46,6 +41,9 @@ class VoxelModel {
   /// the grid is too large for the march.
   VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette = {},
              Extent extent = Extent::bounds, std::vector<VoxelMaterial> materials = {});
+  VoxelModel(VoxelModel&&) noexcept;
+  VoxelModel& operator=(VoxelModel&&) noexcept;
+  ~VoxelModel();
 
   /// The same grid, colours and materials with another march.
   VoxelModel marched_by(const VoxelMarchEntry& march) const {
@@ -103,7 +101,8 @@ class VoxelModel {
   std::shared_ptr<const LatticePlace> file_place_;
   VoxelBox box_;
   EditCount edits_;
-  std::variant<std::monostate, EmptySpheres, EmptyCubes, OctantCubes, BrickMasks> built_;  // what the march needs
+  struct Accelerator;
+  std::unique_ptr<Accelerator> accelerator_;  // what the march needs
 };
 
 }  // namespace scarp

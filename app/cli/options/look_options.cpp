@@ -65,27 +65,17 @@ ReliefRange ramp_range_from(const std::string& text) {
   return {range[0], range[1]};
 }
 
-}  // namespace
+// Adds options of looks that are lit.
+auto lit(Command& command, Topic topic) {
+  return [&command, topic](Binding to, Option option) {
+    option.topic = topic;
+    option.looks = {"shaded comanche", "the others show numbers"};
+    command.add(std::move(to), std::move(option));
+  };
+}
 
-void add_look_options(Command& command, PictureRequest& o, PictureFileNames& files) {
-  const PictureSettings usual;
-  const WaterSettings usual_water;
-  static constexpr Looks kLit{"shaded comanche", "the others show numbers"};
-  constexpr Looks kLarge{"comanche"};
-  const auto names_of_fog = [] {
-    std::vector<std::string> names;
-    for (const FogKind kind : {FogKind::none, FogKind::distance, FogKind::height, FogKind::iterations})
-      names.emplace_back(name_of(kind));
-    return names;
-  };
-  const auto lit = [&command](Topic topic) {
-    return [&command, topic](Binding to, Option option) {
-      option.topic = topic;
-      option.looks = kLit;
-      command.add(std::move(to), std::move(option));
-    };
-  };
-  const auto ground = lit(Topic::ground), water = lit(Topic::water), fog = lit(Topic::fog);
+void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& files) {
+  const auto ground = lit(command, Topic::ground);
   command.add([&o, &files](const std::string& text) { set_ramp(text, o, files); },
               {.names = "--ramp",
                .value = "RAMP",
@@ -125,7 +115,7 @@ void add_look_options(Command& command, PictureRequest& o, PictureFileNames& fil
   ground(&o.snow_line, {.names = "--snow-line",
                         .help = "snow line of natural ground",
                         .unit = "metres",
-                        .fallback = fmt::format("{} of the relief", usual.ground.snow_share),
+                        .fallback = fmt::format("{} of the relief", GroundPaintSettings{}.snow_share),
                         .rules = {needs("--ground natural", [&o] { return o.natural; })}});
   const Rule detailed = needs("--detail F", [&o] { return o.detail > 0; });
   ground(&o.detail, {.names = "--detail", .help = "strength of noise patches or of --detail-texture", .range = {0, 1}});
@@ -153,7 +143,11 @@ void add_look_options(Command& command, PictureRequest& o, PictureFileNames& fil
                   "else stretched over the scene (functions: over --extent)",
           .files = "*",
           .common = true});
+}
 
+void add_water_options(Command& command, PictureRequest& o) {
+  const WaterSettings usual;
+  const auto water = lit(command, Topic::water);
   // A scene file may have water and fog of its own.
   const Rule wet = needs(
       "--water M", [&o] { return o.water_level.has_value(); }, kEveryInput & ~kScene);
@@ -166,19 +160,19 @@ void add_look_options(Command& command, PictureRequest& o, PictureFileNames& fil
         {.names = "--water-colour",
          .value = "RRGGBB",
          .help = "colour of deep water",
-         .fallback = colour_text(usual_water.srgb),
+         .fallback = colour_text(usual.srgb),
          .now = [&o] { return o.water_srgb ? colour_text(*o.water_srgb) : std::string(); },
          .rules = {wet}});
   water(&o.water_turbidity, {.names = "--turbidity",
                              .help = "light lost beyond that of pure water, per metre",
                              .range = kZeroOrMore,
-                             .fallback = fmt::format("{}", usual_water.turbidity),
+                             .fallback = fmt::format("{}", usual.turbidity),
                              .rules = {wet}});
   water(&o.waves, {.names = "--waves",
                    .help = "mean slope of the waves",
                    .range = {0, 0.5},
                    .note = "0: a mirror",
-                   .fallback = fmt::format("{}", usual_water.waves),
+                   .fallback = fmt::format("{}", usual.waves),
                    .rules = {wet}});
   water(&o.wavelength, {.names = "--wavelength",
                         .help = "length of the longest wave",
@@ -190,7 +184,16 @@ void add_look_options(Command& command, PictureRequest& o, PictureFileNames& fil
         {.names = "--no-reflection", .help = "reflection of the sky only, not of the terrain", .rules = {wet}});
   water(Off{&o.refraction},
         {.names = "--no-refraction", .help = "opaque water of one colour, whatever its depth", .rules = {wet}});
+}
 
+void add_fog_options(Command& command, PictureRequest& o) {
+  const auto fog = lit(command, Topic::fog);
+  const auto names_of_fog = [] {
+    std::vector<std::string> names;
+    for (const FogKind kind : {FogKind::none, FogKind::distance, FogKind::height, FogKind::iterations})
+      names.emplace_back(name_of(kind));
+    return names;
+  };
   const Rule foggy = needs(
       "--fog KIND", [&o] { return o.fog && *o.fog != FogKind::none; }, kEveryInput & ~kScene);
   const Rule high = needs(
@@ -232,11 +235,14 @@ void add_look_options(Command& command, PictureRequest& o, PictureFileNames& fil
   fog(&o.sun_tint, {.names = "--sun-tint",
                     .help = "warmth of the fog towards the sun",
                     .range = {0, 1},
-                    .fallback = fmt::format("{}", usual.fog.sun_tint),
+                    .fallback = fmt::format("{}", FogSettings{}.sun_tint),
                     .rules = {foggy, {"has no effect with --sky scattering, which sets the colour of fog", [&command] {
                                         return command.value("--sky") != "scattering";
                                       }}}});
+}
 
+void add_large_pixel_options(Command& command, PictureRequest& o) {
+  constexpr Looks kLarge{"comanche"};
   constexpr Looks kPixels{"height comanche"};
   const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
   const Rule alone{"has no effect with --mesh, among which rays step by --fixed-step",
@@ -293,6 +299,15 @@ void add_look_options(Command& command, PictureRequest& o, PictureFileNames& fil
                    .unit = "metres",
                    .range = kAboveZero,
                    .fallback = "unlimited; fields that wrap: the longer side, more if the eye is outside"});
+}
+
+}  // namespace
+
+void add_look_options(Command& command, PictureRequest& o, PictureFileNames& files) {
+  add_ground_options(command, o, files);
+  add_water_options(command, o);
+  add_fog_options(command, o);
+  add_large_pixel_options(command, o);
 }
 
 PictureFiles read_picture_files(const PictureFileNames& names, const PictureRequest& request) {

@@ -48,25 +48,11 @@ void add_march_option(Command& command, std::string& march) {
                        .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree"}});
 }
 
-void add_march_options(Command& command, MarchSettings& march) {
-  constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};
-  const auto add = [&](const char* name, Binding to, const char* help, const NumberRange& range,
-                       std::string_view marches, const char* note = "", const Inputs& inputs = kMarched) {
-    command.add(to, {.names = name,
-                     .help = help,
-                     .range = range,
-                     .note = note,
-                     .topic = Topic::march,
-                     .inputs = inputs,
-                     .marches = marches});
-  };
-  constexpr NumberRange kShare{.least = 0, .most = 1, .above_least = true};
-  NaiveSettings& naive = march.naive;
-  add("--naive-step-factor", &naive.step_factor, "step as a fraction of the vertical distance", kAboveZero, "naive");
-  add("--naive-min-step", &naive.min_step, "minimum step as a fraction of the exit distance", kShare, "naive");
-  add("--naive-tolerance", &naive.tolerance, "height above ground that counts as a hit, per unit of distance",
-      kZeroOrMore, "naive");
-  add("--naive-max-steps", &naive.max_steps, "maximum number of steps", kSteps, "naive");
+namespace {
+
+constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};
+
+void add_fixed_step_options(Command& command, FixedStepSettings& fixed_step) {
   // The look comanche steps over a raster alone by its own rules (step_march_of() in frame_view.h).
   std::vector<Rule> plain;
   if (command.find("--steps")) {
@@ -77,45 +63,31 @@ void add_march_options(Command& command, MarchSettings& march) {
                      },
                      kTerrain});
   }
-  command.add(&march.fixed_step.step, {.names = "--fixed-step",
-                                       .help = "step length in cells",
-                                       .range = kAboveZero,
-                                       .topic = Topic::march,
-                                       .inputs = {kTerrain, "functions have --function-step M"},
-                                       .marches = "fixed-step",
-                                       .rules = plain});
-  command.add(&march.fixed_step.interpolate, {.names = "--fixed-step-interpolate",
-                                              .value = "BOOL",
-                                              .help = "hit between the last two samples instead of on the last one",
-                                              .choices = {"true", "false"},
-                                              .closed = true,
-                                              .topic = Topic::march,
-                                              .inputs = kMarched,
-                                              .marches = "fixed-step"});
-  command.add(&march.fixed_step.max_steps, {.names = "--fixed-step-max-steps",
-                                            .help = "maximum number of steps",
-                                            .range = kSteps,
-                                            .topic = Topic::march,
-                                            .inputs = kMarched,
-                                            .marches = "fixed-step",
-                                            .rules = plain});
-  RelaxedSettings& relaxed = march.relaxed;
-  add("--relaxed-step-factor", &relaxed.step_factor, "step as a fraction of the vertical distance", kAboveZero,
-      "relaxed");
-  add("--relaxed-tolerance", &relaxed.tolerance, "height off the ground that counts as a hit, per unit of distance",
-      kAboveZero, "relaxed");
-  add("--relaxed-max-steps", &relaxed.max_steps, "maximum number of steps", kSteps, "relaxed");
-  LipschitzSettings& lipschitz = march.lipschitz;
-  add("--shrink", &lipschitz.shrink, "step as a fraction of the vertical distance", {0, 1}, "lipschitz",
-      "0: the largest factor that the steepest slope proves; larger factors are approximate");
-  add("--lipschitz-tolerance", &lipschitz.tolerance,
-      "distance to the ground that counts as a hit, per unit of distance travelled", kZeroOrMore, "lipschitz");
-  add("--lipschitz-max-steps", &lipschitz.max_steps, "maximum number of steps", kSteps, "lipschitz");
-  add("--local-tolerance", &march.lipschitz_local.tolerance, "length of the last interval per unit of distance",
-      kZeroOrMore, "lipschitz-local");
-  add("--local-max-steps", &march.lipschitz_local.max_steps, "maximum number of steps", kSteps, "lipschitz-local");
-  add("--bisect-halvings", &march.bisect.halvings, "halvings of the last interval", kHalvings, "max-mip-bisect");
-  SamplingSettings& sampling = march.sampling;
+  command.add(&fixed_step.step, {.names = "--fixed-step",
+                                 .help = "step length in cells",
+                                 .range = kAboveZero,
+                                 .topic = Topic::march,
+                                 .inputs = {kTerrain, "functions have --function-step M"},
+                                 .marches = "fixed-step",
+                                 .rules = plain});
+  command.add(&fixed_step.interpolate, {.names = "--fixed-step-interpolate",
+                                        .value = "BOOL",
+                                        .help = "hit between the last two samples instead of on the last one",
+                                        .choices = {"true", "false"},
+                                        .closed = true,
+                                        .topic = Topic::march,
+                                        .inputs = kMarched,
+                                        .marches = "fixed-step"});
+  command.add(&fixed_step.max_steps, {.names = "--fixed-step-max-steps",
+                                      .help = "maximum number of steps",
+                                      .range = kSteps,
+                                      .topic = Topic::march,
+                                      .inputs = kMarched,
+                                      .marches = "fixed-step",
+                                      .rules = plain});
+}
+
+void add_refinement_options(Command& command, SamplingSettings& sampling) {
   command.add([&sampling](const std::string& name) { sampling.refinement = find_refinement(name); },
               {.names = "--refine",
                .value = "KIND",
@@ -135,7 +107,47 @@ void add_march_options(Command& command, MarchSettings& march) {
                .topic = Topic::march,
                .inputs = kMarched,
                .marches = "naive fixed-step relaxed",
-               .rules = {needs("--refine bisect", [&] { return sampling.refinement == Refinement::bisect; })}});
+               .rules = {needs("--refine bisect", [&sampling] { return sampling.refinement == Refinement::bisect; })}});
+}
+
+}  // namespace
+
+void add_march_options(Command& command, MarchSettings& march) {
+  const auto add = [&](const char* name, Binding to, const char* help, const NumberRange& range,
+                       std::string_view marches, const char* note = "", const Inputs& inputs = kMarched) {
+    command.add(to, {.names = name,
+                     .help = help,
+                     .range = range,
+                     .note = note,
+                     .topic = Topic::march,
+                     .inputs = inputs,
+                     .marches = marches});
+  };
+  constexpr NumberRange kShare{.least = 0, .most = 1, .above_least = true};
+  NaiveSettings& naive = march.naive;
+  add("--naive-step-factor", &naive.step_factor, "step as a fraction of the vertical distance", kAboveZero, "naive");
+  add("--naive-min-step", &naive.min_step, "minimum step as a fraction of the exit distance", kShare, "naive");
+  add("--naive-tolerance", &naive.tolerance, "height above ground that counts as a hit, per unit of distance",
+      kZeroOrMore, "naive");
+  add("--naive-max-steps", &naive.max_steps, "maximum number of steps", kSteps, "naive");
+  add_fixed_step_options(command, march.fixed_step);
+  RelaxedSettings& relaxed = march.relaxed;
+  add("--relaxed-step-factor", &relaxed.step_factor, "step as a fraction of the vertical distance", kAboveZero,
+      "relaxed");
+  add("--relaxed-tolerance", &relaxed.tolerance, "height off the ground that counts as a hit, per unit of distance",
+      kAboveZero, "relaxed");
+  add("--relaxed-max-steps", &relaxed.max_steps, "maximum number of steps", kSteps, "relaxed");
+  LipschitzSettings& lipschitz = march.lipschitz;
+  add("--shrink", &lipschitz.shrink, "step as a fraction of the vertical distance", {0, 1}, "lipschitz",
+      "0: the largest factor that the steepest slope proves; larger factors are approximate");
+  add("--lipschitz-tolerance", &lipschitz.tolerance,
+      "distance to the ground that counts as a hit, per unit of distance travelled", kZeroOrMore, "lipschitz");
+  add("--lipschitz-max-steps", &lipschitz.max_steps, "maximum number of steps", kSteps, "lipschitz");
+  add("--local-tolerance", &march.lipschitz_local.tolerance, "length of the last interval per unit of distance",
+      kZeroOrMore, "lipschitz-local");
+  add("--local-max-steps", &march.lipschitz_local.max_steps, "maximum number of steps", kSteps, "lipschitz-local");
+  add("--bisect-halvings", &march.bisect.halvings, "halvings of the last interval", kHalvings, "max-mip-bisect");
+  add_refinement_options(command, march.sampling);
   FunctionMarchSettings& function = march.function;
   command.add(&function.reach, {.names = "--function-reach",
                                 .help = "maximum length of a ray",

@@ -34,7 +34,7 @@ class BlockRules : public RimRules<T, Holes, Wraps, ask> {
   using Base::touches, Base::sinks_over_rim, Base::follow_rim, Base::field_, Base::seam_, Base::ground_, Base::x_;
   using Base::y_, Base::z_, Base::dz_, Base::t_in_, Base::t_end_, Base::rounding_, Base::answer_, Base::col_;
 
-  // What a ray does over blocks and cells, see walk_blocks().
+  // The visitor of walk_blocks(): the rules over blocks and cells.
   class Visitor {
    public:
     explicit Visitor(BlockRules& rules) : rules_(rules), falling_(rules.dz_ < 0), highest_(rules.ground_.highest()) {
