@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp::bench {
 

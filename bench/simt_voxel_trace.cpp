@@ -16,7 +16,7 @@
 
 #include "scarp/accel/voxel_buffers.glsl.h"
 #include "scarp/march/voxel/voxel_ray_vk.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp::bench {
 namespace {

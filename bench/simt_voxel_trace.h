@@ -8,7 +8,7 @@
 
 #include "bench/simt_bundle.h"
 #include "scarp/base/ray.h"
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp::bench {
 

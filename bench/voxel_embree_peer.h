@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/voxel_engine.h"
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp::bench {
 

@@ -18,8 +18,8 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/voxel/voxel_packet.h"
-#include "scarp/scene/voxel_model.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_model.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp::bench {
 namespace {

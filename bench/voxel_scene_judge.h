@@ -25,8 +25,8 @@
 #include <vector>
 
 #include "bench/random.h"
-#include "scarp/scene/placed_voxels.h"
 #include "scarp/scene/scene.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp::bench {
 

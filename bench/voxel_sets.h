@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp::bench {
 

@@ -23,7 +23,7 @@
 #include "scarp/analysis/horizon_bins.h"
 #include "scarp/analysis/horizon_envelope.h"
 #include "scarp/analysis/ring_frame.h"
-#include "scarp/analysis/viewshed_sweep.h"
+#include "scarp/analysis/sweep_statistics.h"
 #include "scarp/base/prefetch.h"
 #include "scarp/field/sample_grid.h"
 

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "scarp/analysis/shadow.h"
-#include "scarp/analysis/viewshed_sweep.h"
+#include "scarp/analysis/sweep_statistics.h"
 
 namespace scarp {
 

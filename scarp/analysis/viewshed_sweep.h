@@ -20,25 +20,11 @@
 #include <cstdint>
 
 #include "scarp/analysis/block_maxima.h"
+#include "scarp/analysis/sweep_statistics.h"
 #include "scarp/analysis/viewshed.h"
 #include "scarp/base/progress.h"
 
 namespace scarp {
-
-/// Counts of a sweep.
-struct SweepStatistics {
-  std::int64_t samples = 0;  ///< of all rings, those beside a part of a sector included
-  std::int64_t skipped = 0;  ///< in blocks below the horizon
-  std::int64_t careful = 0;  ///< not certainly below the horizon
-  std::int64_t walked = 0;   ///< left to a ray
-
-  void add(const SweepStatistics& other) {
-    samples += other.samples;
-    skipped += other.skipped;
-    careful += other.careful;
-    walked += other.walked;
-  }
-};
 
 /// Writes the code of every node, rows from north to south. `maxima`: of the view's field, for callers with many
 /// observers; null: made here.

@@ -15,9 +15,9 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/turnstile.h"
-#include "scarp/scene/box_tree_editor.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
+#include "scarp/scene/tree/box_tree_editor.h"
 
 namespace scarp {
 namespace {

@@ -24,10 +24,10 @@
 #include "scarp/march/height/max_mip_fan.h"
 #include "scarp/march/shape/shape_table.h"
 #include "scarp/march/turned_box.h"
-#include "scarp/scene/box_tree.h"
-#include "scarp/scene/field_contact.h"
-#include "scarp/scene/placed_voxels.h"
-#include "scarp/scene/voxel_shading.h"
+#include "scarp/scene/tree/box_tree.h"
+#include "scarp/scene/tree/field_contact.h"
+#include "scarp/scene/voxel/placed_voxels.h"
+#include "scarp/scene/voxel/voxel_shading.h"
 
 namespace scarp {
 

@@ -11,10 +11,10 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/usual_ray.h"
-#include "scarp/scene/contact_search.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
 #include "scarp/scene/scene_limits.h"
+#include "scarp/scene/tree/contact_search.h"
 
 namespace scarp {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scarp/scene/scene_field.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

@@ -16,7 +16,7 @@
 #include "scarp/march/voxel/voxel_pictures_vk.h"
 #include "scarp/scene/camera_batch.h"
 #include "scarp/scene/scene_limits.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

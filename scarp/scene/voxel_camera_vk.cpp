@@ -9,7 +9,7 @@
 #include "scarp/march/voxel/voxel_pictures_vk.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/scene_voxels_vk.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/placed_voxels.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp {
 namespace {

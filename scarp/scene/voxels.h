@@ -16,7 +16,7 @@
 
 #include "scarp/field/voxel_grid.h"
 #include "scarp/scene/scene.h"
-#include "scarp/scene/voxel_model.h"
+#include "scarp/scene/voxel/voxel_model.h"
 
 namespace scarp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/box_tree.h"
+#include "scarp/scene/tree/box_tree.h"
 
 #include <gtest/gtest.h>
 

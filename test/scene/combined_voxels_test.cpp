@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Unions, intersections and differences of placed voxels, against every single voxel.
-#include "scarp/scene/combined_voxels.h"
+#include "scarp/scene/voxel/combined_voxels.h"
 
 #include <gtest/gtest.h>
 

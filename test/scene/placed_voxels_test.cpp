@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The march of models from files.
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 #include <gtest/gtest.h>
 

@@ -20,7 +20,7 @@
 #include "scarp/scene/live_scene.h"
 #include "scarp/scene/scene_plinth.h"
 #include "scarp/scene/scene_query.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp::test {
 namespace {

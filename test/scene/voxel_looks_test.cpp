@@ -7,12 +7,12 @@
 
 #include "scarp/base/error.h"
 #include "scarp/field/rotate_voxels.h"
-#include "scarp/scene/coarse_voxels.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/file/to_vox.h"
 #include "scarp/scene/scene.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/coarse_voxels.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 #include "scarp/scene/voxelised.h"
 
 namespace scarp {

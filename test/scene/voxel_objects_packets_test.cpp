@@ -7,7 +7,7 @@
 #include <random>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@
 #include "cases.h"
 #include "scarp/scene/scene.h"
 #include "scarp/scene/scene_field.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

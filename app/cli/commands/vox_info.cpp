@@ -10,8 +10,8 @@
 
 #include "app/cli/options/vox_input.h"
 #include "scarp/base/lattice_rotation.h"
-#include "scarp/scene/lattice_place.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/voxel/lattice_place.h"
 #include "scarp/source/voxel/vdb_file.h"
 #include "scarp/source/voxel/vox_animation.h"
 

@@ -286,13 +286,13 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
        .rules = {needs(frames ? "--eye, --area, --path or --mesh-at" : "--eye, --area or --mesh-at", [&o] {
          return o.camera.eye || o.camera.area || !o.frames.path.empty() || !o.mesh.at.empty();
        })}});
-  add(&camera.fov_deg,
-      {.names = "--fov",
-       .help = "vertical field of view",
-       .unit = "degrees",
-       .range = {1, 150},
-       .fallback = fmt::format("{}; comanche {}, functions without --view {}", view.fov_deg, kComancheFov, kFunctionView.fov_deg),
-       .common = true});
+  add(&camera.fov_deg, {.names = "--fov",
+                        .help = "vertical field of view",
+                        .unit = "degrees",
+                        .range = {1, 150},
+                        .fallback = fmt::format("{}; comanche {}, functions without --view {}", view.fov_deg,
+                                                kComancheFov, kFunctionView.fov_deg),
+                        .common = true});
   add(&camera.top, {.names = "--top",
                     .help = "map: straight down, without perspective, grid north up",
                     .common = true,

@@ -11,7 +11,7 @@
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
-#include "scarp/scene/voxel_shading.h"
+#include "scarp/scene/voxel/voxel_shading.h"
 
 namespace scarp::cli {
 

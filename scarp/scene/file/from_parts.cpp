@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "scarp/scene/file/voxel_memory.h"
-#include "scarp/scene/lattice_place.h"
+#include "scarp/scene/voxel/lattice_place.h"
 
 namespace scarp {
 namespace {

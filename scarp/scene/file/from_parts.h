@@ -2,7 +2,7 @@
 // Files of listed voxels as models, one per part, in metres: a voxel 1 m, z up.
 #pragma once
 
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 #include "scarp/source/voxel/voxel_parts.h"
 
 namespace scarp {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/scene/file/from_volume.h"
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 #include "scarp/source/voxel/vdb_file.h"
 
 namespace scarp {

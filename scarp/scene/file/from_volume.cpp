@@ -12,7 +12,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/rotate_voxels.h"
-#include "scarp/scene/lattice_place.h"
+#include "scarp/scene/voxel/lattice_place.h"
 
 namespace scarp {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 #include "scarp/source/voxel/binvox.h"
 #include "scarp/source/voxel/dense_volume.h"
 

@@ -13,8 +13,8 @@
 
 #include "scarp/base/error.h"
 #include "scarp/scene/file/voxel_memory.h"
-#include "scarp/scene/lattice_place.h"
-#include "scarp/scene/ordered_pattern.h"
+#include "scarp/scene/voxel/lattice_place.h"
+#include "scarp/scene/voxel/ordered_pattern.h"
 #include "scarp/source/voxel/vox_material.h"
 
 namespace scarp {

@@ -2,7 +2,7 @@
 // The scene of a .vox file as placed models, in metres: a voxel 1 m, z up as in the file.
 #pragma once
 
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 #include "scarp/source/voxel/vox_scene.h"
 
 namespace scarp {

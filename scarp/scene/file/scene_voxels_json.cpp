@@ -9,7 +9,6 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
-#include "scarp/scene/combined_voxels.h"
 #include "scarp/scene/file/from_parts.h"
 #include "scarp/scene/file/from_vdb.h"
 #include "scarp/scene/file/from_volume.h"
@@ -17,6 +16,7 @@
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
 #include "scarp/scene/file/scene_places.h"
+#include "scarp/scene/voxel/combined_voxels.h"
 
 namespace scarp {
 namespace {

@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/box_tree.h"
+#include "scarp/scene/tree/box_tree.h"
 #include "scarp/source/mesh/mesh_file.h"
 
 namespace scarp {

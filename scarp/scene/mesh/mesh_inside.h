@@ -10,8 +10,8 @@
 #include <optional>
 #include <span>
 
-#include "scarp/scene/box_tree.h"
 #include "scarp/scene/mesh/scene_mesh.h"
+#include "scarp/scene/tree/box_tree.h"
 
 namespace scarp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/voxel_shading.h"
+#include "scarp/scene/voxel/voxel_shading.h"
 
 #include <fmt/format.h>
 

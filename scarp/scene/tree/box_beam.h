@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "scarp/scene/box_tree.h"
+#include "scarp/scene/tree/box_tree.h"
 
 namespace scarp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/rounded_voxels.h"
 #include "scarp/march/voxel/voxel_planes.h"
-#include "scarp/scene/coarse_voxels.h"
+#include "scarp/scene/voxel/coarse_voxels.h"
 
 namespace scarp {
 namespace {

@@ -23,10 +23,10 @@
 #include "scarp/march/hit_rules.h"
 #include "scarp/march/ray_room.h"
 #include "scarp/march/turned_box.h"
-#include "scarp/scene/box_tree.h"
-#include "scarp/scene/field_contact.h"
-#include "scarp/scene/lattice_place.h"
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/tree/box_tree.h"
+#include "scarp/scene/tree/field_contact.h"
+#include "scarp/scene/voxel/lattice_place.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/coarse_voxels.h"
+#include "scarp/scene/voxel/coarse_voxels.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "scarp/scene/ordered_pattern.h"
+#include "scarp/scene/voxel/ordered_pattern.h"
 
 namespace scarp {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/box_tree.h"
+#include "scarp/scene/tree/box_tree.h"
 
 #include <glm/common.hpp>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-#include "scarp/scene/box_beam.h"
+#include "scarp/scene/tree/box_beam.h"
 
 namespace scarp {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/voxel/voxel_packet.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "scarp/base/edit_count.h"
 #include "scarp/march/voxel/voxel_table.h"
-#include "scarp/scene/voxel_material.h"
+#include "scarp/scene/voxel/voxel_material.h"
 
 namespace scarp {
 

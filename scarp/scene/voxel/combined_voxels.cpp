@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/combined_voxels.h"
+#include "scarp/scene/voxel/combined_voxels.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/lattice_place.h"
+#include "scarp/scene/voxel/lattice_place.h"
 
 namespace scarp {
 namespace {

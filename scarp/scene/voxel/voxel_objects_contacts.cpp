@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Contacts of voxel objects: finds them by the hierarchy, and tests each in its grid's space.
 #include "scarp/march/voxel/voxel_contact.h"
-#include "scarp/scene/contact_search.h"
-#include "scarp/scene/voxel_objects.h"
+#include "scarp/scene/tree/contact_search.h"
+#include "scarp/scene/voxel/voxel_objects.h"
 
 namespace scarp {
 

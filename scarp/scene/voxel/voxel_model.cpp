@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/voxel_model.h"
+#include "scarp/scene/voxel/voxel_model.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -10,7 +10,7 @@
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
-#include "scarp/scene/lattice_place.h"
+#include "scarp/scene/voxel/lattice_place.h"
 
 namespace scarp {
 

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "scarp/scene/box_tree.h"
+#include "scarp/scene/tree/box_tree.h"
 
 namespace scarp {
 

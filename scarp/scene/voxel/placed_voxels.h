@@ -11,7 +11,7 @@
 
 #include "scarp/base/world_box.h"
 #include "scarp/march/voxel/voxel_target.h"
-#include "scarp/scene/voxel_model.h"
+#include "scarp/scene/voxel/voxel_model.h"
 
 namespace scarp {
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/voxel/placed_voxels.h"
 
 namespace scarp {
 

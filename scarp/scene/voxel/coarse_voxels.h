@@ -14,7 +14,7 @@
 
 #include <memory>
 
-#include "scarp/scene/voxel_model.h"
+#include "scarp/scene/voxel/voxel_model.h"
 
 namespace scarp {
 

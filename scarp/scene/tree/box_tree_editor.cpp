@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/box_tree_editor.h"
+#include "scarp/scene/tree/box_tree_editor.h"
 
 #include <algorithm>
 #include <glm/vector_relational.hpp>

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <limits>
 
-#include "scarp/scene/box_beam.h"
+#include "scarp/scene/tree/box_beam.h"
 
 // This file is compiled once for each instruction set.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "scarp/scene/box_beam_simd.cpp"
+#define HWY_TARGET_INCLUDE "scarp/scene/tree/box_beam_simd.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first.
 #include "hwy/highway.h"
