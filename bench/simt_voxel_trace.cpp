@@ -14,6 +14,10 @@
 #include <optional>
 #include <vector>
 
+#include "scarp/accel/brick_masks.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
+#include "scarp/accel/octant_cubes.h"
 #include "scarp/accel/voxel_buffers.glsl.h"
 #include "scarp/march/voxel/voxel_ray_vk.h"
 #include "scarp/scene/voxel/voxel_objects.h"

@@ -20,6 +20,7 @@
 #include "bench/voxel_embree_peer.h"
 #include "bench/voxel_hash.h"
 #include "bench/voxel_sets.h"
+#include "scarp/accel/brick_masks.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/scene/scene.h"

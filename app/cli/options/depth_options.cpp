@@ -6,27 +6,34 @@
 #include "app/options/numbers.h"
 
 namespace scarp::cli {
+namespace {
+
+DepthRange range_from(const std::string& text) {
+  const auto planes = numbers_from(text, ',', 1, 2, "--depth-range", "NEAR,FAR in metres, for example 1,50000");
+  const DepthRange range{planes[0], planes.size() > 1 ? planes[1] : std::numeric_limits<double>::infinity()};
+  validate(range);
+  return range;
+}
+
+}  // namespace
 
 void add_depth_options(Command& command, DepthOptions& options) {
-  command.add(&options.range, {.names = "--depth-range",
-                               .value = "NEAR[,FAR]",
-                               .help = "near and far plane of the depth buffer in metres, as in OpenGL and Vulkan",
-                               .note = "without FAR: no far plane",
-                               .topic = Topic::depth});
+  command.add([&options](const std::string& text) { options.range = range_from(text); },
+              {.names = "--depth-range",
+               .value = "NEAR[,FAR]",
+               .help = "near and far plane of the depth buffer in metres, as in OpenGL and Vulkan",
+               .note = "without FAR: no far plane",
+               .topic = Topic::depth});
   command.add(&options.reversed,
               {.names = "--depth-reversed",
                .help = "reversed depth: 1 at the near plane, 0 at the far plane",
                .topic = Topic::depth,
-               .rules = {needs("--depth-range NEAR,FAR", [&options] { return !options.range.empty(); })}});
+               .rules = {needs("--depth-range NEAR,FAR", [&options] { return options.range.has_value(); })}});
 }
 
 std::optional<DepthRange> depth_range_of(const DepthOptions& options) {
-  if (options.range.empty()) return {};
-  const auto planes =
-      numbers_from(options.range, ',', 1, 2, "--depth-range", "NEAR,FAR in metres, for example 1,50000");
-  const DepthRange range{planes[0], planes.size() > 1 ? planes[1] : std::numeric_limits<double>::infinity(),
-                         options.reversed};
-  validate(range);
+  std::optional<DepthRange> range = options.range;
+  if (range) range->reversed = options.reversed;
   return range;
 }
 

@@ -3,23 +3,21 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "app/options/command.h"
 #include "scarp/render/camera/depth.h"
 
 namespace scarp::cli {
 
-/// Typed options.
 struct DepthOptions {
-  std::string range;
+  std::optional<DepthRange> range;
   bool reversed = false;
 };
 
 /// Declares --depth-range and --depth-reversed.
 void add_depth_options(Command& command, DepthOptions& options);
 
-/// Nothing when none was given. Throws Error.
+/// The range with its direction; nothing when none was given.
 std::optional<DepthRange> depth_range_of(const DepthOptions& options);
 
 }  // namespace scarp::cli

@@ -1,10 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/options/figure_options.h"
 
+#include <fmt/format.h>
+
 #include "app/cli/options/vox_input.h"
+#include "app/options/numbers.h"
+#include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 
 namespace scarp::cli {
+
+namespace {
+
+GraticuleSpacing graticule_from(const std::string& text) {
+  if (text == "auto") return {};
+  const double spacing = numbers_from(text, ',', 1, 1, "--graticule", "degrees, for example 0.5, or auto")[0];
+  if (!(spacing > 0 && spacing <= 90))
+    throw Error(fmt::format("--graticule '{}': expected degrees above 0 and at most 90, or auto", text));
+  return {spacing};
+}
+
+}  // namespace
 
 std::string_view FigureOptions::any() const {
   return legend           ? "--legend"
@@ -12,7 +28,7 @@ std::string_view FigureOptions::any() const {
          : north_arrow    ? "--north-arrow"
          : contour_labels ? "--contour-labels"
          : !title.empty() ? "--title"
-                          : std::string_view(graticule.empty() ? "" : "--graticule");
+                          : std::string_view(graticule ? "--graticule" : "");
 }
 
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output) {
@@ -35,15 +51,16 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
       {.names = "--title", .value = "TEXT", .help = "title at the top, broken into at most three lines"});
   add(&options.north_arrow,
       {.names = "--north-arrow", .help = "arrow to true north", .note = "it holds in the middle of the picture"});
-  add(&options.graticule, {.names = "--graticule",
-                           .value = "DEG",
-                           .help = "labelled meridians and parallels, so many degrees apart",
-                           .choices = {"auto"},
-                           .unlisted = true,
-                           .note = "or auto",
-                           .fallback = "none",
-                           .inputs = {kTerrain, "only rasters are georeferenced", "only rasters are georeferenced"},
-                           .rules = {on_map}});
+  add([&options](const std::string& text) { options.graticule = graticule_from(text); },
+      {.names = "--graticule",
+       .value = "DEG",
+       .help = "labelled meridians and parallels, so many degrees apart",
+       .choices = {"auto"},
+       .unlisted = true,
+       .note = "or auto",
+       .fallback = "none",
+       .inputs = {kTerrain, "only rasters are georeferenced", "only rasters are georeferenced"},
+       .rules = {on_map}});
   add(&options.contour_labels,
       {.names = "--contour-labels",
        .help = "heights along every fifth contour line",

@@ -2,6 +2,7 @@
 // Options of a picture's annotations: title, legend, scale bar, north arrow, graticule, labels of contour lines.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,10 +10,15 @@
 
 namespace scarp::cli {
 
-/// Typed options.
+/// --graticule.
+struct GraticuleSpacing {
+  std::optional<double> degrees;  ///< nullopt: automatic
+};
+
 struct FigureOptions {
   bool legend = false, scale_bar = false, north_arrow = false, contour_labels = false;
-  std::string title, graticule, layout = "on";
+  std::string title, layout = "on";
+  std::optional<GraticuleSpacing> graticule;
   double dots_per_inch = 150;
 
   /// The first given option, for messages; empty: none.

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 
 #ifdef SCARP_CAIRO
@@ -19,19 +18,6 @@
 #endif
 
 namespace scarp::cli {
-
-namespace {
-
-// Nullopt: automatic.
-std::optional<double> graticule_spacing(const std::string& text) {
-  if (text == "auto") return {};
-  const double spacing = numbers_from(text, ',', 1, 1, "--graticule", "degrees, for example 0.5, or auto")[0];
-  if (!(spacing > 0 && spacing <= 90))
-    throw Error(fmt::format("--graticule '{}': expected degrees above 0 and at most 90, or auto", text));
-  return spacing;
-}
-
-}  // namespace
 
 #ifdef SCARP_CAIRO
 
@@ -191,7 +177,6 @@ void check_figure(const FigureOptions& options, const PictureSettings& settings,
                     format.name));
   }
   if (!is_figure_text(options.title)) throw Error("--title: the text is not valid UTF-8");
-  if (!options.graticule.empty()) graticule_spacing(options.graticule);
   if (options.legend && settings.comanche.iterations) {
     throw Error("--legend is not available with --iterations (use --look steps)");
   }
@@ -215,9 +200,9 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
     figure.scale = scale_of(width, camera.pixel_width(depth) / per_pixel, subject.map);
   }
   if (options.north_arrow) figure.north = north_in_picture(subject, settings.grid_north_azimuth);
-  if (!options.graticule.empty()) {
-    figure.graticule = graticule_of(subject.georeference, subject.cols, subject.rows, camera, per_pixel,
-                                    graticule_spacing(options.graticule));
+  if (options.graticule) {
+    figure.graticule =
+        graticule_of(subject.georeference, subject.cols, subject.rows, camera, per_pixel, options.graticule->degrees);
   }
   if (const HeightField* field = scene.terrain(); options.contour_labels && field && settings.ground.contours > 0) {
     ContourLabelSettings labels{settings.ground.contours * lines_per_heavy_contour()};
@@ -239,7 +224,6 @@ void add_legend(const FigureOptions& options, const PictureSettings& settings, c
 #else
 
 void check_figure(const FigureOptions& options, const PictureSettings&, const PictureFormat&) {
-  if (!options.graticule.empty()) graticule_spacing(options.graticule);
   if (!options.any().empty())
     throw Error(fmt::format("{}: this scarp was built without Cairo (SCARP_CAIRO=OFF)", options.any()));
 }
