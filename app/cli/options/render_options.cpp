@@ -290,7 +290,7 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
                         .help = "vertical field of view",
                         .unit = "degrees",
                         .range = {1, 150},
-                        .fallback = fmt::format("{}; comanche {}, functions without --view {}", view.fov_deg,
+                        .fallback = fmt::format("{}; comanche {}, functions {}", view.fov_deg,
                                                 kComancheFov, kFunctionView.fov_deg),
                         .common = true});
   add(&camera.top, {.names = "--top",
