@@ -8,7 +8,7 @@ set(documents README.md CHANGELOG.md APICHANGES.md CONTRIBUTING.md bench/README.
     .github/ISSUE_TEMPLATE/*.md)
 # folders whose code is checked, subfolders included
 set(code_folders scarp app bench test examples)
-set(code_files h cpp comp vert frag)
+set(code_files h cpp comp vert frag glsl gdshader shader)
 # calls of the program whose output is checked; only of subcommands that every build has
 set(help_calls "--help" "render --help all" "cast --help all" "composite --help all" "viewshed --help all" "shadow --help all"
     "los --help all" "profile --help all" "info --help all" "generate --help all" "replay --help all" "voxelise --help all"

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Answers that the easy texts of naive, fixed-step, relaxed and lipschitz (march/sampling/*_easy.glsl) may give in
+// floats. The judge follows the rule in double, point by point, and with each time a bound of how far the text's own
+// time is from it (doc/dev/numerics.md, "The easy texts over functions"). Where a decision is within its bound, both
+// answers count.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scarp/base/ray.h"
+#include "scarp/field/height_function.h"
+#include "scarp/march/march_settings.h"
+
+namespace scarp::test {
+
+/// A status as in march_state.glsl.h, and a time with its bound; they matter for hits and exhausted rays.
+struct TimedStatus {
+  int status = 0;
+  double t = 0, off = 0;
+};
+
+/// The answers of one ray.
+struct EasyAnswers {
+  TimedStatus exact;                 ///< of the rule in double
+  std::vector<TimedStatus> allowed;  ///< of the text; one, unless a decision was within its bound
+  bool lost = false;                 ///< the bound became too wide to go on: the text may also give other answers
+
+  /// Empty if the text may give this answer, otherwise the reason.
+  std::string objection(int status, double t) const;
+};
+
+/// Follows a ray from t = 0 to ray.t_max, all of whose numbers are floats. The ground of the text is function.value()
+/// at a float position, rounded to float. `march`: naive, fixed-step, relaxed, lipschitz.
+EasyAnswers easy_answers(std::string_view march, const MarchSettings& settings, const HeightFunction& function,
+                         const Ray& ray);
+
+/// Whether the text may hit at t by its own rule, whatever points came before. fixed-step: always, as its points are
+/// known beforehand.
+bool may_hit_at(std::string_view march, const MarchSettings& settings, const HeightFunction& function, const Ray& ray,
+                double t);
+
+}  // namespace scarp::test
