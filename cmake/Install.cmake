@@ -89,6 +89,14 @@ foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS height/max_
 endforeach()
 add_custom_target(scarp_flat_texts ALL DEPENDS ${flat_texts})
 install(FILES ${flat_texts} DESTINATION ${shader_folder})
+# The short ones, as they are: marches over a function of the shader's own, max-mip, and complete shaders that use them.
+set(easy_texts "")
+foreach(name naive relaxed lipschitz fixed_step)
+  list(APPEND easy_texts scarp/march/sampling/${name}_easy.glsl)
+  install(FILES scarp/march/sampling/${name}_easy.glsl DESTINATION ${shader_folder}/easy RENAME ${name}.glsl)
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/glsl/max_mip_easy.glsl DESTINATION ${shader_folder}/easy RENAME max_mip.glsl)
+install(DIRECTORY examples/shaders/ DESTINATION ${shader_folder}/easy/examples)
 
 # For editors that complete scene files by their schema.
 install(FILES scarp/scene/file/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/scarp)

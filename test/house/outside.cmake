@@ -62,6 +62,14 @@ foreach(compiler g++ clang++)
   endif()
 endforeach()
 
+# The short shader texts and their examples.
+foreach(file naive.glsl relaxed.glsl lipschitz.glsl fixed_step.glsl max_mip.glsl examples/shadertoy.glsl examples/webgl2.html
+        examples/godot.gdshader examples/unity.shader)
+  if(NOT EXISTS ${PREFIX}/share/scarp/glsl/easy/${file})
+    message(FATAL_ERROR "share/scarp/glsl/easy/${file} is not installed")
+  endif()
+endforeach()
+
 # What scarp.h declares and scarp::core lacks is named by the linker.
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core --target outside_door OUTPUT_VARIABLE output ERROR_VARIABLE output
                 RESULT_VARIABLE status)
