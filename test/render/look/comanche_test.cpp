@@ -196,7 +196,7 @@ TEST(Comanche, HeightsMatchItsRays) {
       for (int x = 0; x < 48; ++x) {
         const Ray ray = camera.ray(x + 0.5, y + 0.5);
         const Hit hit = stepped ? steps.march(ray, nullptr).hit : scene.closest_hit(ray);
-        const int grey = hit ? grey_of_height(ray.at(hit.t).z, field.min_height(), field.max_height()) : 0;
+        const int grey = hit ? grey_of_height(ray.at(hit.t).z, {field.min_height(), field.max_height()}) : 0;
         EXPECT_EQ(image.pixel(2 * x, 2 * y + 1)[1], grey) << march << " " << x << ", " << y;
         ground += grey > 0;
       }
