@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain::open() of scarp.h.
+// Terrain::open(), declared in scarp.h.
 #include <utility>
 
 #include "scarp/scarp.h"

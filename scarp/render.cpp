@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// render() of scarp.h.
+// render(), declared in scarp.h.
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/png.h"
@@ -28,7 +28,7 @@ void render(const Scene& scene, const std::string& path, const PictureSettings& 
   require_visible(scene);
   if (scene.wraps())
     throw Error("picture: ground that wraps round has no end (give a camera a reach, and call render_picture())");
-  // Reserved first: an unwritable place is found before the work.
+  // Reserved first, so that an unwritable path fails before rendering starts.
   ReplaceFile file(path);
   const Scene shown = scene.only_field() && !scene.on_device() ? with_plinth(scene) : scene;
   const WorldBox box = picture_box(shown);

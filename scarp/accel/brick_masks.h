@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Occupancy of bricks: a 64-bit mask per sector of 4 x 4 x 4 bricks (16 x 16 x 16 voxels), bit x + 4 y + 16 z as in the
 // bricks themselves. Grids with a side above kOneLevel also have coarser levels, a mask per 4 x 4 x 4 cells of the
-// level below, up to a single cell: a tree with 64 children per node, by coordinates instead of pointers. Cost: 8 bytes
-// per sector, 1/64 of the grid's masks; in grids of more than 2^33 voxels only where something is solid.
+// level below, up to a single cell: a tree with 64 children per node, addressed by coordinates instead of pointers.
+// Cost: 8 bytes per sector, 1/64 of the grid's masks; in grids of more than 2^33 voxels only where something is solid.
 #pragma once
 
 #include <cstddef>

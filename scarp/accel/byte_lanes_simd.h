@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rows of bytes in vectors, for edits of voxel accelerators: lanes shifted along a row, and distances spread along it.
-// Every vector is loaded and stored at the same places of a row, so that loads never straddle recent stores.
-// Read once for each instruction set.
+// Every vector is loaded and stored at the same positions in a row, so that loads never straddle recent stores.
+// Included once per instruction set.
 #if defined(SCARP_ACCEL_BYTE_LANES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_ACCEL_BYTE_LANES_SIMD_H
 #undef SCARP_ACCEL_BYTE_LANES_SIMD_H
@@ -29,7 +29,7 @@ constexpr std::size_t N = hn::MaxLanes(d8);
 using V = hn::Vec<decltype(d8)>;
 static_assert(N <= VoxelBytes::kReadBeyond, "the last vector of a row reads beyond it");
 
-// Lane i of from_above is lane i + k, of from_below lane i - k; what is missing comes from the next or previous vector.
+// Lane i of from_above is lane i + k, of from_below lane i - k; missing lanes come from the next or previous vector.
 #if HWY_TARGET == HWY_SCALAR
 template <int k>
 HWY_INLINE V from_above(V, V next) {
@@ -70,7 +70,7 @@ HWY_INLINE V beside(V lanes, V neighbours) {
   return from_above<1>(lanes, neighbours);
 }
 
-// The minimum of each lane and, plus their distance, of all lanes on one side of it.
+// For each lane, the minimum over that lane and all lanes on one side, each plus its distance.
 template <bool kLower, int k = 1>
 HWY_INLINE V spread(V lanes) {
   if constexpr (k < static_cast<int>(N)) {
@@ -104,7 +104,7 @@ class ByteRows {
   std::size_t padded() const { return count_ * N; }
   /// 255 in lanes beyond the row.
   HWY_INLINE V beyond(std::size_t x) const { return hn::LoadU(d8, beyond_.data() + x); }
-  /// Distance of each lane from the neighbour of the vector on one side.
+  /// Distance of each lane from the vector's neighbour on one side.
   template <bool kLower>
   HWY_INLINE V away() const {
     return hn::LoadU(d8, kLower ? from_lower_ : from_higher_);

@@ -25,8 +25,8 @@ Key key_near(const HeightCode& code, double place) {
   return key_of(static_cast<float>(std::clamp(code.base + code.step * place, -double{kHighest}, double{kHighest})));
 }
 
-// Returns the greatest key in [low, high] for which `holds`. `holds` must be true up to some key and false after it,
-// and true for `low`. Searches near `guess` first, with doubling steps.
+// Returns the greatest key in [low, high] for which `holds` is true. It must be true for `low` and all keys up to the
+// result, and false after it. Searches near `guess` first, with doubling steps.
 template <class Holds>
 Key last_key(Key low, Key high, Key guess, Holds holds) {
   Key step = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: height codes of float samples as tables, for devices without double precision.
+// Private to scarp/accel: height codes of float samples as tables, for devices without double precision.
 #pragma once
 
 #include <cstdint>

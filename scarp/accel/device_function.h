@@ -23,7 +23,7 @@ class DeviceFunction {
   std::uint64_t address(FunctionUse use) const;
   /// Error bound of heights computed on the device.
   const SingleRounding& rounding(FunctionUse use) const { return rounding_[static_cast<std::size_t>(use)]; }
-  /// Size on the device.
+  /// Size on the device, in bytes.
   std::uint64_t bytes() const { return code_.bytes(); }
 
  private:

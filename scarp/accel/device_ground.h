@@ -7,8 +7,8 @@
 //   Ground(push.ground) ... ground_cell(...)      // in GLSL
 //
 // Memory: the samples (odd rows of 16-bit samples are padded), 4/3 bytes per cell for the pyramid and 3 for the maxima
-// in the order in which shaders walk (quads). The samples must fit in one
-// allocation of the device, and in 2^31 - 1 words.
+// in the order in which shaders traverse them (quads). The samples must fit in one device allocation and in 2^31 - 1
+// words.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class DeviceGround {
   const glsl::GroundBuffers& layout() const { return layout_; }
   const HeightCode& code() const { return code_; }
   const std::vector<PyramidLevel>& levels() const { return levels_; }
-  /// Size on the device.
+  /// Size on the device, in bytes.
   std::uint64_t bytes() const;
   /// Returns all entries, level 1 first: maximum code | minimum code << 16.
   std::vector<std::uint32_t> read_pyramid() const;

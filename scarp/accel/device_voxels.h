@@ -2,12 +2,12 @@
 // Voxel grids in device memory, each with the accelerator of its march. Shaders read them through voxel_buffers.glsl.h,
 // from one address:
 //
-//   const DeviceVoxels voxels(device, grids);          // of a field; objects that share a grid share its memory
+// const DeviceVoxels voxels(device, grids); // grids of a field; objects that share a grid share its memory
 //   push.grids = voxels.address();                     // Address in the push constants of the shader
 //   VoxelGrids(push.grids).grids[i] ... voxel_mask(...) // in GLSL
 //
-// Grids share a few large buffers, because drivers limit the number of allocations; blocks that are larger than one
-// buffer may be are rejected. A grid takes as much memory as on the CPU.
+// Grids share a few large buffers, because drivers limit the number of allocations; blocks that exceed the size limit
+// of a buffer are rejected. A grid takes as much memory as on the CPU.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@
 
 namespace scarp {
 
-/// A grid with the accelerator of its march: at most one; without it, the march is voxel-planes.
+/// A grid with the accelerator of its march: at most one is set; without one, the march is voxel-planes.
 struct MarchedGrid {
   const VoxelGrid* grid = nullptr;
   VoxelBox box;  ///< in which rays are followed
@@ -46,13 +46,13 @@ class DeviceVoxels {
   DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids);
 
   /// Updates grid `index` after an edit that returned `changed`; the accelerator may have changed in `marks`. Copies
-  /// that part of it alone, unless pages outgrow their places.
+  /// only the changed parts, unless pages outgrow their slots.
   void update(std::size_t index, const MarchedGrid& parts, const VoxelBox& changed, const VoxelBox& marks);
 
   /// Address of the array of ScarpVoxelGrid.
   std::uint64_t address() const { return header_->address(); }
   const std::vector<glsl::ScarpVoxelGrid>& layout() const { return layout_; }
-  /// Size on the device.
+  /// Size on the device, in bytes.
   std::uint64_t bytes() const;
 
  private:
@@ -61,7 +61,7 @@ class DeviceVoxels {
     std::shared_ptr<DeviceBuffer> buffer{};
     std::uint64_t offset = 0, room = 0;  // bytes
   };
-  // Where the entries of a page are, in words.
+  // Position of a page's entries, in words.
   struct Slot {
     std::uint32_t first = 0, room = 0;
   };

@@ -3,10 +3,10 @@
 // the voxel is empty. Space outside the grid is empty; distances are capped at 255.
 //
 // Three builders with identical results:
-//   rows          one axis after the other, 16 voxels at a time (voxel_nearness.h). O(n): the default, and used for
-//   edits bit_parallel  dilates the solid voxels by one in all directions, 64 voxels at a time, and counts how long
-//   each voxel
-//                 stays outside. O(n D): fast if no voxel is far from solid ones
+//   rows          one axis after the other, 16 voxels at a time (voxel_nearness.h). O(n): the default, also used for
+//                 edits
+//   bit_parallel  dilates the solid voxels by one in all directions, 64 voxels at a time, and counts the steps for
+//                 which each voxel stays outside. O(n D): fast if no voxel is far from solid voxels
 //   summed_area   a summed-area table in 64 bits, then a binary search for the largest empty cube. O(n log n). Source:
 //                 C. Leak, "Raymarching voxel rendering"; F. Crow, "Summed-area tables for texture mapping", SIGGRAPH
 //                 1984
@@ -30,7 +30,7 @@ class EmptyCubes {
   explicit EmptyCubes(const VoxelGrid& grid, CubeBuilder builder = CubeBuilder::rows);
 
   /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits the
-  /// voxels that were at least as far from solid ones as from the box (cube_edit.h).
+  /// voxels that were at least as far from solid voxels as from the box (cube_edit.h).
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   int distance(const ivec3& voxel) const { return distances_[voxel]; }

@@ -27,7 +27,7 @@ class EmptySpheres {
   explicit EmptySpheres(const VoxelGrid& grid);
 
   /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits the
-  /// voxels that were at least as far from solid ones as from the box (sphere_rows.h).
+  /// voxels that were at least as far from solid voxels as from the box (sphere_rows.h).
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   /// Returns kSolid for solid voxels.

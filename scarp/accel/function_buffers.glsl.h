@@ -27,7 +27,7 @@ const uint kScarpNoiseSlope = 13u;
 const uint kScarpTerrace = 14u;
 const uint kScarpRadial = 15u;
 
-/// Bits for the contents of a program: 1 << op, and 1 << (kScarpNoiseBit + kind) for noise.
+/// Bits that describe the contents of a program: 1 << op, and 1 << (kScarpNoiseBit + kind) for noise.
 const uint kScarpNoiseBit = 16u;
 
 /// Number of registers. Registers 0 and 1 hold x and y at the start of the program.

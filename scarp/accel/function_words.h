@@ -12,13 +12,13 @@
 
 namespace scarp {
 
-/// Returns the words of one program.
+/// Returns the encoded instructions of one program.
 std::vector<glsl::ScarpInstruction> function_words(const FunctionProgram& program);
 
 /// Returns the contents of a program as bits: 1 << op, 1 << (kScarpNoiseBit + kind).
 std::uint32_t function_parts(const FunctionProgram& program);
 
-/// Error bound of heights of one program as computed by shaders, by position.
+/// Error bound of one program's heights as computed by shaders, depending on position.
 class SingleRounding {
  public:
   /// Throws Error if a constant does not fit in single precision.

@@ -31,11 +31,11 @@ const uint kGroundWrapNone = 0u;
 const uint kGroundWrapPeriodic = 1u;
 const uint kGroundWrapSharedBorder = 2u;
 
-// Height that the sideways error of a walk in floats is worth, per height difference within a cell
-// (doc/dev/numerics.md, "The lean pass"): 2^-19.
+// Height equivalent of a float walk's sideways error, per height difference within a cell (doc/dev/numerics.md, "The
+// lean pass"): 2^-19.
 const float kGroundSpread = 1.9073486328125e-6f;
 
-// Levels of the largest field that 31 bits can index.
+// Number of levels of the largest field that 31 bits can index.
 const uint kGroundMaxLevels = 31u;
 
 /// Position and size of a pyramid level.
@@ -72,7 +72,7 @@ struct GroundBuffers {
   float code_step;
   float code_step_low;
   float code_per_step;  // 1 / step, rounded
-  float code_over;      // code higher than the highest sample
+  float code_over;      // a code above the highest sample
   float min_sample;     // of the current samples; undefined if all samples are nodata
   float max_sample;
   float spread;  // kGroundSpread times the largest height difference within a cell, rounded up
@@ -83,11 +83,11 @@ struct GroundBuffers {
   GroundLevel levels[kGroundMaxLevels];
 };
 
-// Quads lie in rows of ground_quad_stride() quads: level 1 on top, below it the other levels side by side.
+// Quads are stored in rows of ground_quad_stride() quads: level 1 first, then the other levels side by side.
 SCARP_FN uint ground_quad_stride(uint level_1_cols, uint top_level) { return level_1_cols + top_level; }
 
-/// Index of the quad of block (col, row) of a level, 1 .. top_level. The level starts where no coarser one can reach:
-/// level l has at most (level_1_cols >> (l - 1)) + 1 columns.
+/// Index of the quad of block (col, row) of a level, 1 .. top_level. Each level starts beyond the columns of all
+/// coarser ones: level l has at most (level_1_cols >> (l - 1)) + 1 columns.
 SCARP_FN uint ground_quad(uint level_1_cols, uint level_1_rows, uint stride, uint level, uint col, uint row) {
   uint begin = level_1_rows * stride + level_1_cols - (level_1_cols >> (level - 2u)) + (level - 2u);
   return row * stride + col + (level == 1u ? 0u : begin);

@@ -17,7 +17,7 @@ struct HeightCode {
 
   /// Returns the height of a code in sample units. Builders and readers of codes use exactly this expression.
   double height(std::uint16_t code) const { return base + step * code; }
-  /// Returns the code of a height plus one, for rays in codes.
+  /// Returns the code of a height, plus one, for rays in codes.
   float code_over(double height) const { return static_cast<float>((height - base) * per_step + 1); }
 };
 
@@ -33,7 +33,7 @@ SampleRange code_range(const HeightField& field, const std::optional<SampleRange
 /// Returns whether the field's samples are still in range; always true for 16-bit samples, whose codes cover all
 /// values.
 bool is_in_range(const HeightField& field, const SampleRange& range);
-/// Returns the mapping for a range. For 16-bit samples codes equal the samples, for any range.
+/// Returns the mapping for a range. For 16-bit samples, codes equal the samples, for any range.
 HeightCode height_code(SampleType type, const SampleRange& range);
 
 }  // namespace scarp

@@ -6,10 +6,10 @@
 //   reader  ----[ epoch 7 ]----------------              [ epoch 8 ]--
 //   edit                          waits  [ copy, update ]
 //
-// A reader holds a Reading for as long as its queries must see one state of the field: for a ray, a batch or a frame.
-// The epoch of a state is the number of edits before it. An edit waits for current readings, and later readings wait
-// for the edit, so neither side starves. An edit blocks readers while it copies its samples and updates the pyramid
-// over them: 0.2 to 0.3 ms for 256 x 256 samples of a large field.
+// A reader holds a Reading as long as its queries must see one state of the field: for a ray, a batch or a frame. The
+// epoch of a state is the number of edits before it. An edit waits for current readings, and later readings wait for
+// the edit, so neither side starves. An edit blocks readers while it copies its samples and updates the pyramid over
+// them: 0.2 to 0.3 ms for 256 x 256 samples of a large field.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Maximum and minimum mipmap of a height field: for every block of 2^level x 2^level cells, an upper and a lower bound
-// of the surface in it, and a tilted plane above it (block_planes.h). Beside it, the steepest edges (relief_map.h).
+// of the surface in it, and a tilted plane above it (block_planes.h). Also keeps the steepest edges (relief_map.h).
 //
 //   level 0: the cells themselves, the extremes of their FOUR corner samples (both surfaces stay between them). Not
 //            stored: a cell test needs the samples anyway, and all other levels take a quarter of the memory
@@ -67,13 +67,13 @@ class MaxPyramid {
   const BlockPlanes& planes() const { return *planes_; }
   const ReliefMap& relief() const { return *relief_; }
 
-  /// Bounds of one block in sample units, level 1 .. top_level(): the minimum is -infinity if there is none, the
-  /// maximum of a block of holes is that of code 0.
+  /// Bounds of one block in sample units, level 1 .. top_level(): the minimum is -infinity if there is none; the
+  /// maximum of a block of holes is the height of code 0.
   double maximum(int level, int col, int row) const;
   double minimum(int level, int col, int row) const;
 
   /// Upper bound of the height difference within any cell, in code steps; up to 65535 with holes. After edits it may
-  /// exceed that of a rebuild.
+  /// exceed the bound that a rebuild would give.
   int cell_relief() const { return shared_->cell_relief; }
   /// HeightField::edits() at the last update; if the field has more, queries may lose hits.
   std::uint64_t edits() const { return shared_->edits; }

@@ -25,8 +25,8 @@ class PyramidPasses {
   explicit PyramidPasses(const Device& device);
 
   /// Records the passes that recompute all entries over `changed`, finer levels first, with barriers before and
-  /// between. `ground` is the address of the field's GroundBuffers, `codes` that of the tables for float samples.
-  /// Raises cell_relief on the device.
+  /// between. `ground` is the address of the field's GroundBuffers, `codes` the address of the tables for float
+  /// samples. Raises cell_relief on the device.
   void record(Commands& commands, std::uint64_t ground, std::uint64_t codes, const HeightField& field,
               const CellBox& changed) const;
 

@@ -5,9 +5,9 @@
 //   |  |  |  |     ends. Along a grid axis the surface in a block rises by at most this much per cell, bilinear or
 //   o--o--o--o     triangles.
 //
-// Rays of one origin that go beside one another need it: as long as one of them is above the ground, another one is
-// too if it is higher by more than the ground can rise in between (march/height/max_mip_fan.h). Nodata samples count as
-// the lowest of the field.
+// Used for adjacent rays from one origin: while one of them is above the ground, another one is too if it is higher by
+// more than the ground can rise between them (march/height/max_mip_fan.h). Nodata samples count as the field's lowest
+// sample.
 //
 // Source: own. Cost: 4 bytes per 64 cells, one pass over the samples.
 #pragma once
@@ -26,7 +26,7 @@ class ReliefMap {
 
   /// Computes all blocks, on all threads. A field without cells has none.
   void build(const HeightField& field);
-  /// Recomputes the blocks over `changed` after an edit: as build(), for these.
+  /// Recomputes the blocks over `changed` after an edit; these then equal a rebuild.
   void update(const HeightField& field, CellBox changed);
 
   int cols() const { return cols_; }
@@ -34,7 +34,7 @@ class ReliefMap {
   std::size_t bytes() const { return blocks_.size() * sizeof(float); }
   /// Rows from north to south, no padding. In sample units per cell.
   const float* row(int r) const { return blocks_.data() + static_cast<std::ptrdiff_t>(r) * cols_; }
-  /// Height that nodata samples count as.
+  /// Height that is substituted for nodata samples.
   float lowest() const { return lowest_; }
 
  private:

@@ -37,7 +37,7 @@ const uint kScarpShapeSkipCopy = 22u;
 /// Number of registers, for positions and for values. Position 0 holds the position at the start of the program, value
 /// 0 the result at its end.
 const int kScarpShapeRegisters = 32;
-/// Replaces infinity.
+/// Stands for infinity.
 const float kScarpEndless = 1.0e30f;
 
 /// DistanceInstruction without its material, which the host evaluates in double.

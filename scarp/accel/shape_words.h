@@ -19,7 +19,7 @@ struct ShapeWords {
 ShapeWords shape_words(const DistanceProgram& program);
 /// Returns the operations in a program as bits: 1 << op.
 std::uint32_t shape_parts(const DistanceProgram& program);
-/// Returns the contents of its function grounds, as function_parts() does.
+/// Returns the contents of the program's function grounds, as function_parts() does.
 std::uint32_t shape_function_parts(const DistanceProgram& program);
 
 /// Error bound of values as computed by shaders, in metres: a value at the origin, plus a rate per metre of distance

@@ -9,8 +9,8 @@
 namespace scarp {
 
 /// Returns the argument for make_shape(): the field with its slope bound. If the field has holes, copies it with the
-/// holes filled, and uses the original for their positions (field/ground_holes.h); it must not be edited then. Throws
-/// Error if the field is null or all nodata.
+/// holes filled and uses the original for the positions of the holes (field/ground_holes.h); the original must then not
+/// be edited. Throws Error if the field is null or all nodata.
 shape::FieldGround solid_ground(std::shared_ptr<const HeightField> field);
 
 }  // namespace scarp

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Layout of voxel grids in device memory, and of the objects that they are placed as. DeviceVoxels (device_voxels.h)
-// and DeviceVoxelObjects (march/voxel/voxel_queries_vk.h) write it; shaders read it here.
+// Layout of voxel grids, and of the objects that place them, in device memory. DeviceVoxels (device_voxels.h) and
+// DeviceVoxelObjects (march/voxel/voxel_queries_vk.h) write it; shaders read it through this file.
 //
 //   ScarpVoxelGrid ──first_masks──▶ a uint per page of 64 bricks ──masks──▶ a mask per brick, two words
 //                  ──pages──▶ ScarpVoxelPage per stored page ──entries──▶ packed colour entries, by rank
@@ -21,8 +21,8 @@ SCARP_GLSL_BEGIN
 
 /// Entries of a page of 64 bricks.
 struct ScarpVoxelPage {
-  uint first_word;  ///< of the entries
-  uint ranks[8];    ///< entries before each 4 bricks, 16 bits each
+  uint first_word;  ///< index of the first word of the entries
+  uint ranks[8];    ///< number of entries before each group of 4 bricks, 16 bits each
 };
 
 struct ScarpVoxelGrid {
@@ -38,7 +38,7 @@ struct ScarpVoxelGrid {
   ivec3 high;
   uint entry_bits;
   uint march;
-  uint octant_bytes;  ///< bytes of the marks of one octant; 0: they are the same for all
+  uint octant_bytes;  ///< bytes of marks per octant; 0: all octants share them
   uint none;
 };
 
@@ -60,8 +60,8 @@ struct ScarpVoxelTurn {
   uint ties[16];
 };
 
-/// A node of BoxTree's hierarchy over the objects: four boxes relative to the centre of all, and their children, each a
-/// node or kScarpBoxLeaf with an object.
+/// A node of BoxTree's hierarchy over the objects: four boxes relative to the centre of the whole hierarchy, and four
+/// children, each a node or kScarpBoxLeaf plus an object.
 struct ScarpBoxNode {
   vec4 low_x;
   vec4 low_y;
@@ -95,7 +95,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vox
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VoxelNodes { ScarpBoxNode of[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelObjects { ScarpVoxelObjects is; };
 
-// The index of a brick's mask.
+// Returns the index of a brick's mask.
 uint voxel_mask_index(ScarpVoxelGrid grid, ivec3 brick) {
   uvec3 at = uvec3(brick), bricks = uvec3(grid.bricks);
   uint index = at.x + bricks.x * (at.y + bricks.y * at.z);
@@ -112,7 +112,7 @@ uint voxel_byte(ScarpVoxelGrid grid, ivec3 voxel, uint octant) {
   uint at = octant * grid.octant_bytes + uint(voxel.x + grid.size.x * (voxel.y + grid.size.y * voxel.z));
   return VoxelWords(grid.marks).words[at >> 2] >> (8u * (at & 3u)) & 255u;
 }
-// VoxelGrid::entry() of a solid voxel.
+// Returns the entry of a solid voxel, as VoxelGrid::entry() does.
 uint voxel_entry(ScarpVoxelGrid grid, ivec3 voxel) {
   uint index = voxel_mask_index(grid, voxel >> 2);
   uint bit = uint(voxel.x & 3) | uint(voxel.y & 3) << 2 | uint(voxel.z & 3) << 4;

@@ -14,7 +14,7 @@ namespace scarp {
 /// Maximum grid side for accelerators with bytes per voxel.
 constexpr int kMaxAcceleratedSide = 512;
 
-/// Throws Error naming `what` and its bytes if a grid of this size is larger.
+/// Throws Error, naming `what` and its size in bytes, if a side exceeds kMaxAcceleratedSide.
 void require_accelerable(const ivec3& size, std::string_view what, int bytes_per_voxel = 1);
 
 /// Bytes of a grid, x fastest.

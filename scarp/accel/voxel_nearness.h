@@ -2,13 +2,14 @@
 // Nearness to the nearest solid voxel by Chebyshev distance, in rows of bytes. Empty cubes are built from it; empty
 // spheres and octant cubes use its first step, along x alone.
 //
-//   255 on solid voxels, one less for each step away, 0 for 255 steps and more: a step is a saturating subtraction,
+//   255 on solid voxels, one less per step away, 0 from 255 steps on: a step is a saturating subtraction,
 //   and 16 or 32 of them are one instruction
 //
 // One axis after the other: along x in strides of 1, 2, 4, ...; then each row takes the values of its neighbour in y
-// and of that row's neighbours in x; then each slab likewise along z. This is exact: a shortest path goes along x
-// first, then along x and y, then along all three. O(n) for any content of the grid. Source: A. Rosenfeld, J. Pfaltz,
-// "Distance functions on digital pictures", Pattern Recognition 1968 (the two passes of its chessboard distance).
+// and of that row's neighbours in x; then each slab likewise along z. This is exact: some shortest path first moves
+// along x, then along x and y, then along all three axes. O(n) for any content of the grid. Source: A. Rosenfeld, J.
+// Pfaltz, "Distance functions on digital pictures", Pattern Recognition 1968 (the two passes of its chessboard
+// distance).
 #pragma once
 
 #include <cstddef>
@@ -22,8 +23,8 @@ namespace scarp {
 /// Rows of bytes, separated by zeros.
 struct NearRows {
   ivec3 size;
-  std::size_t used;    ///< bytes of a row in whole blocks; those beyond its voxels are undefined
-  std::size_t stride;  ///< from row to row
+  std::size_t used;    ///< bytes of a row, rounded up to whole blocks; those beyond its voxels are undefined
+  std::size_t stride;  ///< bytes from row to row
   std::uint8_t* first;
 
   std::uint8_t* row(int y, int z) const {
@@ -36,12 +37,12 @@ class VoxelNearness {
  public:
   static constexpr std::size_t kBlock = 32;  // bytes
 
-  /// Which neighbours along an axis count.
+  /// Which neighbours along an axis are used.
   struct Sides {
     bool lower = true, upper = true;
   };
 
-  /// Covers a window of a grid; not spread yet.
+  /// Covers a window of a grid; values are not spread yet.
   VoxelNearness(const VoxelGrid& grid, const VoxelBox& window);
 
   /// Spreads along x alone: nearness within each row.
@@ -52,8 +53,8 @@ class VoxelNearness {
   /// Writes `farthest` minus nearness, modulo 256, for the voxels of a part of the window.
   void write_far(const VoxelBox& part, std::uint8_t farthest, VoxelBytes& to) const;
 
-  /// A row of the window; y and z count from its lowest ones. kBlock bytes beyond its voxels are readable but
-  /// undefined; if only upper sides count, those up to a multiple of kBlock are 0.
+  /// Returns a row of the window; y and z are relative to the window's lowest ones. kBlock bytes beyond its voxels are
+  /// readable but undefined; if only upper neighbours are used, those up to a multiple of kBlock are 0.
   std::uint8_t* row(int y, int z) { return rows().row(y, z); }
   const std::uint8_t* row(int y, int z) const { return const_cast<VoxelNearness*>(this)->row(y, z); }
   std::ptrdiff_t slabs_apart() const { return static_cast<std::ptrdiff_t>(stride_) * size_.y; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts edits of fields, so that structures built from a field can detect that they are out of date.
+// Counts edits to fields, so that structures built from a field can detect that they are out of date.
 #pragma once
 
 #include <atomic>
@@ -7,11 +7,11 @@
 
 namespace scarp {
 
-/// Number of edits of all fields in this process: while it does not change, no field does. Scenes compare it before
+/// Number of edits to all fields in this process: while it does not change, no field does. Scenes compare it before
 /// every query and check their own fields only if it changed.
 extern std::atomic<std::uint64_t> edits_of_all_fields;
 
-/// Number of edits of one field. Copies start from the same number.
+/// Number of edits to one field. Copies start from the same number.
 class EditCount {
  public:
   void add() {

@@ -10,7 +10,7 @@
 //   const scarp::ExecutorScope scope(jobs);     // for this thread, until the scope ends
 //   scarp::cast(scene, rays, hits);             // on the engine's threads
 //
-// Without an executor, batches run on all threads of oneTBB. Nothing here is shared by the process: each thread has the
+// Without an executor, batches run on all threads of oneTBB. Nothing here is process-wide: each thread uses the
 // executor of its innermost scope.
 #pragma once
 
@@ -23,16 +23,18 @@ class Executor {
  public:
   virtual ~Executor() = default;
   /// Calls piece(i) once for each i in [0, pieces), on any threads and in any order, and returns when all calls have
-  /// returned; what they wrote must be visible then. `pieces` is at least 2. `piece` does not throw: Scarp passes
-  /// exceptions on itself. May be called by several threads at once if several have a scope of this executor. Batches
-  /// that a piece starts run in the thread of that piece, so run() is not called from within itself.
+  /// returned; what they wrote must be visible then. `pieces` is at least 2. `piece` does not throw: Scarp catches
+  /// exceptions and rethrows them to its caller. May be called by several threads at once if several have a scope of
+  /// this executor. Batches that a piece starts run in the thread of that piece, so run() is not called from within
+  /// itself.
   virtual void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) = 0;
 };
 
 /// Returns an executor that runs all pieces in the calling thread, in order.
 Executor& caller_thread();
 
-/// While it lives, batches and builds that this thread starts run on `executor`, which must outlive it. Scopes nest.
+/// During its lifetime, batches and builds that this thread starts run on `executor`, which must outlive it. Scopes
+/// nest.
 class ExecutorScope {
  public:
   explicit ExecutorScope(Executor& executor);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Four floats that are computed together: one register with GCC and clang, an array that compilers may vectorise with
-// others (MSVC).
+// Four floats that are processed together: one register with GCC and clang; with other compilers (MSVC) an array, which
+// they may vectorise.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ using FourFloats = float __attribute__((vector_size(16)));
 
 inline FourFloats greater_of(const FourFloats& a, const FourFloats& b) { return a > b ? a : b; }
 inline FourFloats lesser_of(const FourFloats& a, const FourFloats& b) { return a < b ? a : b; }
-/// Per number, non-zero where a <= b.
+/// Per element: non-zero where a <= b.
 inline auto not_above(const FourFloats& a, const FourFloats& b) { return a <= b; }
 
 #else

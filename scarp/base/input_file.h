@@ -7,8 +7,8 @@
 namespace scarp {
 
 /// Throws Error, whose text starts with `subject`, if `path` is a pipe, a socket or a device: opening or reading it may
-/// wait for ever. Accepts files, folders, names of nothing, and streams that the program was started with (/dev/stdin,
-/// /dev/fd/N), which are open already.
+/// block forever. Accepts files, folders, paths that do not exist, and streams that the program was started with
+/// (/dev/stdin, /dev/fd/N), which are open already.
 void refuse_special_file(const std::string& path, const std::string& subject = {});
 
 }  // namespace scarp

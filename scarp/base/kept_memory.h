@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Memory of vectors that each thread keeps from one task to the next. Allocators return large blocks to the system;
-// a loop over tiles of a picture that allocates its vectors for each tile spends most of its time in page faults.
+// Vector memory that each thread keeps from one task to the next. Allocators return large blocks to the system; a loop
+// over tiles of a picture that allocates its vectors for each tile spends most of its time in page faults.
 //
 //   struct Task {
 //     Task() { borrow(rays); }        // empty, with the capacity that the last task on this thread left
@@ -15,7 +15,7 @@
 
 namespace scarp {
 
-/// Vectors that are larger are not kept, bytes; nor are more of one type than this.
+/// Maximum size of a kept vector, in bytes, and maximum number of kept vectors per type.
 inline constexpr std::size_t kMostKept = std::size_t{4} << 20, kMostVectorsKept = 4;
 
 template <class T>
@@ -24,7 +24,7 @@ std::vector<std::vector<T>>& kept_memory() {
   return kept;
 }
 
-/// Gives a vector without memory one that this thread keeps for its type.
+/// Gives a vector without memory the memory of one that this thread keeps for its type.
 template <class T>
 void borrow(std::vector<T>& vector) {
   auto& kept = kept_memory<T>();

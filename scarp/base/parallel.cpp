@@ -45,18 +45,18 @@ struct HandOver {
 };
 #endif
 
-// A loop's pieces, whichever threads run them: counts what is done for `progress`.
+// The pieces of a loop, on any thread: counts the completed items for `progress`.
 class Pieces {
  public:
   Pieces(std::int64_t count, const std::function<void(std::int64_t, std::int64_t)>& body, const Progress& progress)
       : count_(count), body_(body), progress_(progress) {}
 
-  /// Returns false when no more pieces need be run.
+  /// Returns false when no more pieces need to run.
   bool run(std::int64_t begin, std::int64_t end) {
     body_(begin, end);
     if (!progress_) return true;
     done_ += end - begin;
-    // A thread that finds another one reporting skips its report instead of waiting. The fraction is read under the
+    // A thread skips its report if another thread is reporting, instead of waiting. The fraction is read under the
     // lock; otherwise an older value could follow a newer one.
     const std::unique_lock<std::mutex> lock(reporting_, std::try_to_lock);
     if (lock && !progress_(static_cast<double>(done_) / static_cast<double>(count_))) stopped_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parallel loops over independent work items: on the executor of the calling thread (executor.h), else by oneTBB.
+// Parallel loops over independent work items: on the executor of the calling thread (executor.h), otherwise on oneTBB.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ namespace scarp {
 namespace fs = std::filesystem;
 
 // An append-only list with reusable entries: a signal handler walks it without a lock and never accesses freed memory.
-// The thread that takes a name out of its entry owns the name.
+// The thread that removes a name from its entry owns the name.
 struct ReplaceFile::Noted {
   std::atomic<char*> name;
   Noted* next;

@@ -11,7 +11,7 @@ inline double as_float(double value) {
   return static_cast<double>(rounded);
 }
 
-/// Sets high + low to the value, rounded to 48 bits or more.
+/// Splits a value into high + low, accurate to at least 48 bits.
 inline void split(double value, float& high, float& low) {
   const double rounded = as_float(value);
   high = static_cast<float>(rounded);

@@ -11,7 +11,8 @@ namespace {
 
 double sign_of(double x) { return x < 0 ? -1 : 1; }
 
-// Distance to a point, line or core that is `away`: its curvature is at most 1 / away.
+// Curvature bound, in a ball of radius r, of the distance to a point, line or core that is `away`: at most 1 /
+// distance.
 double bend_of(double away, double r) { return away > r ? 1 / (away - r) : kCreased; }
 
 // Direction away from the z axis; arbitrary on the axis.
@@ -19,8 +20,8 @@ dvec3 from_axis(const dvec3& q, double distance) {
   return distance > 0 ? dvec3(q.x / distance, q.y / distance, 0) : dvec3(1, 0, 0);
 }
 
-// The corner where all of `a` are negative; a_i grows by 1 per metre along `sign` times axis[i]. bend[i] is the
-// curvature of a_i itself.
+// The corner in which all `a` are negative; a[i] grows by 1 per metre along axis[i]. bend[i] is the curvature of a[i]
+// itself.
 template <std::size_t N>
 Bent corner(const std::array<double, N>& a, const std::array<dvec3, N>& axis, const std::array<double, N>& bend,
             double r) {
@@ -28,7 +29,7 @@ Bent corner(const std::array<double, N>& a, const std::array<dvec3, N>& axis, co
   for (std::size_t i = 1; i < N; ++i) {
     if (a[i] > a[top]) top = i;
   }
-  // A single face in the whole ball: the other planes are behind this one.
+  // A single face is the nearest in the whole ball: the other planes are behind it.
   bool alone = true;
   for (std::size_t i = 0; i < N; ++i) alone = alone && (i == top || (a[i] + r <= 0 && a[i] + r <= a[top] - r));
   if (alone) return {a[top], axis[top], bend[top]};
@@ -56,7 +57,7 @@ Bent bent_cone(const dvec3& q, const double* k, double r) {
   const double value = cone(q, k);
   const dvec3 side_normal = outwards * normal_r + dvec3(0, 0, normal_z);
   const dvec3 disc_normal(0, 0, sign_of(q.z));
-  // A single face in the whole ball.
+  // A single face is the nearest in the whole ball.
   if (along - r >= 0 && along + r <= side && beyond + r <= off - r && (off - r >= 0 || beyond + r <= 0)) {
     return {value, side_normal, r > 0 ? bend_of(from_z, r) : 0};
   }

@@ -15,7 +15,8 @@ using distance::BentMode;
 using distance::GradientMode;
 using distance::PointMode;
 
-// Gradient of a 1-Lipschitz function from the corners of a tetrahedron; its length is arbitrary at a crease.
+// Gradient of a 1-Lipschitz function from its values at the corners of a tetrahedron; its length is arbitrary at a
+// crease.
 dvec3 from_differences(const DistanceField& field, const dvec3& p) {
   constexpr double kStep = 0x1p-17;  // relative step: between the cube roots of the rounding error, 2^-53, and of 1
   const double h = kStep * std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -64,7 +65,7 @@ DistanceSegment DistanceField::along(const dvec3& origin, const dvec3& direction
                                      bool rates) const {
   const dvec3 p = origin + 0.5 * (t0 + t1) * direction, d = 0.5 * (t1 - t0) * direction;
   const double radius = length(d) * (1 + 0x1p-40);
-  // Once for the values in the middle, once for values computed at other positions.
+  // Twice: for the values at the middle, and for values computed at other positions.
   const double rounding = 2 * this->rounding(length(p) + radius);
   const BentMode::Value v = distance::run(program_, BentMode{radius, rates}, {p, d}).value;
   return {v.f.mid, v.f.slope[0], v.f.rest + rounding, v.f.low - rounding, v.f.high + rounding, v.rate_low, v.rate_high};

@@ -16,7 +16,7 @@ dvec2 clamped_to(const HeightField& field, const dvec3& q) {
   return {std::clamp(q.x, 0.0, field.width()), std::clamp(q.y, 0.0, field.depth())};
 }
 
-// Distance outside the field's border, negative inside.
+// Signed distance to the field's border, negative inside.
 double beyond_border(const HeightField& field, const dvec3& q) {
   if (field.wraps()) return -std::numeric_limits<double>::infinity();
   return corner2(std::max(-q.x, q.x - field.width()), std::max(-q.y, q.y - field.depth()));
@@ -165,7 +165,7 @@ BentMode::Value BentMode::rest_bound(const Value& a, const Position& p, const do
     least = std::min(least, std::sqrt(rest_bound_along(p.p, k, axis)) - radius);
   }
   if (least >= a.f.high) return a;
-  // At the middle everything relevant has been evaluated, if the shape is exact.
+  // If the shape is exact, everything relevant at the middle has been evaluated.
   const double lowest = std::min(a.f.low, least);
   return from_range(mask ? std::max(lowest, a.f.mid - a.f.rest - radius) : lowest, a.f.high);
 }
@@ -207,7 +207,7 @@ BentMode::Value BentMode::field_ground(const HeightField& field, const HeightFie
   const OverHole hole = over_hole(*holes, at, radius / scale);
   const double value = hole.value * scale;
   if (value + radius <= ground.f.low) return ground;
-  // Where the segment may be outside the field, the rim is that of the clamped position.
+  // Where the segment may be outside the field, `hole` is that of the clamped position.
   const bool flat = hole.flat && at.x == q.x && at.y == q.y && beyond_border(field, q) * scale + radius < 0;
   const Value rim = from_bent({value, dvec3(hole.gradient, 0), flat ? 0 : kCreased}, p.d);
   return negative(minimum(negative(ground), negative(rim)));
@@ -217,7 +217,7 @@ BentMode::Value BentMode::field_without_holes(const HeightField& field, const do
   const double scale = k[3], shrink = k[4], factor = shrink * scale;
   const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / scale, d = p.d / scale;
   const double value = field_ground_value(field, nullptr, q, shrink) * scale;
-  // By the walls alone, or over the ground alone; where they meet, only the Lipschitz bound holds.
+  // Near the walls alone, or over the ground alone; where they meet, only the Lipschitz bound holds.
   if (!field.wraps()) {
     const double border = beyond_border(field, q) * scale;
     const dvec2 at = clamped_to(field, q);

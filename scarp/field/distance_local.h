@@ -16,8 +16,8 @@
 
 namespace scarp::distance {
 
-/// A distance within a ball: value and gradient at its centre, and the maximum of the second derivative in any
-/// direction anywhere in the ball; infinite if there may be a crease.
+/// A distance within a ball: its value and gradient at the centre, and the maximum second derivative in any direction
+/// anywhere in the ball; infinite if there may be a crease.
 struct Bent {
   double value;
   dvec3 gradient;

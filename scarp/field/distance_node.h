@@ -26,12 +26,12 @@ namespace scarp {
 struct ShapeNode;
 using Shape = std::shared_ptr<const ShapeNode>;
 
-/// Range of lengths, metres.
+/// Range of lengths, in metres.
 inline constexpr double kLeastLength = 0x1p-20;
 inline constexpr double kMostLength = 0x1p30;
 /// Maximum depth of a tree.
 inline constexpr int kDeepestShape = 256;
-/// Materials are in 0 .. kMostMaterial.
+/// Materials range from 0 to kMostMaterial.
 inline constexpr int kMostMaterial = 65535;
 
 /// A closed axis-aligned box. Infinite on unbounded sides; empty if low > high.
@@ -83,17 +83,17 @@ struct Torus {
 struct Ellipsoid {
   dvec3 radii{1, 1, 0.5};
 };
-/// Ground of a function, solid below it. A bound: the height above the ground / sqrt(1 + c^2), where c is the certified
-/// slope over the whole plane.
+/// Function terrain, solid below. A bound: the height above the ground / sqrt(1 + c^2), where c is the certified slope
+/// over the whole plane.
 struct FunctionGround {
   std::shared_ptr<const HeightFunction> function;
 };
-/// Ground of a height field, solid below it, with vertical walls at its borders and around its holes, which are
-/// bottomless shafts. A bound like FunctionGround. Made by solid_ground() of accel/solid_ground.h. The field must not
-/// be edited during queries; a steeper slope or other holes require a new shape.
+/// Height-field terrain, solid below, with vertical walls at its borders and around its holes, which are bottomless
+/// shafts. A bound like FunctionGround. Made by solid_ground() (accel/solid_ground.h). The field must not be edited
+/// during queries; a steeper slope or other holes require a new shape.
 struct FieldGround {
   std::shared_ptr<const HeightField> field;    ///< without holes, or with filled ones
-  double slope = 0;                            ///< slope_bound(*field) of accel/slope_bound.h
+  double slope = 0;                            ///< slope_bound(*field), accel/slope_bound.h
   std::shared_ptr<const HeightField> holes{};  ///< field that defines the holes, on the same grid; null: no holes
 };
 
@@ -106,14 +106,14 @@ struct Moved {
 struct Turned {
   Shape shape;
   dvec3 axis{0, 0, 1};  ///< any non-zero length
-  double angle = 0;     ///< counter-clockwise, seen from the axis' end
+  double angle = 0;     ///< counter-clockwise, seen from the tip of the axis
 };
 /// Scales a shape about the origin.
 struct Scaled {
   Shape shape;
   double factor = 1;  ///< > 0, uniform
 };
-/// Repeats the shape `period` apart along each axis with a period. The shape must not be longer than the period, so
+/// Repeats the shape `period` apart along each axis with a period. The shape must not be larger than the period, so
 /// that only two copies per axis can be the nearest.
 struct Repeated {
   Shape shape;
@@ -131,7 +131,7 @@ struct Intersection {
   std::vector<Shape> parts;  ///< at least one
   double smooth = 0;
 };
-/// Points of `from` outside `what`. The cut has the material of `what`.
+/// Points of `from` outside `what`. The cut surface has the material of `what`.
 struct Subtraction {
   Shape from, what;
   double smooth = 0;
@@ -154,7 +154,7 @@ struct ShapeNode {
   ShapeBox box;  ///< bounding box, as tight as is cheap
 };
 
-/// Throws Error for a setting out of range (by name), a missing operand, a field with holes, a repeated shape longer
+/// Throws Error for a setting out of range (by name), a missing operand, a field with holes, a repeated shape larger
 /// than its period, or a tree deeper than kDeepestShape.
 Shape make_shape(shape::Form form);
 

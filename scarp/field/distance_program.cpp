@@ -19,7 +19,7 @@ using namespace shape;
 
 constexpr std::size_t kMostInstructions = 16384;
 
-// Frame of a shape: its own position of a point p of the register is turn (p - at) / scale.
+// Frame of a shape: a point p of the register is at turn (p - at) / scale in the shape's own coordinates.
 struct ShapeFrame {
   Turn turn = kNoTurn;
   dvec3 at{0.0};
@@ -111,8 +111,8 @@ class Compiler {
   DistanceProgram program(const Shape& shape) {
     emit(shape, ShapeFrame{}, 0);
     constexpr double kUnit = 0x1p-53;
-    // Roundings of a solid, of each rotation before it, and of all smooth operations in sequence. The maximum counted
-    // is 20, 8 and 10.
+    // Number of roundings of a solid, of each rotation before it, and of each smooth operation in sequence. The maxima
+    // counted are 20, 8 and 10.
     const double roundings = 32 + 16.0 * turns_ + 16.0 * smooth_ + (program_.fields.empty() ? 0 : 48);
     program_.rounding_per_metre = kUnit * roundings;
     program_.rounding = kUnit * roundings * (size_ + radii_);
@@ -121,7 +121,7 @@ class Compiler {
 
  private:
   void emit(const Shape& shape, const ShapeFrame& place, int out) {
-    // Position registers of a shape are free again after it.
+    // Position registers of a shape become free after it.
     const int positions = positions_;
     std::visit([&](const auto& form) { put(form, *shape, place, out); }, shape->form);
     positions_ = positions;
@@ -275,7 +275,7 @@ class Compiler {
 
   // Operations.
   void put(const Union& u, const ShapeNode&, ShapeFrame place, int out) {
-    // Empty parts are dropped: their values carry no information.
+    // Drops empty parts: their values carry no information.
     std::vector<Shape> parts;
     for (const Shape& part : u.parts) {
       if (!part->box.empty()) parts.push_back(part);
@@ -405,7 +405,7 @@ class Compiler {
         fmt::format("shape: needs more than {} positions or values at a time (nest less deeply)", kDistanceValues));
   }
 
-  // Records for rounding: size of a solid's numbers besides the position, metres.
+  // Records, for the rounding bound, the size of a solid's numbers other than the position, in metres.
   void note(const ShapeFrame& place, double size) {
     size_ = std::max(size_, place.chain + length(place.at) + size);
     turns_ = std::max(turns_, place.turns);
@@ -465,7 +465,7 @@ class Compiler {
     program_.code[skip].index = static_cast<std::uint32_t>(program_.code.size() - skip - 1);
   }
 
-  // The place in its own register, where the shape is upright.
+  // Loads the frame into a register of its own, in which the shape is upright.
   ShapeFrame straightened(const ShapeFrame& place) {
     if (place.upright()) return place;
     ShapeFrame out;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A shape compiled to a flat list of instructions, for evaluation on CPU and GPU and for bounds.
 //
-// Position registers are each in the frame of the solids that read them; value registers each carry the material of
-// their solid. Constants are in one array. All lengths are in world metres: scales are folded into the constants.
+// Each position register is in the frame of the solids that read it; each value register also carries the material of
+// its solid. All constants are in one array. All lengths are in world metres: scales are folded into the constants.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 namespace scarp {
 
 enum class DistanceOp : std::uint8_t {
-  // Positions: position register `out` from position register `a`.
-  turn,       ///< M (p - c): 3 numbers of c, 9 of M row by row
+  // Positions: compute position register `out` from position register `a`.
+  turn,       ///< M (p - c): the 3 numbers of c, then the 9 of M in row-major order
   fold,       ///< to the frame of the nearest copy: 12 numbers, see below
   neighbour,  ///< to the frame of the adjacent copy along the axes in `mask`: the same 12 numbers
-  // Solids: value register `out` from position register `a`; constants start with the centre, then as listed.
+  // Solids: compute value register `out` from position register `a`; the constants are the centre, then those listed.
   sphere,           ///< radius
   box,              ///< half x, y, z without the rounding; rounding radius
   plane,            ///< unit normal; height (no centre)
@@ -30,14 +30,14 @@ enum class DistanceOp : std::uint8_t {
   ellipsoid,        ///< radii; the smallest radius
   function_ground,  ///< scale, shrink; `index` of a function
   field_ground,     ///< scale, shrink, slope; `index` of a field
-  // Values: value register `out` from value registers `a` and `b`.
+  // Values: compute value register `out` from value registers `a` and `b`.
   unite,         ///< minimum
   intersect,     ///< maximum
   subtract,      ///< max(a, -b)
   smooth_unite,  ///< as above, with a blend radius
   smooth_intersect,
   smooth_subtract,
-  clamp,       ///< maximum of `a` and the distance of position `b` to a box: low, high
+  clamp,       ///< maximum of `a` and the distance from position `b` to a box: low, high
   rest_bound,  ///< minimum of `a` and a lower bound at position `b` for copies that are not evaluated: 12 numbers;
                ///< with mask 1 it can be smaller only over segments, not at a position
   // Skips: omit the next `index` instructions if they cannot change value `a` at position `b`.
@@ -66,7 +66,7 @@ struct DistanceProgram {
   std::vector<DistanceInstruction> code;
   std::vector<double> numbers;
   std::vector<std::shared_ptr<const HeightFunction>> functions;
-  std::vector<double> function_away;  ///< maximum offset of each function's frame from a position, metres
+  std::vector<double> function_away;  ///< maximum offset of each function's frame from a position, in metres
   std::vector<std::shared_ptr<const HeightField>> fields;
   std::vector<std::shared_ptr<const HeightField>> holes;  ///< for each field: the field that defines its holes, or null
   double rounding = 0,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Interpreter for the program of a shape, over positions (PointMode, here), with gradients, or over segments of rays
+// Interpreter for the program of a shape, at positions (PointMode, here), with gradients, or over ray segments
 // (distance_local.h). A mode defines positions, values and the effect of each instruction.
 #pragma once
 
@@ -116,11 +116,11 @@ Result<typename Mode::Value> run(const DistanceProgram& program, const Mode& mod
 inline dvec3 within_reach(const dvec3& q) {
   return {std::clamp(q.x, -kFunctionReach, kFunctionReach), std::clamp(q.y, -kFunctionReach, kFunctionReach), q.z};
 }
-/// Scaled height above the ground of a field, including its walls, at a position in its frame, with x and y clamped to
-/// it. `holes` as in FieldGround.
+/// Scaled height above a field's ground, including its walls, at a position in the field's frame, with x and y clamped
+/// to the field. `holes` as in FieldGround.
 double field_ground_value(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink);
 
-/// Evaluates plain positions and values.
+/// Evaluates positions and values without derivatives.
 template <class T>
 struct PointMode {
   using Position = Vec<T>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Distance functions of single solids about their centre; k are the constants after the centre.
+// Distance functions of single solids, relative to their centre; k are the constants after the centre.
 //
 // Signed and exact except for the ellipsoid, a bound: the norm |q / radii| changes by at most 1 / (smallest radius) per
 // metre. Sources: elementary geometry; J. C. Hart, "Sphere tracing", 1996, appendix A; the cone after I. Quilez,
@@ -33,7 +33,7 @@ T positive(T a) {
   return std::max(a, T(0));
 }
 
-/// Distance to the quadrant or octant where all coordinates are negative.
+/// Signed distance to the quadrant or octant in which all coordinates are negative.
 template <class T>
 T corner2(T x, T y) {
   return length2(positive(x), positive(y)) + std::min(std::max(x, y), T(0));
@@ -67,7 +67,7 @@ template <class T>
 T cone(const Vec<T>& q, const double* k) {
   const T below = T(k[0]), above = T(k[1]), half = T(k[2]);
   const T r = length2(q.x, q.y), beyond = std::abs(q.z) - half;
-  // To the nearer disc, and to the side, `along` of the way down from its upper end.
+  // Distances to the nearer disc and to the side; `along` is the fraction of the side's length from its upper end.
   const T disc = length2(positive(r - (q.z < 0 ? below : above)), beyond);
   const T dr = below - above, dz = -2 * half;
   const T along = std::clamp(((r - above) * dr + (q.z - half) * dz) / (dr * dr + dz * dz), T(0), T(1));

@@ -27,10 +27,11 @@ inline Turn after(const Turn& a, const Turn& b) {
   }
   return m;
 }
-/// Counter-clockwise rotation seen from the axis' end (Rodrigues' formula). Quarter turns about the axes are exact.
+/// Counter-clockwise rotation, seen from the tip of the axis (Rodrigues' formula). Quarter turns about the axes are
+/// exact.
 inline Turn turn_about(const dvec3& axis, double angle) {
   const dvec3 n = normalize(axis);
-  // cos(pi / 2) is 6e-17 in double: values below 2^-50 are meant as quarter turns.
+  // cos(pi / 2) is 6e-17 in double: values below 2^-50 are taken to be exact quarter turns.
   const auto snapped = [](double x) {
     return std::abs(x) < 0x1p-50 ? 0.0 : std::abs(x) > 1 - 0x1p-50 ? std::copysign(1.0, x) : x;
   };

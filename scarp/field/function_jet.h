@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Terrain function instructions on a number with M derivatives (forward differentiation): analytic gradients over plain
-// numbers, slope bounds over Taylor models.
+// Terrain function instructions on a number with M derivatives (forward-mode differentiation): analytic gradients for
+// plain numbers, slope bounds for Taylor models.
 #pragma once
 
 #include <algorithm>
@@ -58,14 +58,14 @@ Jet<T, M> turned_place(double k0, const Jet<T, M>& a, double k1, const Jet<T, M>
   for (std::size_t i = 0; i < M; ++i) out.d[i] = combine(k0, a.d[i], k1, b.d[i], 0);
   return out;
 }
-/// v with the derivatives f1 * a'.
+/// Returns v with the derivatives f1 * a'.
 template <class T, std::size_t M>
 Jet<T, M> chained(const T& v, const T& f1, const Jet<T, M>& a) {
   Jet<T, M> out{v, {}};
   for (std::size_t i = 0; i < M; ++i) out.d[i] = multiply(f1, a.d[i]);
   return out;
 }
-/// v with the derivatives fa * a' + fb * b'.
+/// Returns v with the derivatives fa * a' + fb * b'.
 template <class T, std::size_t M>
 Jet<T, M> chained(const T& v, const T& fa, const Jet<T, M>& a, const T& fb, const Jet<T, M>& b) {
   Jet<T, M> out{v, {}};

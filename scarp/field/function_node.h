@@ -21,7 +21,7 @@ namespace scarp {
 struct FunctionNode;
 using Function = std::shared_ptr<const FunctionNode>;
 
-/// Maximum of all settings (lengths, heights, factors), so that nothing overflows.
+/// Maximum of every setting (lengths, heights, factors), so that nothing overflows.
 inline constexpr double kMostMetres = 0x1p30;
 /// Maximum depth of a tree.
 inline constexpr int kDeepestFunction = 256;
@@ -54,7 +54,7 @@ struct Octaves {
   int normal = 12;
 };
 
-/// Combination of octaves.
+/// How octaves are combined.
 enum class FractalForm : std::uint8_t {
   fbm,     ///< sum of octaves
   ridged,  ///< each octave is folded at 0 into ridges and weighted by the previous ones
@@ -70,8 +70,9 @@ struct Fractal {
   double height = 200;       ///< amplitude of the first octave, >= 0
   double gain = 0.5;         ///< amplitude ratio of successive octaves, 0 < gain <= 1
   double lacunarity = 2;     ///< wavelength ratio of successive octaves, 1..8
-  dvec2 turn{0.8, 0.6};      ///< rotation from octave to octave: cosine and sine of the angle
-  double damping = 0;        ///< k >= 0: octaves are weighted by 1 / (1 + k |d|^2), d the sum of the noise gradients
+  dvec2 turn{0.8, 0.6};      ///< rotation from one octave to the next: cosine and sine of the angle
+  double damping = 0;        ///< k >= 0: octaves are weighted by 1 / (1 + k |d|^2), where d is the sum of the noise
+                             ///< gradients
   double focus = 2;          ///< for ridged: how quickly a ridge reveals the next octave, > 0
   Octaves octaves{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain function instructions on plain numbers: defines heights.
+// Terrain function instructions on plain numbers. They define the heights.
 #pragma once
 
 #include <algorithm>

@@ -81,7 +81,8 @@ class Compiler {
                                   kFunctionRegisters));
         }
         holds[static_cast<std::size_t>(free)] = step.out + n;
-        // Unread values live through their own step; otherwise another output of that step could take their register.
+        // Unread values stay live during their own step; otherwise another output of that step could take their
+        // register.
         auto& until = last[static_cast<std::size_t>(step.out + n)];
         until = std::max(until, i);
         place[static_cast<std::size_t>(step.out + n)] = static_cast<std::uint8_t>(free);
@@ -132,7 +133,7 @@ class Compiler {
     return use_ == FunctionUse::march ? octaves.march : use_ == FunctionUse::shadow ? octaves.shadow : octaves.normal;
   }
   int emit(const Fractal& f, int x, int y) {
-    // Off the lattice: (0, 0) would be a zero of every octave of gradient noise.
+    // Offset from the lattice: otherwise every octave of gradient noise would be zero at (0, 0).
     constexpr double kOffX = 0.3125, kOffY = 0.6875;
     const double c = f.lacunarity * f.turn.x, s = f.lacunarity * f.turn.y;
     int u = scale(1 / f.wavelength, x, kOffX), v = scale(1 / f.wavelength, y, kOffY);

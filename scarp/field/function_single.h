@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Single-precision error bounds of a terrain function over a square of positions: for heights computed by shaders
-// (march/function/function_heights.glsl.h), and for the remaining width of segment bounds as segments shrink
+// (march/function/function_heights.glsl.h), and for the width that remains in segment bounds as segments shrink
 // (march/function/function_bounds.glsl.h).
 //
 // Each number of the program is tracked as the range of its true values and a bound of its error. Pairs of floats are
@@ -16,7 +16,7 @@
 namespace scarp::function {
 
 inline constexpr double kFloat = 0x1p-24, kPair = 0x1p-43;
-/// Maximum magnitude of numbers, clear of float overflow.
+/// Maximum magnitude of numbers, far below float overflow.
 inline constexpr double kMostSingle = 0x1p60;
 
 /// Widening of range bounds: kScarpSlack of march/function/function_bounds.glsl.h.
@@ -37,7 +37,7 @@ inline Single single_of(double low, double high, double error, double range, boo
   return {low, high, error, std::max(error, range),
           fits && low > -kMostSingle && high < kMostSingle && error < kMostSingle};
 }
-/// Result of an instruction that bounds evaluate by ranges, at least in places.
+/// Result of an instruction that bounds evaluate by ranges, at least in part.
 inline Single by_range(double low, double high, double error, double range, bool fits) {
   return single_of(low, high, std::max(error, range), range, fits);
 }
@@ -88,7 +88,7 @@ inline Single maximum(const Single& a, const Single& b) {
   return by_range(std::max(a.low, b.low), std::max(a.high, b.high), std::max(a.error, b.error),
                   a.range + b.range + kRangeSlack * (a.most() + b.most()), a.fits && b.fits);
 }
-/// The weight of a is accurate to 4 units within the radius, exact beyond, and matters least near 0 and 1.
+/// The weight of a is accurate to 4 units within the radius and exact beyond; its error matters least near 0 and 1.
 inline Single smooth_minimum(const Single& a, const Single& b, double radius) {
   const double size = a.most() + b.most() + radius;
   return single_of(std::min(a.low, b.low) - 0.25 * radius, std::min(a.high, b.high),

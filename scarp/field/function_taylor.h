@@ -8,10 +8,10 @@
 //          ___---  . .  mid + slope s - rest      values computed in double at any point
 //        _low_______________________              are within `error` of the true value
 //
-// Rounding of the bounds themselves: every operation widens its results by kSlack times the magnitude of its operands,
-// twice the effect of fewer than 8 roundings of 2^-53. Noise is bounded by its value and gradient at the middle and by
-// bound_of() (noise.h), to second order if the segment is short relative to the lattice; otherwise by its range,
-// without evaluating the lattice.
+// To cover the rounding of the bounds themselves, every operation widens its results by kSlack times the magnitude of
+// its operands, twice the effect of fewer than 8 roundings of 2^-53. Noise is bounded by its value and gradient at the
+// middle and by bound_of() (noise.h), to second order if the segment is short relative to the lattice; otherwise by its
+// range, without evaluating the lattice.
 //
 // Source: K. Makino, M. Berz, "Taylor models and other validated functional inclusion methods", 2003; the local bound
 // on a segment of the ray as in E. Galin et al., "Segment tracing using local Lipschitz bounds", Eurographics 2020.
@@ -58,7 +58,7 @@ inline void settle(Taylor<N>& t) {
   }
 }
 
-/// A model that knows only a range. `low` and `high` must already include rounding errors.
+/// A model that consists of a range only. `low` and `high` must already include rounding errors.
 template <std::size_t N>
 Taylor<N> from_range(double low, double high, double error) {
   Taylor<N> t;
@@ -270,7 +270,7 @@ void radial_slope(const Taylor<N>& x, const Taylor<N>& y, const FunctionInstruct
   const double width = in.k3 - in.k2;
   const auto [least, most] =
       fade_slope_range(radial_phase(far, in.k2, in.k3) * (1 - kSlack), radial_phase(near, in.k2, in.k3) * (1 + kSlack));
-  // Unit vector away from the centre: unbounded direction near the centre, a quotient of ranges elsewhere.
+  // Unit vector away from the centre: any direction if the range includes the centre, otherwise a quotient of ranges.
   const double steepest = most / width * (1 + kSlack), calmest = least / width * (1 - kSlack);
   const auto part = [&, near = near, far = far](double low, double high) {
     double from = -1, to = 1;
@@ -293,8 +293,8 @@ double wander(const Taylor<N>& a, const Taylor<N>& b) {
   return sum * (1 + kSlack);
 }
 
-/// The derivative d of noise at the middle, its own derivatives dx and dy there, and bounds of it and of its first and
-/// second derivatives, over a segment within distance r of the middle.
+/// Model of d, a derivative of noise, over a segment within distance r of the middle: from d and its derivatives dx and
+/// dy at the middle, and bounds of d and of its first and second derivatives.
 template <std::size_t N>
 Taylor<N> derivative_over(const Taylor<N>& a, const Taylor<N>& b, double r, double d, double dx, double dy, double most,
                           double first, double second, double rounding) {
@@ -315,13 +315,12 @@ Taylor<N> derivative_over(const Taylor<N>& a, const Taylor<N>& b, double r, doub
 ///
 ///      q/2  .             .          n = mid + slope s + q s^2 / 2 +- third r^3 / 6
 ///             .         .
-///      q/4 - - - . - . - - - -       the offset from the line adds curvature: |off| (half + |off| / 2) |H|, H the
-///      second
-///        0 ________.__________       derivatives, |H| the root of their squares
+///      q/4 - - - . - . - - - -       the offset from the line adds curvature: |off| (half + |off| / 2) |H|, where H
+///        0 ________.__________       is the matrix of second derivatives and |H| the root of the sum of their squares
 ///          s = -1     0     1
 ///
-/// The other bound, curvature r^2 / 2 without q, is smaller for longer segments. `rounding` is that of n and of each of
-/// its derivatives; r < 1.
+/// The other bound, curvature r^2 / 2 without q, is smaller for longer segments. `rounding` is the rounding error of n
+/// and of each of its derivatives; r < 1.
 inline Taylor<1> value_over(const Taylor<1>& a, const Taylor<1>& b, double r, const NoiseJet& jet,
                             const NoiseBound& bound, double hessian, double curvature, double rounding) {
   const double sx = a.slope[0], sy = b.slope[0];
@@ -365,7 +364,8 @@ NoiseOver<N> noise_over(const FunctionInstruction& in, const Taylor<N>& a, const
     return out;
   }
   const NoiseJet jet = noise_jet(in.kind, in.seed, a.mid, b.mid);
-  // Bound of the second derivative in any direction anywhere on the segment: that at the middle, or the global bound.
+  // Bound of the second derivative in any direction, anywhere on the segment: from its value at the middle, or the
+  // global bound.
   const double hessian = std::sqrt(jet.xx * jet.xx + 2 * jet.xy * jet.xy + jet.yy * jet.yy) * (1 + kSlack);
   const double curvature = std::min(bound.curvature, hessian + bound.third * r + rounding);
   if constexpr (N == 1) {

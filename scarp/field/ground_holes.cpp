@@ -27,7 +27,7 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
   // Distances to the lines on each side, metres: west, none, east; north, none, south.
   const double to_x[] = {at->u * s.cell_x, 0, (1 - at->u) * s.cell_x};
   const double to_y[] = {at->v * s.cell_y, 0, (1 - at->v) * s.cell_y};
-  double nearest = far;  // nearest cell of the other kind
+  double nearest = far;  // distance to the nearest cell of the other kind (ground or hole)
   int side_x = 0, side_y = 0;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -47,12 +47,12 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
   }
   OverHole out{hole ? nearest : -nearest, dvec2(0.0), false};
   if (side_x == 0 && side_y == 0) return out;
-  // Away from the nearest point of the ground, or towards that of the hole; rows run southwards.
+  // Away from the nearest point of the ground, or towards the nearest point of the hole; rows run southwards.
   dvec2 to(side_x * to_x[side_x + 1], -side_y * to_y[side_y + 1]);
   if (!(length(to) > 0)) to = dvec2(side_x, -side_y);
   out.gradient = (hole ? -1.0 : 1.0) * normalize(to);
   if (side_x * side_y != 0) return out;
-  // A straight rim is all there is within the radius: neither an end of the line nor another rim is as near.
+  // True if only a straight rim is within the radius: neither its ends nor another rim are.
   const bool across = side_x != 0;
   const double ends = across ? std::min(to_y[0], to_y[2]) : std::min(to_x[0], to_x[2]);
   const double behind = across ? to_x[1 - side_x] : to_y[1 - side_y];
@@ -85,7 +85,7 @@ HeightField filled_holes(const HeightField& field, double slope) {
     }
   });
   // Two passes, down the rows and back, as in distance transforms: one carries heights east and south, the other west
-  // and north. Wrapped fields are not carried across the seam, which is slower there but correct.
+  // and north. Heights are not carried across the seam of wrapped fields, which is correct but slower there.
   const auto raise = [&](int col, int row, int dc, int dr, float fall) {
     const int c = col + dc, r = row + dr;
     if (c < 0 || r < 0 || c >= cols || r >= rows) return;

@@ -17,10 +17,10 @@ namespace scarp {
 struct OverHole {
   double value;    ///< metres to the rim, negative over ground; capped at the shorter side of a cell
   dvec2 gradient;  ///< of the value, in metres per metre; 0 if no rim is within the cap
-  bool flat;       ///< whether it is linear within the requested radius
+  bool flat;       ///< whether the value is linear within the requested radius
 };
 
-/// `place` is a position in the field, x and y in metres; clamp positions outside the field first.
+/// `place` is a position in the field, x and y in metres; callers clamp positions outside the field first.
 OverHole over_hole(const HeightField& field, dvec2 place, double radius);
 
 /// Returns the field with nodata replaced by heights: the maximum over all samples of a cone with this slope (metres

@@ -9,8 +9,8 @@
 namespace scarp {
 
 /// Sets heights[i] to field.height(xs[i], ys[i]) in metres, NaN outside the field and over holes, and unless `normals`
-/// is empty, normals[i] to the upward unit normal of the surface there (HeightField::normal()), zero without ground. On
-/// all threads or the executor of this thread (base/executor.h). Throws Error if spans differ in length.
+/// is empty, normals[i] to the upward unit normal of the surface there (HeightField::normal()), zero without ground.
+/// Runs on all threads, or on the executor of this thread (base/executor.h). Throws Error if spans differ in length.
 void heights_at(const HeightField& field, std::span<const double> xs, std::span<const double> ys,
                 std::span<double> heights, std::span<dvec3> normals = {});
 

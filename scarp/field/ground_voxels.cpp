@@ -24,11 +24,11 @@ class Columns {
     });
   }
 
-  /// 0 outside.
+  /// Returns the top of a column, 0 outside the grid.
   int top(int x, int y) const {
     return x < 0 || y < 0 || x >= size_.x || y >= size_.y ? 0 : tops_[to_size(x) + to_size(size_.x) * to_size(y)];
   }
-  /// Voxels below it are hidden: the lowest neighbour's top, or the column's last voxel but one.
+  /// Voxels below this height are hidden: the lowest neighbour's top, or the column's top voxel if that is lower.
   int hidden_below(int x, int y) const {
     return std::min({top(x, y) - 1, top(x - 1, y), top(x + 1, y), top(x, y - 1), top(x, y + 1)});
   }

@@ -15,9 +15,9 @@ void require_setting(bool good, std::string_view what, double value, std::string
   if (!good) throw Error(fmt::format("height field: {} is {} (must be {})", what, value, range));
 }
 
-// Maximum height and length of a field in metres; its units are at least the inverse. Products of three such numbers,
-// as in normals and distances, stay within doubles (2^1023). Checked by settings and sample type, not by samples, so
-// that edits cannot exceed it.
+// Maximum height and length of a field, in metres; its units are at least the reciprocal. Products of three such
+// numbers, as in normals and distances, stay within doubles (2^1023). Checked by settings and sample type, not by
+// samples, so that edits cannot exceed it.
 constexpr double kFarthest = 0x1p300;
 
 // The largest possible magnitude of a sample.
@@ -71,7 +71,7 @@ constexpr SampleType type_of() {
 
 double between(double a, double b, double f) { return a + f * (b - a); }
 
-// Rows in memory: `stride` samples apart, negative from the last one up.
+// Checks rows in memory, `stride` samples apart; a negative stride starts at the last row in memory.
 void require_rows(const void* samples, int cols, int rows, std::ptrdiff_t stride) {
   if (!samples) throw Error("height field: the pointer to the samples is null");
   if (rows > 1 && std::abs(stride) < cols) {
@@ -133,7 +133,7 @@ template <class T>
 HeightField HeightField::view(const T* samples, int cols, int rows, const HeightFieldSettings& settings,
                               std::ptrdiff_t row_stride, std::weak_ptr<const void> memory) {
   HeightField field(type_of<T>(), samples, cols, rows, row_stride == 0 ? cols : row_stride, settings, nullptr);
-  // One that was never set to an owner, destroyed or not, is equivalent to an empty one.
+  // A weak_ptr that never had an owner, destroyed or not, is equivalent to an empty one.
   const std::weak_ptr<const void> none;
   if (memory.owner_before(none) || none.owner_before(memory)) field.state_->memory = std::move(memory);
   return field;
@@ -182,7 +182,7 @@ CellBox HeightField::cells_of(const SampleRect& rect) const {
 
 CellBox HeightField::samples_changed(const SampleRect& rect) {
   require_inside(rect);
-  state_->edits.add();  // the caller's memory changed, whether or not it is accepted
+  state_->edits.add();  // the caller's memory changed, whether or not the new samples are accepted
   visit_unknown([&](const auto& grid) {
     refuse_infinite(grid, rect);
     require_shared_border(grid, [&](int col, int row) { return grid.at(col, row); });
@@ -239,7 +239,7 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
     col -= std::floor(col / cols) * cols;
     row -= std::floor(row / rows) * rows;
   }
-  // NaN counts as outside, and rounding beside the border as on it.
+  // NaN counts as outside; positions beside the border by no more than rounding count as on it.
   const auto inside = [](double position, int cells) {
     const double off = rounding_of_line(position, cells);
     return position >= -off && position <= cells + off;
@@ -256,7 +256,7 @@ HeightField::Place HeightField::ground_at(const Place& place) const {
   const int cols = cell_cols(), rows = cell_rows();
   const double off_u = rounding_of_line(place.cell.col + place.u, cols),
                off_v = rounding_of_line(place.cell.row + place.v, rows);
-  // Steps to the cells that have this place on their rims, too: one before, none, one behind.
+  // Whether a step, -1, 0 or 1, leads to a cell that also has this position on its rim.
   const auto reaches = [](int step, double at, double off) {
     return step < 0 ? at <= off : step > 0 ? at >= 1 - off : true;
   };
@@ -303,12 +303,12 @@ std::optional<double> HeightField::height(double x, double y) const {
 dvec2 HeightField::gradient(Cell cell, double u, double v) const {
   const CellHeights h = cell_heights(cell).value();
   const double metres = settings_.scale * settings_.exaggeration;
-  // With triangles the slope is that of one side of the cell.
+  // With triangles, the slope is that of one of the cell's two triangles.
   const bool south_east = u + v > 1;
   const bool flat = settings_.surface == Surface::triangles;
   const double along_row = between(h.h10 - h.h00, h.h11 - h.h01, flat ? south_east : v);
   const double along_col = between(h.h01 - h.h00, h.h11 - h.h10, flat ? south_east : u);
-  // Rows run southwards: the slope to the north is the negative slope along rows.
+  // Rows run southwards: the slope northwards is the negative slope along increasing rows.
   return {along_row * metres * per_cell_x_, -along_col * metres * per_cell_y_};
 }
 

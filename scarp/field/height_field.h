@@ -42,8 +42,8 @@ std::string_view name_of(SampleType type);
 /// Interpolation between the samples.
 enum class Surface : std::uint8_t {
   bilinear,   ///< the bilinear patch through the four samples of each cell
-  triangles,  ///< two triangles per cell, split along the diagonal from (col+1, row) to (col, row+1), as in mesh
-              ///< engines
+  triangles,  ///< two triangles per cell, split along the diagonal from (col+1, row) to (col, row+1), as in
+              ///< triangle-mesh renderers
 };
 
 /// Continuation beyond the border.
@@ -167,10 +167,10 @@ class HeightField {
   Place ground_at(const Place& place) const;
 
   /// Returns the distance, in cells, by which rounding may move a position off the grid line that it is on, for a field
-  /// with this many cells along the axis. A world coordinate turned into grid units takes 3 roundings (the cell as 1 /
-  /// size, the product, the difference), a ray at a time 3 more, and the coordinates of a caller, col * cell, 1:
-  /// together 7 of the position, or of the number of cells, each 2^-53. With as many for the line's own time, that is
-  /// below 16.
+  /// with this many cells along the axis. Converting a world coordinate to grid units takes 3 roundings (1 / cell size,
+  /// the product, the difference), evaluating the ray at a time 3 more, and the caller's coordinate, col * cell, 1:
+  /// together 7 roundings of 2^-53, each relative to the position or to the number of cells. The crossing time of the
+  /// line itself adds as many, which makes less than 16.
   static double rounding_of_line(double position, int cells) {
     constexpr double kUnit = 0x1p-53, kRoundings = 16;
     return kRoundings * kUnit * (std::abs(position) + cells);
@@ -199,9 +199,9 @@ class HeightField {
   /// border that would no longer be shared, or a field over caller-owned memory (view).
   template <class T>
   CellBox set_samples(const SampleRect& rect, const T* samples, std::ptrdiff_t stride);
-  /// Reports samples that the caller changed in memory of view(). Throws Error for a rectangle that is empty or not
-  /// inside the field, an infinite sample or a border that is no longer shared; in the last two cases the field must
-  /// not be used until another call succeeds.
+  /// Reports samples that the caller changed in memory passed to view(). Throws Error for a rectangle that is empty or
+  /// not inside the field, an infinite sample or a border that is no longer shared; in the last two cases the field
+  /// must not be used until another call succeeds.
   CellBox samples_changed(const SampleRect& rect);
   /// Number of successful set_samples() calls plus all samples_changed() calls, over all copies.
   std::uint64_t edits() const { return state_->edits.value(); }
@@ -255,7 +255,7 @@ class HeightField {
   dvec3 shading_normal_inside(const SampleGrid<T>& grid, Cell cell, double u, double v) const;
   dvec3 normal_of_slopes(const dvec2& slopes) const;
 
-  // A position on the border stays there: rounding must not move it out of the field.
+  // A position on the border must stay on it: rounding must not move it out of the field.
   double col_from_x(double x) const {
     const double col = x * per_cell_x_;
     return !wraps() && x <= width() ? std::min(col, static_cast<double>(cell_cols())) : col;

@@ -28,7 +28,7 @@ Taylor<1> coordinate(double origin, double direction, double t0, double t1) {
   return t;
 }
 
-// A side of a rectangle as direction i of two; positions in it are exact.
+// A side of a rectangle, as direction i of two; positions in the rectangle are exact.
 Taylor<2> side(double low, double high, std::size_t i) {
   Taylor<2> t;
   t.mid = 0.5 * (low + high);

@@ -19,7 +19,7 @@ constexpr std::uint32_t mix(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// NaN goes to the border: the result must convert to an integer.
+// NaN becomes the lower limit: the result must convert to an integer.
 double within_reach(double p) { return p > -kLatticeReach ? (p < kLatticeReach ? p : kLatticeReach) : -kLatticeReach; }
 
 std::int64_t floor_of(double p) {

@@ -37,8 +37,8 @@ struct NoiseBound {
 inline constexpr double kLatticeReach = 0x1p52;
 
 /// Returns the bounds of a kind. For any lattice a derivative is at most the sum over its corners of the weight's
-/// length. The maximum of these sums over position and direction was searched on a grid of 400 x 400 x 180, and rounded
-/// up by 0.5 % to 1 %.
+/// length. The maximum of these sums was found by a search over positions and directions on a grid of 400 x 400 x 180,
+/// and rounded up by 0.5 % to 1 %.
 NoiseBound bound_of(NoiseKind kind);
 
 /// Returns a bound of the rounding error of the noise, or of one of its derivatives, as computed at (x, y): fewer than
@@ -51,12 +51,12 @@ double noise(NoiseKind kind, std::uint32_t seed, double x, double y);
 /// Returns noise with its derivatives. The second derivatives of `perlin` and `value` are continuous.
 NoiseJet noise_jet(NoiseKind kind, std::uint32_t seed, double x, double y);
 
-/// The lattice, for independent implementations (the oracle, other back ends): a hash of a lattice point, and the two
-/// values derived from it.
+/// The lattice, for independent implementations (the test oracle, other back ends): a hash of a lattice point, and the
+/// two values derived from it.
 std::uint32_t lattice_hash(std::uint32_t seed, std::int64_t i, std::int64_t j);
 double lattice_value(std::uint32_t hash);                             ///< in [-1, 1), a multiple of 2^-31
 const double* lattice_direction(std::uint32_t hash);                  ///< x and y, one of 12 of length 1
-std::uint32_t octave_seed(std::uint64_t seed, std::uint32_t octave);  ///< mixes both
+std::uint32_t octave_seed(std::uint64_t seed, std::uint32_t octave);  ///< mixes the two
 
 /// Scales that make the extremes 1: sqrt(1/2) for Perlin noise, 0.01008 for simplex noise.
 inline constexpr double kPerlinScale = 1.4142135623730951;

@@ -8,8 +8,8 @@
 
 namespace scarp {
 
-// Rounds outwards by widening each result, without changing the processor's rounding mode: 2^-52 of it is at least one
-// unit in the last place, and 2^-1000 exceeds any subnormal.
+// Rounds outwards by widening each result, without changing the processor's rounding mode: 2^-52 of a result is at
+// least one unit in its last place, and 2^-1000 exceeds any subnormal.
 struct Outwards : boost::numeric::interval_lib::rounded_arith_exact<double> {
   using unprotected_rounding = Outwards;
   static double down(double x) { return x - (std::abs(x) * 0x1p-52 + 0x1p-1000); }

@@ -47,8 +47,8 @@ struct IsNodata<float> {
   std::int32_t mask, nodata;
 };
 
-// Minimum, maximum and nodata count of each column of a tile. Columns are adjacent so that compilers vectorise: they
-// may not reorder a single chain of float comparisons.
+// Minimum, maximum and nodata count of each column of a tile. One result per column lets compilers vectorise: they must
+// not reorder a single chain of float comparisons.
 template <class T, int kSide>
 class ColumnExtents {
  public:
@@ -57,7 +57,7 @@ class ColumnExtents {
     std::fill(high_, high_ + kSide, std::numeric_limits<T>::lowest());
   }
 
-  // kRows rows at once, from `run` on: fewer passes through the memory of this state.
+  // Processes kRows rows at once, from `run` on: fewer passes over this state in memory.
   template <int kRows, class Nodata>
   void extend(const SampleGrid<T>& grid, const Nodata& is_nodata, const T* run, int cols) {
     for (int i = 0; i < cols; ++i) {
@@ -90,7 +90,7 @@ class ColumnExtents {
   }
 
  private:
-  using Count = std::conditional_t<sizeof(T) == 2, std::int16_t, std::int32_t>;  // in as many lanes as samples
+  using Count = std::conditional_t<sizeof(T) == 2, std::int16_t, std::int32_t>;  // as many lanes as the samples have
   T low_[kSide], high_[kSide];
   Count holes_[kSide] = {};
 };

@@ -19,7 +19,7 @@ struct SampleExtent {
   void merge(const SampleExtent& other);
 };
 
-/// Extents of all tiles of a field, and of the whole.
+/// Extents of all tiles of a field, and of the whole field.
 class TileExtents {
  public:
   /// Scans all samples, on all threads. Throws Error naming the first infinite one.

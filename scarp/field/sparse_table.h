@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A table of numbers, most of them 0, for grids with more cells than memory: up to kFlat entries in an array, more in
-// chunks of kChunk entries. Chunks of zeros share one.
+// chunks of kChunk entries. Chunks of zeros share storage.
 #pragma once
 
 #include <cstddef>
@@ -36,14 +36,14 @@ class SparseTable {
     if (flat()) return values_[index];
     std::uint32_t& chunk = chunks_[index >> kChunkBits];
     if (chunk == 0) {
-      // Kept until the table is destroyed: zeros that come back keep their chunk.
+      // A chunk is kept until the table is destroyed, even if all its entries become 0 again.
       const std::size_t first = values_.size() - kReadBeyond;
       values_.resize(values_.size() + kChunk);
       chunk = static_cast<std::uint32_t>(first);
     }
     return values_[chunk + (index & (kChunk - 1))];
   }
-  /// Returns the first index from `index` on whose chunk may contain another number than 0, or size().
+  /// Returns the first index >= `index` whose chunk may contain a number other than 0, or size().
   std::size_t next(std::size_t index) const {
     if (flat() || index >= count_ || chunks_[index >> kChunkBits] != 0) return index < count_ ? index : count_;
     std::size_t chunk = index >> kChunkBits;
@@ -51,13 +51,13 @@ class SparseTable {
     return chunk << kChunkBits < count_ ? chunk << kChunkBits : count_;
   }
 
-  /// For vector code: entry i is values()[i] if flat(), otherwise values()[chunks()[i / kChunk] + i % kChunk]. One more
-  /// of each is readable.
+  /// For vector code: entry i is values()[i] if flat(), otherwise values()[chunks()[i / kChunk] + i % kChunk]. One
+  /// extra element of each is readable.
   std::span<const T> values() const { return values_; }
   std::span<const std::uint32_t> chunks() const { return chunks_; }
   std::size_t bytes() const { return values_.size() * sizeof(T) + chunks_.size() * sizeof(std::uint32_t); }
 
-  /// Compares entries, wherever they are stored.
+  /// Compares entries, regardless of how they are stored.
   friend bool operator==(const SparseTable& a, const SparseTable& b) {
     if (a.count_ != b.count_) return false;
     for (std::size_t i = 0; i < a.count_; ++i) {

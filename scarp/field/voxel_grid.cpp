@@ -36,7 +36,7 @@ std::uint32_t packed(const std::vector<std::uint64_t>& words, std::size_t place,
 
 bool valid_side(int side) { return side >= 1 && side <= VoxelGrid::kMaxSide; }
 
-// The voxels of a brick that are inside a grid of which `left` voxels remain along each axis.
+// Mask of the voxels of a brick that are inside the grid; `left` voxels of the grid remain along each axis.
 std::uint64_t mask_inside(const ivec3& left) {
   if (left.x >= 4 && left.y >= 4 && left.z >= 4) return ~std::uint64_t{0};
   std::uint64_t mask = 0;
@@ -50,7 +50,7 @@ constexpr std::uint64_t kLowX = 0x1111111111111111u, kLowY = 0x000f000f000f000fu
 
 }  // namespace
 
-// Entries by brick of the page and bit; undefined for empty voxels and dropped entries.
+// Entries, indexed by brick within the page and by bit; undefined for empty voxels and dropped entries.
 struct VoxelGrid::PageVoxels {
   std::array<std::uint64_t, kPageBricks> solid{}, coloured{};
   std::vector<std::uint32_t> entries = std::vector<std::uint32_t>(kPageBricks * kVoxelsPerBrick);
@@ -145,7 +145,7 @@ VoxelGrid::Page VoxelGrid::packed_page(std::span<const std::uint64_t> coloured,
   return page;
 }
 
-// Returns the index of its first mask.
+// Returns the index of the new page's first mask.
 std::uint32_t VoxelGrid::add_page() {
   const std::size_t first = masks_.size();
   // If one of these throws, the others have more pages than are used.
@@ -174,7 +174,7 @@ std::size_t VoxelGrid::stored(std::size_t page) {
 void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
   const auto any = [](std::uint64_t mask) { return mask != 0; };
   if (is_empty(page) && std::none_of(voxels.solid.begin(), voxels.solid.end(), any)) return;
-  // Before anything is stored, because they may throw.
+  // Computed before anything is stored, because these calls may throw.
   Page entries = packed_page(voxels.coloured, voxels.entries);
   const std::size_t first = stored(page);
   for (std::size_t brick = 0; brick < kPageBricks; ++brick) {
@@ -258,7 +258,7 @@ class VoxelGrid::Editing {
 VoxelBox VoxelGrid::edit(const VoxelBox& box, const Change& change) {
   const VoxelBox inside = intersection(box, this->box());
   if (inside.empty()) return {};
-  // Bricks come in the order of their indices, so each page is unpacked once.
+  // Bricks are visited in the order of their indices, so each page is unpacked once.
   Editing editing(*this);
   for_each_voxel({inside.low >> 2, ((inside.high - 1) >> 2) + 1}, [&](const ivec3& brick) {
     editing.go_to(brick);
@@ -323,7 +323,7 @@ VoxelBox VoxelGrid::paint(const VoxelBox& box, std::uint32_t entry) {
 VoxelBox VoxelGrid::scan_bounds() const {
   VoxelBox bounds;
   for_each_solid_brick([&](const ivec3& brick, std::uint64_t mask) {
-    // Positions along an axis where the brick has solid voxels: four bits.
+    // Positions along an axis at which the brick has solid voxels: four bits.
     const auto occupied = [&](std::uint64_t layer, int shift) {
       unsigned bits = 0;
       for (int i = 0; i < 4; ++i) bits |= (mask >> (shift * i) & layer ? 1u : 0u) << i;
@@ -390,7 +390,7 @@ VoxelBox VoxelGrid::subtract(const VoxelGrid& other) {
 VoxelBox VoxelGrid::page_box(std::size_t page) const {
   const ivec3 first = brick_at(page * kPageBricks), last = brick_at(page * kPageBricks + kPageBricks - 1);
   VoxelBox bricks{first, last + 1};
-  // A page that continues in the next row or slab counts with all of its rows or slabs.
+  // If a page continues in the next row or slab, its whole rows or slabs count.
   if (first.y != last.y || first.z != last.z) bricks.low.x = 0, bricks.high.x = bricks_.x;
   if (first.z != last.z) bricks.low.y = 0, bricks.high.y = bricks_.y;
   return {4 * bricks.low, 4 * bricks.high};

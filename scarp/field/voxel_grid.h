@@ -9,10 +9,10 @@
 // Voxel (x, y, z) is the cube from (x, y, z) to (x + 1, y + 1, z + 1); right-handed, z up, like the world. Space
 // outside the grid is empty.
 //
-// Bricks are stored in pages of 64, each with the entries of its own voxels: an edit repacks only the pages that it
-// touches. Pages without solid voxels are not stored, and those that are solid throughout and have no entries share
-// one. Cost: 1/1024 byte per voxel of the box (with more than 2^33 voxels: only where something is stored), 1.2 bits
-// per voxel of a stored page, 2.2 if hidden voxels have no entry, and entry_bits per solid voxel that has one.
+// Bricks are stored in pages of 64, each with the entries of its voxels: an edit repacks only the pages that it
+// touches. Pages without solid voxels are not stored; pages that are completely solid and have no entries share one.
+// Cost: 1/1024 byte per voxel of the box (with more than 2^33 voxels: only where something is stored), 1.2 bits per
+// voxel of a stored page, 2.2 if hidden voxels have no entry, and entry_bits per solid voxel that has one.
 #pragma once
 
 #include <array>
@@ -32,12 +32,12 @@ namespace scarp {
 class VoxelGrid {
  public:
   static constexpr int kMaxSide = 16384;
-  /// Maximum side for code that makes or reads grids voxel by voxel.
+  /// Maximum side for code that builds or reads grids voxel by voxel.
   static constexpr int kMaxModelSide = 2048;
   static constexpr int kBrick = 4;
   static constexpr int kMaxEntryBits = 24;
 
-  /// An empty grid. Each side 1 to kMaxSide, entry_bits 1 to kMaxEntryBits; throws Error otherwise.
+  /// An empty grid. Throws Error unless each side is in 1..kMaxSide and entry_bits in 1..kMaxEntryBits.
   explicit VoxelGrid(const ivec3& size, int entry_bits = 8);
 
   /// Throws Error as the constructor does.
@@ -46,15 +46,15 @@ class VoxelGrid {
   /// Fills a brick: sets the entries of its solid voxels, by bit_of(), and returns its mask.
   using FillBrick = std::function<std::uint64_t(const ivec3& brick, std::span<std::uint32_t, 64> entries)>;
   /// Builds a grid brick by brick, on all threads; faster than edit(). `fill` is called once per brick, concurrently;
-  /// voxels outside the grid are ignored. Throws Error as the constructor, or if an entry does not fit.
+  /// voxels outside the grid are ignored. Throws Error as the constructor does, or if an entry does not fit.
   static VoxelGrid built(const ivec3& size, int entry_bits, const FillBrick& fill);
 
   /// State of a box of voxels. `full`: all are solid, and none has an entry.
   enum class Contents { empty, full, mixed };
   struct Brick {
-    std::uint64_t solid = 0, coloured = 0;  ///< masks; coloured: those of the solid voxels that have an entry
+    std::uint64_t solid = 0, coloured = 0;  ///< masks; coloured: the solid voxels that have an entry
   };
-  /// Source of a world. Called concurrently.
+  /// Source of the voxels of a large grid. Its functions are called concurrently.
   struct Source {
     std::function<Contents(const VoxelBox& page)> contents;  ///< may extend beyond the grid
     std::function<Brick(const ivec3& brick, std::span<std::uint32_t, 64> entries)> fill;  ///< of mixed pages
@@ -84,14 +84,14 @@ class VoxelGrid {
     return masks_[first_mask_[index / kPageBricks] + index % kPageBricks];
   }
   static constexpr int kPageBricks = 64;
-  /// Masks of the stored pages, for vector code: that of brick_index() i is first_masks()[i / kPageBricks] + i %
+  /// Masks of the stored pages, for vector code: the mask of brick_index() i is at first_masks()[i / kPageBricks] + i %
   /// kPageBricks. All empty pages share one.
   std::span<const std::uint64_t> masks() const { return masks_; }
   /// One index of masks() per page, followed by one extra readable entry.
   std::span<const std::uint32_t> first_masks() const { return first_mask_.values(); }
   /// first_masks() as a table, which is stored in chunks for grids with more than 2^33 voxels.
   const SparseTable<std::uint32_t>& page_table() const { return first_mask_; }
-  /// Masks of the voxels with an entry, as masks(); the same memory if no entry was dropped.
+  /// Masks of the voxels with an entry, laid out as masks(); the same memory if no entry was dropped.
   std::span<const std::uint64_t> coloured_masks() const { return entry_masks(); }
   /// Stored entries of a page, for shaders: packed in entry_bits() each from the lowest bit up, with the number of
   /// entries before each group of 4 bricks. `stored` is the page's index in masks(), in pages.
@@ -200,7 +200,7 @@ class VoxelGrid {
   int entry_bits_;
   SparseTable<std::uint32_t> first_mask_;
   std::uint32_t full_ = 0;               // the masks that full pages share; 0: none
-  std::size_t empty_pages_;              // they share the first masks; the last of them to be filled takes these
+  std::size_t empty_pages_;              // they share the first masks; the last one to be filled takes these
   std::vector<std::uint64_t> masks_;     // page by page
   std::vector<std::uint64_t> coloured_;  // voxels with an entry, likewise; empty: all solid ones
   std::vector<Page> pages_;              // as masks_
