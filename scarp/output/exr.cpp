@@ -108,8 +108,8 @@ void write_rows(Imf::OutputFile& out, const ExrView& picture) {
 
 void write_exr(ReplaceFile& file, const std::string& path, const ExrView& picture) {
   require_good(path, picture);
-  // An own stream: OpenEXR writes the line table in a destructor, which swallows errors, and the last bytes reach the
-  // disk only when the stream closes.
+  // Uses its own stream: OpenEXR writes the line table in a destructor, which swallows errors, and the last bytes reach
+  // the disk only when the stream closes.
   std::ofstream stream(file.temporary_path(), std::ios::binary);
   try {
     Imf::StdOFStream whole(stream, file.temporary_path().c_str());

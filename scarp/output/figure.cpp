@@ -9,8 +9,8 @@
 namespace scarp {
 namespace {
 
-constexpr double kTextShare = 1.0 / 40, kLeastText = 10;  // of the shorter side; pixels
-constexpr double kLabelShare = 0.65;                      // of the text
+constexpr double kTextShare = 1.0 / 40, kLeastText = 10;  // fraction of the shorter side; pixels
+constexpr double kLabelShare = 0.65;                      // fraction of the text height
 
 }  // namespace
 

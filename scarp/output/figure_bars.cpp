@@ -38,7 +38,7 @@ std::size_t label_stride(const FigurePen& pen, double length, const std::vector<
   }
 }
 
-// Below a bar whose lower edge is at y.
+// Writes labels below a bar whose lower edge is at y.
 void write_ticks(const FigurePen& pen, double x, double y, double length, const std::vector<FigureTick>& ticks) {
   const std::size_t stride = label_stride(pen, length, ticks);
   for (std::size_t left = ticks.size(); const FigureTick& tick : ticks) {
@@ -52,7 +52,7 @@ void write_ticks(const FigurePen& pen, double x, double y, double length, const 
   }
 }
 
-// The frame of a bar, on whole pixels.
+// Draws the frame of a bar, on whole pixels.
 void outline(const FigurePen& pen, double x, double y, double width) {
   pen.frame({x, std::floor(y), width, std::ceil(pen.bar())}, pen.text() / 12);
 }

@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-constexpr double kRepeat = 20;     // text heights between labels of one text
+constexpr double kRepeat = 20;     // text heights between labels with the same text
 constexpr double kLabelGap = 0.3;  // text heights around a label
 
 bool is_free(const FigureRect& rect, const std::vector<FigureRect>& taken) {
@@ -21,8 +21,8 @@ bool is_inside(const FigureRect& rect, const FigureRect& frame) {
          rect.y + rect.height <= frame.y + frame.height;
 }
 
-// Where the line leaves a picture of this size: meridians at its top, parallels at its left side. In pixels along that
-// side.
+// Position at which the line leaves a picture of this size, in pixels along the side: the top for meridians, the left
+// side for parallels.
 std::optional<double> place_of_label(const FigureLine& line, double width, double height) {
   for (std::size_t i = 1; i < line.points.size(); ++i) {
     FigurePoint a = line.points[i - 1], b = line.points[i];
@@ -36,7 +36,7 @@ std::optional<double> place_of_label(const FigureLine& line, double width, doubl
 
 void draw_line(const FigurePen& pen, const FigureLine& line) {
   for (const FigurePoint& p : line.points) cairo_line_to(pen.cr(), p.x, p.y);
-  // A dark line with a light rim shows on all colours.
+  // A dark line with a light rim is visible on all colours.
   cairo_set_source_rgba(pen.cr(), 1, 1, 1, 0.35);
   cairo_set_line_width(pen.cr(), std::max(2.0, pen.text() / 6));
   cairo_stroke_preserve(pen.cr());
@@ -102,7 +102,7 @@ void draw_labels(const FigurePen& pen, const Figure& figure, const FigureRect& f
     if (std::any_of(drawn.begin(), drawn.end(), repeats)) continue;
     const double wide = pen.width_of(label.text) + 2 * kLabelGap * pen.text(),
                  high = pen.text() + 2 * kLabelGap * pen.text();
-    // The box around the turned text.
+    // The bounding box of the rotated text.
     const double c = std::abs(std::cos(label.angle)), s = std::abs(std::sin(label.angle));
     const FigureRect rect{frame.x + label.centre.x - (c * wide + s * high) / 2,
                           frame.y + label.centre.y - (s * wide + c * high) / 2, c * wide + s * high,

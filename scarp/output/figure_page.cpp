@@ -59,7 +59,7 @@ void FigurePage::place_on(const FigurePen& pen, int width, int height) {
   }
   if (figure_.north) {
     FigurePanel panel = arrow_panel(pen, *figure_.north);
-    const double x = right(panel) + 2 * pad;  // its square includes padding
+    const double x = right(panel) + 2 * pad;  // the arrow's square includes padding
     free_width -= 2 * (panel.width + pad);    // on both sides: the title is centred
     place(std::move(panel), x, pad, 0);
   }
@@ -89,10 +89,10 @@ void FigurePage::place_on(const FigurePen& pen, int width, int height) {
 void FigurePage::place_beside(const FigurePen& pen, int width, int height) {
   const double pad = pen.pad();
   const FigureMargins labels = graticule_margins(pen, figure_.graticule, width, height);
-  // Whole pixels, so that the picture's own pixels stay as they are.
+  // Whole pixels, so that the picture is not resampled.
   frame_.x = std::ceil(pad + labels.left);
   frame_.y = std::ceil(pad + labels.top);
-  double right = frame_.x + width + labels.right;  // of the widest part
+  double right = frame_.x + width + labels.right;  // right edge of the widest part
   if (!figure_.title.empty()) {
     FigurePanel panel = title_panel(pen, figure_.title, std::max<double>(width, kLeastTitle * text_));
     frame_.y = std::ceil(frame_.y + panel.height + pen.gap());
@@ -108,7 +108,7 @@ void FigurePage::place_beside(const FigurePen& pen, int width, int height) {
   } else if (figure_.legend) {
     below.push_back(legend_panel(pen, *figure_.legend, std::max<double>(width, 12 * text_)));
   }
-  // Rows as wide as the picture: the first panel on its left, the last one on its right.
+  // Rows are as wide as the picture: the first panel is on the left, the last one on the right.
   double y = frame_.y + height;
   for (std::size_t first = 0, last = 0; first < below.size(); first = last) {
     double needed = 0, high = 0;
@@ -149,7 +149,7 @@ void FigurePage::draw(cairo_t* cr, cairo_surface_t* picture) const {
   for (const Placed& placed : placed_) taken.push_back(placed.rect);
   draw_graticule(pen, figure_, frame_, taken);
   draw_labels(FigurePen(cr, label_text_), figure_, frame_, taken);
-  pen = FigurePen(cr, text_);  // the context's font is the last pen's
+  pen = FigurePen(cr, text_);  // restores the context's font, which the last pen has set
   for (const auto& [panel, rect] : placed_) {
     if (!beside) pen.paper(rect);
     panel.draw(pen, rect.x + (rect.width - panel.width) / 2, rect.y + (rect.height - panel.height) / 2);

@@ -15,8 +15,8 @@ constexpr double kTitleText = 1.4;  // text heights
 constexpr std::size_t kMostLines = 3;
 constexpr std::size_t kShown = 40;  // bytes of a title in messages
 
-// Text heights: side of the arrow's square, from its middle to its tip and to the middle of the letter N, half its
-// width, and how far its lower end is notched.
+// In text heights: side of the arrow's square; distance from its middle to its tip and to the middle of the letter N;
+// half its width; depth of the notch in its lower end.
 constexpr double kArrowSide = 4.2, kTip = 1.0, kLetter = 1.6, kHalfWidth = 0.55, kNotch = 0.35;
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -45,7 +45,7 @@ FigurePanel title_panel(const FigurePen& measure, const std::string& title, doub
     }
   }
   if (lines.size() > kMostLines) {
-    // Not cut within a character of UTF-8.
+    // Does not cut within a UTF-8 character.
     std::size_t cut = std::min(kShown, title.size());
     while (cut > 0 && cut < title.size() && (static_cast<unsigned char>(title[cut]) & 0xc0) == 0x80) --cut;
     throw Error(
@@ -56,7 +56,7 @@ FigurePanel title_panel(const FigurePen& measure, const std::string& title, doub
   FigurePanel panel{"the title"};
   for (const std::string& line : lines) panel.width = std::max(panel.width, large.width_of(line));
   panel.height = static_cast<double>(lines.size()) * large.line_height();
-  // The font of the context is the last pen's.
+  // Restores the context's font, which the last pen has set.
   const FigurePen restored(measure.cr(), measure.text());
   panel.draw = [lines, width = panel.width](const FigurePen& pen, double x, double y) {
     const FigurePen letters(pen.cr(), kTitleText * pen.text());

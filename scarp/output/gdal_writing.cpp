@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// Metadata that the format has no place for would go to NAME.aux.xml, under the temporary name.
+// GDAL would write metadata that the format cannot store to NAME.aux.xml, under the temporary name.
 constexpr const char* kSideFiles = "GDAL_PAM_ENABLED";
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace scarp {
 namespace {
 
 constexpr int kTiledFrom = 512;  // pixels: smaller images are read as a whole anyway
-// Rows per write call: a whole number of GDAL's tiles of 256 pixels, so that none is written twice.
+// Rows per write call: a multiple of GDAL's tile height of 256 pixels, so that no tile is written twice.
 constexpr int kRows = 256;
 constexpr int kBands = 4;
 
@@ -33,7 +33,7 @@ void write_rows(GDALDataset& dataset, const RgbView& picture, std::span<const st
     const CPLErr result =
         dataset.RasterIO(GF_Write, 0, first, picture.width, rows, rgba.data(), picture.width, rows, GDT_Byte, kBands,
                          nullptr, kBands, std::int64_t{kBands} * picture.width, 1, nullptr);
-    if (result != CE_None) return;  // GDAL has reported why
+    if (result != CE_None) return;  // GDAL has already reported the reason
   }
 }
 

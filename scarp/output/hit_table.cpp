@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 4> kStatusNames = {"miss", "hit", "below"
 constexpr std::array<std::string_view, 5> kKindNames = {"heights", "function", "shape", "voxels", "mesh"};
 constexpr std::array<std::string_view, 7> kFaceNames = {"low_x", "high_x", "low_y", "high_y",
                                                         "low_z", "high_z", "inside"};
-// Columns of hits. Those of tables on one height field come first.
+// Columns of hits. The columns of tables on one height field come first.
 enum HitColumn : std::uint8_t {
   kRay,
   kStatus,
@@ -62,7 +62,7 @@ std::span<const std::string_view> columns_of(TableKind kind) {
   return kBlockedColumns;
 }
 
-// The words for the values of a column of hits; empty for numbers.
+// Returns the words for the values of a column of hits; empty for columns of numbers.
 std::span<const std::string_view> words_of(std::size_t column) {
   if (column == kStatus) return kStatusNames;
   if (column == kKind) return kKindNames;

@@ -10,7 +10,7 @@ namespace scarp {
 namespace {
 
 constexpr int kMostSide = 65500;                // JPEG_MAX_DIMENSION of libjpeg
-constexpr const char* kQuality = "QUALITY=90";  // artefacts at edges are hard to see; a third of a PNG's bytes
+constexpr const char* kQuality = "QUALITY=90";  // artefacts at edges are barely visible; a third of a PNG's size
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void write_jpeg(ReplaceFile& file, const std::string& path, const RgbView& pictu
   GDALDriverManager* drivers = GetGDALDriverManager();
   GDALDriver* jpeg = drivers->GetDriverByName("JPEG");
   if (jpeg == nullptr) throw Error(path + ": this build of GDAL writes no JPEG (name it *.png)");
-  // The driver copies datasets only.
+  // The driver can only copy datasets.
   const GDALDatasetUniquePtr pixels(
       drivers->GetDriverByName("MEM")->Create("", picture.width, picture.height, 3, GDT_Byte, nullptr));
   writing.require_good(path);

@@ -29,7 +29,7 @@ void append_text(std::string& out, std::string_view text, std::size_t width) {
 
 void append_zeros(std::string& out, std::size_t count) { out.append(count, '\0'); }
 
-// The variable length record.
+// Returns a variable length record.
 std::string record(std::string_view user, std::uint16_t id, std::string_view about, std::string_view content) {
   constexpr std::size_t kMost = 0xffff;
   if (content.size() > kMost) throw Error(fmt::format("a record of {} bytes is too long for LAS", content.size()));
@@ -107,7 +107,7 @@ class LasPoints final : public PointFormat {
     }
     append_zeros(out, 8 + 8 + 4);  // waveforms, extended records
     append_little_endian(out, count);
-    append_little_endian(out, count);  // of the first return
+    append_little_endian(out, count);  // number of first returns
     append_zeros(out, 14 * 8);
     return out + records_;
   }
@@ -154,7 +154,7 @@ LasSettings las_settings(const dvec3& low, const dvec3& high, const dvec3& milli
   LasSettings settings;
   for (int i = 0; i < 3; ++i) {
     settings.offset[i] = std::round(0.5 * (low[i] + high[i]));
-    const double reach = 0.75 * (high[i] - low[i]) + 1;  // half of it, a quarter to spare, and the rounded offset
+    const double reach = 0.75 * (high[i] - low[i]) + 1;  // half the box, a quarter to spare, and the offset's rounding
     auto digits = static_cast<int>(std::lround(std::log10(millimetre[i])));
     while (reach > kMostSteps * std::pow(10.0, digits)) ++digits;
     // Parsed, not computed: 1e-3 is the double nearest to it.

@@ -24,7 +24,7 @@ void write_pdf(ReplaceFile& file, const std::string& path, const RgbView& pictur
   const CairoSurface surface(
       cairo_pdf_surface_create_for_stream(write_bytes, &stream, points * page.width(), points * page.height()));
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "Scarp");
-  // No time: the same picture gives the same file.
+  // No creation time: equal pictures give equal files.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   if (!figure.title.empty())
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, figure.title.c_str());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points as PLY. Source: G. Turk, "The PLY Polygon File Format", 1994; sizes of types as in its successors.
+// Points as PLY. Source: G. Turk, "The PLY Polygon File Format", 1994; type sizes as in later versions.
 #include <fmt/format.h>
 
 #include <limits>
@@ -15,7 +15,7 @@ class PlyPoints final : public PointFormat {
   std::string header(const PointSummary& summary) const override {
     const std::string count = fmt::format("{}", summary.count);
     constexpr std::size_t kWidestCount = std::numeric_limits<std::int64_t>::digits10 + 1;
-    // The comment fills the header up to the length with the widest count.
+    // The comment pads the header to the length that it has with the widest count.
     return fmt::format(
         "ply\nformat binary_little_endian 1.0\ncomment Scarp: points of a scanner{}\nelement vertex {}\n"
         "property double x\nproperty double y\nproperty double z\nproperty double time\nproperty float range\n"

@@ -15,7 +15,7 @@ namespace {
 
 class CsvPoints final : public PointFormat {
  public:
-  // Written once: its length never changes.
+  // Its length never changes.
   std::string header(const PointSummary&) const override {
     return "time,column,channel,azimuth,elevation,range,x,y,z,object\n";
   }

@@ -16,8 +16,8 @@ namespace scarp {
 namespace {
 
 constexpr double kText = 13;      // pixels
-constexpr double kMargin = 0.06;  // of the range of heights, above and below
-constexpr double kLeast = 1;      // metres: range of heights of flat profiles
+constexpr double kMargin = 0.06;  // fraction of the height range, above and below
+constexpr double kLeast = 1;      // metres: height range of flat profiles
 
 struct Colour {
   double r, g, b;
@@ -25,7 +25,7 @@ struct Colour {
 constexpr Colour kGround{0.80, 0.76, 0.69}, kSeen{0.10, 0.55, 0.20}, kHidden{0.62, 0.20, 0.16},
     kSight{0.10, 0.25, 0.65}, kGrid{0.86, 0.86, 0.86};
 
-// 1, 2 or 5 times a power of ten: about `count` steps over the range.
+// Returns 1, 2 or 5 times a power of ten, for about `count` steps over the range.
 double step_for(double range, double count) {
   const double raw = range / count, power = std::pow(10, std::floor(std::log10(raw))), share = raw / power;
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
@@ -73,7 +73,7 @@ class Drawing {
     const bool kilometres = end_ >= 5000;
     const double unit = kilometres ? 1000 : 1, along = step_for(end_ / unit, box_.width / (8 * kText));
     const double below = box_.y + box_.height;
-    // Rounding may put the last tick beyond the end.
+    // Rounding may move the last tick beyond the end.
     constexpr double kTickSlack = 1.0 / 1024;  // of a step: less than a pixel
     const double last = std::floor(end_ / unit / along + kTickSlack);
     for (double i = 0; i <= last; ++i) {
@@ -98,11 +98,11 @@ class Drawing {
     cairo_stroke(cr_);
   }
 
-  // Filled down to the axis, with the surface coloured by its visibility to the observer.
+  // Draws the ground, filled down to the axis, and the surface coloured by its visibility to the observer.
   void ground() const {
     const auto& points = figure_.points;
     const double floor = box_.y + box_.height;
-    // One polygon for each run without holes: neighbouring polygons would leave seams.
+    // One polygon per run without holes: adjacent polygons would leave seams.
     colour(kGround);
     for (std::size_t begin = 0; begin < points.size();) {
       std::size_t end = begin;

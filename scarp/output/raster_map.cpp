@@ -25,7 +25,7 @@ GDALDataType type_of(const MapBand& band) {
   return kTypes[band.samples.index()];
 }
 
-// The samples in place, as an in-memory dataset.
+// Wraps the samples, without a copy, as an in-memory dataset.
 GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path) {
   auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   GDALDatasetUniquePtr dataset(driver->Create("", map.cols, map.rows, 0, GDT_Byte, nullptr));
@@ -84,7 +84,7 @@ CPLStringList options_of(const RasterMap& map) {
   } else if (map.driver == "COG") {
     for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
-    // Averages of codes are not codes.
+    // Averages of class codes are not class codes.
     options.SetNameValue("RESAMPLING", map.bands[0].classes.empty() ? "AVERAGE" : "NEAREST");
   }
   for (const std::string& option : map.creation_options) {
@@ -101,8 +101,8 @@ int CPL_STDCALL report(double done, const char*, void* progress) {
   return !call || call(done) ? TRUE : FALSE;
 }
 
-// Files beside the main one, which have its temporary name and other extensions: moved, or removed. Files that existed
-// before belong to other programs, such as a picture of the same name being written.
+// Moves or removes the files beside the main one, which have its temporary name and other extensions. Files that
+// existed before belong to other programs, such as a picture with the same name that is being written.
 class SideFiles {
  public:
   SideFiles(const std::string& temporary, const std::string& path)

@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// Whether a text is meant for GDAL's developers: it contains a memory address, or the placeholder 2^32 - 1.
+// Whether a text is meaningful only to GDAL's developers: it contains a memory address, or the placeholder 2^32 - 1.
 bool is_riddle(std::string_view text) {
   return text.find("0x") != std::string_view::npos || text.find("4294967295") != std::string_view::npos;
 }

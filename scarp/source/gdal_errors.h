@@ -10,8 +10,8 @@
 
 namespace scarp {
 
-/// Registers GDAL's drivers (once per process) and collects GDAL's messages of this thread during its lifetime. Place
-/// one on the stack around calls of GDAL.
+/// Registers GDAL's drivers (once per process) and collects GDAL's messages on this thread during its lifetime. Place
+/// one on the stack around calls to GDAL.
 class GdalSession {
  public:
   GdalSession();
@@ -21,8 +21,8 @@ class GdalSession {
 
   /// Returns whether an error (not a warning) occurred since the last clear().
   bool failed() const { return !errors_.empty(); }
-  /// Returns the first error in one line (later ones are consequences), or `otherwise` if GDAL reported none that users
-  /// understand.
+  /// Returns the first error in one line (later ones are consequences), or `otherwise` if GDAL reported no error that
+  /// users would understand.
   std::string reason(const std::string& otherwise) const;
   /// Returns the distinct warnings, one line each.
   const std::vector<std::string>& warnings() const { return warnings_; }

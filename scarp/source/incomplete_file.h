@@ -24,7 +24,7 @@ inline void refuse_lfs_pointer(std::string_view start) {
   if (start.starts_with(kLfsPointer)) throw Error(kLfsAdvice);
 }
 
-/// Calls work(). Its errors that end without words in parentheses get this advice.
+/// Calls work(). Appends this advice to its errors that do not end with words in parentheses.
 template <class Work>
 auto advising(std::string_view advice, const Work& work) {
   try {

@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// A descriptor that is closed; the mapping stays.
+// Closes a file descriptor; the mapping stays.
 struct Descriptor {
   int number;
   ~Descriptor() {
@@ -32,7 +32,7 @@ MappedFile::MappedFile(const std::string& path) {
   const auto size = static_cast<std::size_t>(facts.st_size);
   void* const at = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
   if (at == MAP_FAILED) throw Error("cannot be mapped into memory");
-  // Only advice: starts reading before the first use.
+  // A hint: the system starts to read before the first use.
   madvise(at, size, MADV_WILLNEED);
   bytes_ = {static_cast<const char*>(at), size};
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A file's bytes in memory without a copy of them: the system reads pages when they are first used, and may drop them
-// again.
+// Memory-mapped files: the system reads pages when they are first used, and may drop them again.
 #pragma once
 
 #include <string>
@@ -8,7 +7,8 @@
 
 namespace scarp {
 
-/// A file mapped for reading. If the file is truncated meanwhile, the process ends with SIGBUS, as with any mapping.
+/// A file mapped for reading. If the file is truncated while it is mapped, the process ends with SIGBUS, as with any
+/// mapping.
 class MappedFile {
  public:
   /// Throws Error, without the path: missing, not a file, cannot be mapped.

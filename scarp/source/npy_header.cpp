@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr const char* kNested =
     "has a field that is an array or a structure itself; fields of plain numbers are needed";
-constexpr int kLargestStructure = 1 << 20;  // bytes; sums of field sizes stay far from overflow
+constexpr int kLargestStructure = 1 << 20;  // bytes; sums of field sizes stay far below overflow
 
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(fmt::format("damaged .npy header: {} (save the array again with numpy.save)", what));
@@ -89,7 +89,7 @@ template <class Type>
 void parse_descr(std::string_view descr, Type& header) {
   std::size_t at = 0;
   if (!descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos) {
-    // '=' is the machine's own order, which NumPy never writes: files have a fixed one.
+    // '=' is the machine's own byte order; NumPy never writes it, because files have a fixed order.
     if (descr[0] == '=') refuse(fmt::format("sample type '{}' without a byte order", descr));
     header.big_endian = descr[0] == '>';
     at = 1;
@@ -116,7 +116,7 @@ void parse_structure(Literal& literal, NpyHeader& header) {
     parse_descr(literal.quoted(), field);
     if (literal.take(',') && !literal.looking_at(')')) throw Error(kNested);
     literal.expect(')');
-    // NumPy counts the characters of a text, which have four bytes each.
+    // NumPy states the length of a text in characters, which have four bytes each.
     field.begin = header.bytes;
     header.bytes += field.kind == 'U' ? 4 * field.bytes : field.bytes;
     if (header.bytes > kLargestStructure) refuse(fmt::format("structure of more than {} bytes", kLargestStructure));

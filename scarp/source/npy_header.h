@@ -32,25 +32,25 @@ struct NpyHeader {
   bool fortran_order = false;       ///< the first index varies fastest
   std::vector<std::int64_t> shape;  ///< every extent >= 0; empty: a single number
   std::int64_t data_begin = 0;      ///< offset of the first sample in the file
-  std::string descr;                ///< as written, for messages; empty for structures
+  std::string descr;                ///< as in the file, for messages; empty for structures
   std::vector<NpyField> fields;     ///< of structures, whose kind is 'V'; otherwise empty
 };
 
 /// Bytes from the file's start that determine where the header ends.
 inline constexpr std::size_t kNpyPreambleBytes = 12;
-/// Maximum header length; NumPy's own are some hundred bytes.
+/// Maximum header length; NumPy writes about a hundred bytes.
 inline constexpr std::int64_t kLargestNpyHeader = 1 << 20;
 
 /// Returns the offset of the samples, from the first kNpyPreambleBytes of a file (fewer if it is shorter). Throws
 /// Error: not .npy, an unknown version, a header beyond kLargestNpyHeader.
 std::int64_t npy_data_begin(std::string_view preamble);
 
-/// Parses the header in `bytes`, which contain the file up to npy_data_begin(). Throws Error: not a dictionary of the
-/// three entries, a structured type. The caller must reject kinds that are not heights.
+/// Parses the header in `bytes`, which contain the file up to npy_data_begin(). Throws Error: not a dictionary with
+/// these three entries, or a structured type. The caller must reject kinds that are not heights.
 NpyHeader parse_npy_header(std::string_view bytes);
 
-/// Parses the header of an array that may be structured. Throws Error for fields that are structures or arrays
-/// themselves.
+/// Parses the header of an array that may be structured. Throws Error for fields that are themselves structures or
+/// arrays.
 NpyHeader parse_npy_table_header(std::string_view bytes);
 
 }  // namespace scarp

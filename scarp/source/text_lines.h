@@ -13,8 +13,8 @@
 
 namespace scarp {
 
-/// Calls take(text, number) for each line, from 1, without line ends and byte order mark. Throws Error naming the file:
-/// not readable, or a Git LFS pointer.
+/// Calls take(text, number) for each line, without line ends and byte order mark; numbers start at 1. Throws Error
+/// naming the file: not readable, or a Git LFS pointer.
 template <class Take>
 void for_lines(const std::string& path, const Take& take) {
   refuse_special_file(path, path + ": ");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text in the XML of virtual datasets.
+// Escapes text for the XML of virtual datasets.
 #pragma once
 
 #include <cpl_conv.h>

@@ -45,7 +45,7 @@ void require_fits(const RasterTarget::Impl& target, const DrawCall& call) {
 
 }  // namespace
 
-// Host memory for the reads of a run, consecutively.
+// Host memory for the reads of a run, one after another.
 class HostReads {
  public:
   explicit HostReads(const Device::Impl& device)
@@ -62,14 +62,14 @@ class HostReads {
     reads_.push_back({used_, bytes, to});
     used_ += bytes;
   }
-  // After the last read of a run.
+  // Call after the last read of a run.
   void close(const vk::raii::CommandBuffer& commands) const {
     if (reads_.empty()) return;
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {},
                              {});
   }
-  // After the run.
+  // Call after the run.
   void deliver() {
     for (const Read& read : reads_) std::memcpy(read.to, bytes_ + read.begin, read.bytes);
     forget();
@@ -97,7 +97,7 @@ struct Commands::Impl {
 
   void begin() {
     if (recording) return;
-    finish();  // a run whose caller did not wait
+    finish();  // the caller did not wait for the previous run
     commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     // Vulkan requires a barrier before the results of earlier runs and copies are visible.
     full_barrier(commands);

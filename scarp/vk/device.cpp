@@ -53,7 +53,7 @@ std::string vulkan_failure(vk::Result result, const std::string& device, const s
       return fmt::format("{}: out of device memory while {}", where, what);
     case vk::Result::eErrorOutOfHostMemory:
       return fmt::format("{}: out of memory while {}", where, what);
-    case vk::Result::eErrorIncompatibleDriver:  // the loader's error if there is no driver
+    case vk::Result::eErrorIncompatibleDriver:  // the loader's error code if there is no driver
       return no_driver();
     default:
       return fmt::format("{}: {} while {}", where, vk::to_string(result), what);
@@ -94,7 +94,7 @@ Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
 Device::Impl::~Impl() {
   save_pipelines();
   if (!hangs) return;
-  // Drivers wait forever for a device that is destroyed while it runs. The process leaves it to the system instead.
+  // Drivers wait forever if a device is destroyed while it runs, so the process leaves the device to the system.
   staging.release();
   new auto(std::move(pipelines));
   new auto(std::move(pool));
@@ -106,7 +106,7 @@ void Device::Impl::save_pipelines() noexcept {
   if (pipelines_path.empty()) return;
   try {
     const std::vector<std::uint8_t> data = pipelines.getData();
-    if (data.size() == pipelines_on_file) return;  // pipelines are only added
+    if (data.size() == pipelines_on_file) return;  // pipelines are only ever added
     write_pipeline_cache(pipelines_path, std::as_bytes(std::span(data)));
   } catch (const std::exception&) {  // device lost, or out of memory
   }

@@ -17,7 +17,7 @@ constexpr std::uint32_t kVertexWords[] = {
 constexpr double kSeconds = 10;
 constexpr std::uint32_t kSide = 8;
 
-// Limits the time of one device.
+// Shortens a device's time limit during its lifetime.
 class ShorterLimit {
  public:
   explicit ShorterLimit(Device::Impl& device) : device_(device), usual_(device.timeout_s) {

@@ -84,7 +84,7 @@ std::vector<vk::raii::PhysicalDevice> VulkanInstance::physical_devices() const {
     try {
       return vk::raii::PhysicalDevices(*instance_);
     } catch (const vk::InitializationFailedError&) {
-      return {};  // the loader's error if there is no driver
+      return {};  // the loader's error code if there is no driver
     }
   });
 }

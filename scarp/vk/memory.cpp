@@ -63,7 +63,7 @@ DeviceBuffer::DeviceBuffer(const Device& device, std::uint64_t bytes, const std:
       const std::uint64_t address = open->device.getBufferAddress({*buffer});
       impl_.reset(new Impl{open, name, bytes, std::move(memory), std::move(buffer), address});
     } catch (const vk::OutOfDeviceMemoryError&) {
-      // The memory that a CPU device reports is an arbitrary number of the driver, not a limit.
+      // The memory size that a CPU device reports is an arbitrary number from the driver, not a limit.
       refuse(description.kind == DeviceKind::cpu
                  ? "it uses system memory, and none is left"
                  : "the device has " + mebibytes(description.memory_bytes) + ", part of it in use");

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Before the driver's data.
+// Precedes the driver's data in the file.
 struct FileHead {
   std::array<char, 8> magic;
-  std::uint64_t checksum;  // of the data
+  std::uint64_t checksum;  // checksum of the data
 };
 constexpr std::array<char, 8> kMagic = {'s', 'c', 'a', 'r', 'p', 'p', 'c', '1'};
 
@@ -31,7 +31,7 @@ struct DataHead {
   std::array<std::uint8_t, 16> uuid;
 };
 
-// FNV-1a (Fowler, Noll, Vo), for accidents only: drivers trust their data.
+// FNV-1a (Fowler, Noll, Vo). It detects only accidental damage, which matters because drivers trust their data.
 std::uint64_t checksum_of(std::span<const std::byte> data) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const std::byte byte : data) hash = (hash ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3;
@@ -81,7 +81,7 @@ std::vector<std::byte> read_pipeline_cache(const std::string& path, const Pipeli
 bool write_pipeline_cache(const std::string& path, std::span<const std::byte> data) noexcept {
   try {
     const fs::path folder = fs::path(path).parent_path();
-    // As the XDG Base Directory Specification has it: for the user alone.
+    // Accessible to the user only, as the XDG Base Directory Specification requires.
     if (fs::create_directories(folder)) fs::permissions(folder, fs::perms::owner_all);
     ReplaceFile file(path);
     const FileHead head{kMagic, checksum_of(data)};

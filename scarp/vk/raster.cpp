@@ -13,7 +13,7 @@ namespace {
 
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
 
-// Every device draws into both.
+// Every device can draw into both formats.
 vk::Format format_of(RasterColours colours) {
   return colours == RasterColours::words ? vk::Format::eR32G32B32A32Uint : vk::Format::eR32G32B32A32Sfloat;
 }
@@ -59,7 +59,8 @@ DeviceImage make_image(const Device::Impl& device, std::uint32_t width, std::uin
   return {std::move(image), std::move(memory), std::move(view)};
 }
 
-// Clears, draws, then makes the images ready for copying. Pipelines fit passes with the same colours.
+// The pass clears, draws, then makes the images ready for copying. Pipelines are compatible with passes that have the
+// same colours.
 vk::raii::RenderPass make_pass(const vk::raii::Device& device, std::uint32_t colours, RasterColours of) {
   std::vector<vk::AttachmentDescription> attachments;
   std::vector<vk::AttachmentReference> references;

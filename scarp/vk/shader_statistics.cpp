@@ -25,8 +25,8 @@ vk::raii::PhysicalDevice first_with_statistics(const VulkanInstance& instance) {
   throw Error(fmt::format("Vulkan: no driver reports statistics of shaders (available: {})", names));
 }
 
-// Like the devices that compute, as far as this is possible: a driver may compile for a device that cannot run
-// anything.
+// Opens a device with the same features as devices that compute, as far as possible: a driver may compile for a device
+// that cannot run anything.
 vk::raii::Device open_to_compile(const vk::raii::PhysicalDevice& physical, const DeviceAbilities& abilities) {
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue({}, compute_family(physical.getQueueFamilyProperties()).value_or(0), 1,
@@ -72,7 +72,7 @@ struct ShaderCompiler::Impl {
   VulkanInstance instance;
   vk::raii::PhysicalDevice physical;
   DeviceDescription description;
-  // The executable of the program itself, and the pipeline that it is part of.
+  // The executable of the program, and the pipeline that contains it.
   struct Compiled {
     vk::raii::PipelineLayout layout;
     vk::raii::Pipeline pipeline;
@@ -129,7 +129,7 @@ std::string ShaderCompiler::disassembly(const ShaderProgram& program) const {
     const Impl::Compiled compiled =
         impl_->compile(program, vk::PipelineCreateFlagBits::eCaptureInternalRepresentationsKHR);
     const vk::PipelineExecutableInfoKHR& executable = compiled.executable;
-    // Sizes first, then all texts by a second call: Vulkan-Hpp has no other way.
+    // The first call returns the sizes, a second one all texts: Vulkan-Hpp offers no other interface.
     auto all = device.getPipelineExecutableInternalRepresentationsKHR(executable);
     std::vector<std::string> texts(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -143,7 +143,7 @@ std::string ShaderCompiler::disassembly(const ShaderProgram& program) const {
             reinterpret_cast<VkPipelineExecutableInternalRepresentationKHR*>(all.data())));
     vk::resultCheck(result, "vkGetPipelineExecutableInternalRepresentationsKHR");
     for (std::size_t i = 0; i < all.size(); ++i) {
-      // Texts end with a zero.
+      // Texts are zero-terminated.
       if (std::string_view(all[i].name.data()) == "Assembly") return texts[i].substr(0, texts[i].find('\0'));
     }
     throw Error(fmt::format("device '{}': reports no machine code of shaders", device_name()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glTF 2.0 through tinygltf, which validates the document but not its references; this file does.
+// glTF 2.0 through tinygltf, which validates the document but not its references; those are validated here.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
@@ -148,7 +148,7 @@ class GltfReader {
 
  private:
   void add_node(int index, const glm::dmat4& world_from_parent, int depth) {
-    // A document whose nodes form a cycle would never end.
+    // Nodes that form a cycle would never end.
     if (depth > kDeepest || ++visits_ > model_.nodes.size()) refuse_mesh(path_, "nodes do not form a tree");
     const tinygltf::Node& node = at(model_.nodes, index, path_, "node");
     const glm::dmat4 world_from_node = world_from_parent * parent_from(node);
@@ -210,7 +210,7 @@ class GltfReader {
     const std::size_t count = indices ? indices->count() : positions->count();
     if (mesh_.corners.size() + 3 * count > kMostCorners) refuse_mesh(path_, "too many triangles");
     for (std::size_t i = 0; i + 2 < count; i += strip || fan ? 1 : 3) {
-      // Every second triangle of a strip has reversed order.
+      // Every second triangle of a strip has the opposite orientation.
       const std::size_t turned = strip ? i % 2 : 0;
       add_triangle({corner(fan ? 0 : i), corner(i + 1 + turned), corner(i + 2 - turned)}, mesh_);
     }

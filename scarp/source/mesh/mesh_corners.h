@@ -16,14 +16,14 @@ struct FileCorner {
   vec3 colour{kMeshGrey};
 };
 
-/// Appends a triangle in the file's axes; uses the normal of its plane unless all three corners have one. Skips
-/// triangles without area.
+/// Appends a triangle in the file's axes; uses the normal of its plane unless all three corners have normals. Skips
+/// triangles with zero area.
 void add_triangle(const std::array<FileCorner, 3>& corners, TriangleMesh& mesh);
 
-/// Throws Error.
+/// Throws Error naming the file.
 [[noreturn]] void refuse_mesh(const std::string& path, const std::string& what);
 
-// Readers in their own files; axes as in the file.
+// Readers, each in its own source file; axes as in the mesh file.
 TriangleMesh read_obj(const std::string& path);
 TriangleMesh read_gltf(const std::string& path, bool binary);
 

@@ -59,7 +59,7 @@ TriangleMesh read_obj(const std::string& path) {
   tinyobj::ObjReader reader;
   tinyobj::ObjReaderConfig config;
   config.mtl_search_path = std::filesystem::path(path).parent_path().string();
-  config.vertex_color = false;  // do not invent colours
+  config.vertex_color = false;  // no default colours
   if (!reader.ParseFromFile(path, config)) refuse_mesh(path, first_line(reader.Error()));
   TriangleMesh mesh;
   if (reader.Warning().find("aterial") != std::string::npos)

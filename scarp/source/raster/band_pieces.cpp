@@ -17,12 +17,13 @@ namespace {
 
 constexpr std::int64_t kBytesPerPiece = 8 << 20;        // approximate size of a piece
 constexpr std::int64_t kLargestPieceBytes = 256 << 20;  // maximum size, if one block of the file needs more
-// The blocks of a virtual raster are small and its own; those of its sources are rarely larger than this.
+// The blocks that a virtual raster reports are small and its own; the blocks of its sources are rarely larger than
+// this.
 constexpr int kVirtualBlockSide = 1024;
-// Blocks of the sources of a virtual raster that two pieces share, besides those of a piece.
+// Room for the blocks of a virtual raster's sources that two pieces share, in addition to the blocks of one piece.
 constexpr std::int64_t kCacheBytes = 64 << 20;
 
-// Guards GDAL's limit, of which there is one in the process.
+// Guards GDAL's cache limit, which is process-wide.
 std::mutex cache_mutex;
 int cache_limits = 0;
 std::int64_t cache_before = 0;
@@ -31,7 +32,7 @@ struct PieceSize {
   int cols, rows;
 };
 
-// Whole blocks, in rows as long as possible.
+// Pieces consist of whole blocks, in rows as long as possible.
 PieceSize piece_size(GDALRasterBand& band, const RasterWindow& window, int bytes_per_sample) {
   int block_cols = 1, block_rows = 1;
   band.GetBlockSize(&block_cols, &block_rows);
@@ -50,7 +51,7 @@ PieceSize piece_size(GDALRasterBand& band, const RasterWindow& window, int bytes
   } else if (across * down * bytes_per_sample <= kLargestPieceBytes) {
     cols = blocks(kBytesPerPiece / (down * bytes_per_sample), across);
   } else {
-    // A block that GDAL holds anyway: in parts.
+    // GDAL holds such a block in memory anyway, so it is read in parts.
     cols = across;
     rows = std::max<std::int64_t>(1, kBytesPerPiece / (across * bytes_per_sample));
   }
@@ -101,7 +102,7 @@ void read_piece(GDALRasterBand& band, const RasterWindow& piece, GDALDataType ty
   const GSpacing sample_bytes = GDALGetDataTypeSizeBytes(type);
   const CPLErr result = band.RasterIO(GF_Read, piece.col, piece.row, piece.cols, piece.rows, out, piece.cols,
                                       piece.rows, type, sample_bytes, sample_bytes * row_samples, nullptr);
-  // Some drivers report an error, fill with zeros, and return success.
+  // Some drivers report an error, fill the samples with zeros, and return success.
   if (result != CE_None || session.failed()) {
     check_vrt_sources(band);
     const std::string reason = session.reason("");

@@ -13,8 +13,8 @@
 
 namespace scarp {
 
-/// Limits the blocks that GDAL keeps in memory, for the whole process, to what reading by pieces needs. By default GDAL
-/// keeps a twentieth of the machine's memory. A lower limit of the user's stays.
+/// Limits GDAL's block cache, for the whole process, to what reading by pieces needs. By default, GDAL's limit is a
+/// twentieth of the machine's memory. A lower limit set by the user stays.
 class GdalCacheLimit {
  public:
   GdalCacheLimit();
@@ -29,12 +29,13 @@ struct PieceCalls {
   std::function<void(int)> rows_done;              ///< all pieces of rows before this one are complete; may be empty
 };
 
-/// Covers the window with pieces that end at block boundaries of the band, in bands from the first row to the last.
+/// Covers the window with pieces that end at the band's block boundaries, in strips from the first row to the last.
 /// Throws Interrupted.
 void for_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_per_sample, const Progress& progress,
                 const PieceCalls& calls);
 
-/// Reads a piece as `type` into `out`, rows `row_samples` samples apart. Throws Error if the file lacks them.
+/// Reads a piece as `type` into `out`, rows `row_samples` samples apart. Throws Error if the file does not contain the
+/// samples.
 void read_piece(GDALRasterBand& band, const RasterWindow& piece, GDALDataType type, void* out, int row_samples,
                 GdalSession& session);
 

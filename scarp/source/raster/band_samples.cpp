@@ -40,17 +40,17 @@ struct Findings {
   double least_beyond = 0, most_beyond = 0;
 };
 
-// Whether a float sample equals the nodata value within the precision of files: texts like -3.402823e+38 differ from
+// Whether a float sample equals the nodata value within the precision of files: texts such as -3.402823e+38 differ from
 // the value by some units in the last place. The tolerance is that of GDAL's own test (4 epsilons, gdal_priv.h:
-// ARE_REAL_EQUAL); for marks beyond all heights it is that of texts of six digits, the default of printf: half a unit
-// of the sixth.
+// ARE_REAL_EQUAL); for marks beyond all heights it is half a unit of the sixth digit: texts have six digits by default
+// (printf).
 bool is_float_nodata(double sample, double nodata) {
   constexpr double kSixDigits = 0.5e-5;
   const double width = std::abs(nodata) > kBeyondHeights ? kSixDigits : 4 * double{FLT_EPSILON};
   return sample == nodata || (std::isfinite(nodata) && std::abs(sample - nodata) <= width * std::abs(nodata));
 }
 
-// Neither beyond the largest float nor so small that it would become height 0.
+// Whether a nodata value is neither beyond the largest float nor so small that it would become height 0.
 bool float_can_hold(double nodata) {
   return std::abs(nodata) <= FLT_MAX && (nodata == 0 || static_cast<float>(nodata) != 0);
 }
@@ -82,7 +82,7 @@ float clean(double source, std::optional<double> nodata, int col, int row, Findi
   return sample;
 }
 
-// Whether clean() would change nothing in a line, nor throw. No branch per sample, so that compilers vectorise it.
+// Whether clean() would neither change a line nor throw. There is no branch per sample, so that compilers vectorise it.
 bool is_clean(const float* line, int samples, std::optional<double> nodata) {
   constexpr double kAround = 1e-5;  // more than the widest tolerance of is_float_nodata()
   const double mark = nodata.value_or(0), width = kAround * std::abs(mark);
@@ -94,20 +94,20 @@ bool is_clean(const float* line, int samples, std::optional<double> nodata) {
   return plain == samples && marked == 0;
 }
 
-// Storage of the samples in the file.
+// How samples are stored in the file.
 struct Stored {
   GDALDataType type = GDT_Unknown;
   bool signed_bytes = false;
   std::optional<double> nodata;
-  GDALRasterBand* mask = nullptr;  // where 0, it hides samples, which are read as floats; null: none
+  GDALRasterBand* mask = nullptr;  // hides samples where it is 0; they are then read as floats; null: none
 };
 
-// Whether float32 does not hold all samples of the type.
+// Whether float32 cannot represent all values of the type.
 bool is_wide(GDALDataType type) {
   return GDALDataTypeIsFloating(type) ? type != GDT_Float32 : GDALGetDataTypeSizeBits(type) > 16;
 }
 
-// Reads pieces as samples of type T, clean.
+// Reads pieces as samples of type T and applies clean().
 template <class T>
 class PieceReader {
  public:
@@ -170,7 +170,7 @@ class PieceReader {
   std::vector<std::uint8_t> mask_;
 };
 
-// The one loop that reads samples: into the result, or block by block into averages.
+// The only loop that reads samples: into the result, or block by block into averages.
 template <class T>
 std::vector<T> read_as(const ReadingPlan& plan, const Stored& stored, Findings& found, GdalSession& session,
                        const Progress& progress) {
@@ -192,7 +192,7 @@ std::vector<T> read_as(const ReadingPlan& plan, const Stored& stored, Findings& 
   std::optional<T> hole;
   if (stored.nodata && (!std::is_floating_point_v<T> || float_can_hold(*stored.nodata)))
     hole = static_cast<T>(*stored.nodata);
-  // Blocks that a file leaves out have the nodata value.
+  // Blocks that a file omits have the nodata value.
   const bool sparse = stored.nodata && stored.nodata == nodata_of(*plan.band);
   Decimator<T> decimator(window.cols, window.rows, plan.cols, plan.rows, hole);
   std::vector<T> samples;
@@ -207,7 +207,7 @@ std::vector<T> read_as(const ReadingPlan& plan, const Stored& stored, Findings& 
   return decimator.finish(plan.known);
 }
 
-// Whether a mask hides a sample of the window.
+// Whether a mask hides any sample of the window.
 bool hides_some(GDALRasterBand& mask, const RasterWindow& window, GdalSession& session) {
   std::vector<std::uint8_t> samples;
   bool hides = false;
@@ -298,7 +298,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   Stored stored{type, is_signed_byte(band), {}, nullptr};
   // A mask that only repeats the nodata value adds nothing, and the caller's nodata value overrides it.
   if (has_own_mask(*plan.band)) stored.mask = plan.band->GetMaskBand();
-  // Determining this would read a reduced mask twice.
+  // If the raster is reduced, this check is skipped: it would read the mask twice.
   if (stored.mask && !plan.decimates && !hides_some(*stored.mask, window, session)) stored.mask = nullptr;
   Findings found;
   found.beyond_are_holes = !nodata;
@@ -332,7 +332,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
               ? fmt::format("{} samples converted to float32 without rounding", type_name)
               : fmt::format("{} samples converted to float32, rounded by at most {:.3g}", type_name, found.rounding));
   }
-  // Float holes whose mark does not fit in float32 are NaN by now.
+  // Float holes whose mark does not fit in float32 have become NaN.
   if (std::holds_alternative<std::vector<float>>(read.samples) && read.nodata) {
     if (float_can_hold(*read.nodata)) {
       read.nodata = static_cast<double>(static_cast<float>(*read.nodata));
@@ -345,7 +345,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
                                      band.GetMaskFlags() & GMF_ALPHA ? "alpha band" : "mask"));
   if (found.nan > 0) read.notes.push_back(fmt::format("{} samples are NaN: holes", found.nan));
   if (found.beyond > 0) {
-    // The shortest digits of a float are not those of the same number as a double.
+    // The shortest digits of a float differ from those of the same number as a double.
     const auto text = [](double x) {
       return std::abs(x) <= FLT_MAX && static_cast<float>(x) == x ? fmt::format("{}", static_cast<float>(x))
                                                                   : fmt::format("{}", x);

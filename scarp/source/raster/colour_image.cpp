@@ -42,7 +42,7 @@ struct TranslateOptions {
   TranslateOptions& operator=(const TranslateOptions&) = delete;
 };
 
-// Expands palettes to colours; copies nothing if there are colour bands already.
+// Expands palettes to colours; returns the dataset itself if it already has colour bands.
 GDALDatasetUniquePtr in_colours(GDALDatasetUniquePtr dataset, const GdalSession& session) {
   if (dataset->GetRasterBand(1)->GetRasterDataType() != GDT_Byte) {
     throw Error("not an image with 8 bits per channel");
@@ -78,7 +78,7 @@ ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& sessi
   return image;
 }
 
-// At most this many rows, from the top.
+// Reads at most this many rows, from the top.
 ColourImage read_rows(const std::string& path, int most, int most_side = std::numeric_limits<int>::max()) {
   GdalSession session;
   const StrictReading strict;
@@ -108,11 +108,11 @@ bool in_crs_of(const Georeference& georeference, GDALDataset& dataset) {
   return crs.importFromWkt(georeference.crs_wkt.c_str()) == OGRERR_NONE && own->IsSame(&crs, ignore_axes);
 }
 
-// The bounds of the image and its resolution, in units of the raster's CRS.
+// The image's bounds and resolution, in units of the raster's CRS.
 Area area_of(GDALDataset& dataset, const Georeference& georeference, const GdalSession& session) {
   double place[6] = {};
   const bool same = in_crs_of(georeference, dataset);
-  // GDAL would suggest square pixels.
+  // Not by GDAL, which would suggest square pixels.
   if (same && dataset.GetGeoTransform(place) == CE_None && place[2] == 0 && place[4] == 0) {
     const double x = place[0] + place[1] * dataset.GetRasterXSize(), y = place[3] + place[5] * dataset.GetRasterYSize();
     return {std::min(place[0], x), std::min(place[3], y), std::max(place[0], x),
@@ -131,7 +131,8 @@ Area area_of(GDALDataset& dataset, const Georeference& georeference, const GdalS
   return {extent[0], extent[1], extent[2], extent[3], std::abs(place[1]), std::abs(place[5])};
 }
 
-// The edges of the pixels of an image from `origin` on that cover [from, to], without those before its first.
+// Outer edges of the pixels that cover [from, to], for an image that starts at `origin`; ignores pixels before its
+// first.
 std::pair<double, double> pixels_between(double origin, double pixel, double from, double to) {
   constexpr double kRounding = 1e-6;  // of a pixel
   const double first = std::max(0.0, std::floor((from - origin) / pixel + kRounding)),
@@ -184,7 +185,7 @@ Overlay read_overlay(const std::string& path, const Georeference& georeference, 
         {1.0, kMostSide / wide, kMostSide / tall, std::sqrt(static_cast<double>(most_pixels) / (wide * tall))});
     CPLStringList arguments;
     const auto add = [&](const std::string& text) { arguments.AddString(text.c_str()); };
-    // The warper's average counts pixels by the share that they cover.
+    // The warper's average weights pixels by the area that they cover.
     for (const char* word : {"-of", "MEM", "-r", shrink < 1 ? "average" : "bilinear", "-te"}) add(word);
     for (const double edge : {left, low, right, high}) add(fmt::format("{}", edge));
     if (!georeference.crs_wkt.empty() && dataset->GetSpatialRef() != nullptr) {

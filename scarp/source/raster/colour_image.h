@@ -26,16 +26,17 @@ ColourImage read_colour_row(const std::string& path);
 ColourImage read_colour_image(const std::string& path, int most_side);
 
 /// An image over part of a raster, or over all of it. Edges are fractions of the distance from the first sample to the
-/// last: 0 is the north-west sample, 1 the south-east one.
+/// last: 0 is at the north-west sample, 1 at the south-east sample.
 struct Overlay {
   ColourImage image;
   double west = 0, north = 0, east = 1, south = 1;
 };
 
 /// Returns the part of an image over a raster, interpolated bilinearly by GDAL's warper, from any CRS. An image in the
-/// raster's CRS keeps its pixels. None has more than `most_pixels` (>= 1) nor a side longer than 16384; those with more
-/// are averaged first. A raster and an image that both lack a georeference are aligned border to border. Throws Error
-/// naming the file: unreadable, only one of the two has a georeference, the image does not overlap the raster.
+/// raster's CRS keeps its pixels. The result has at most `most_pixels` (>= 1) pixels and no side longer than 16384;
+/// larger images are averaged first. A raster and an image that both lack a georeference are aligned border to border.
+/// Throws Error naming the file: unreadable, only one of the two has a georeference, the image does not overlap the
+/// raster.
 Overlay read_overlay(const std::string& path, const Georeference& georeference, int cols, int rows,
                      std::int64_t most_pixels);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"local", "map", "lonlat"};
 
-// Points go through PROJ in batches of some kilobytes.
+// Number of points that PROJ transforms at a time: some kilobytes.
 constexpr std::size_t kBatch = 1024;
 
 std::optional<std::size_t> apply(OGRCoordinateTransformation& transform, std::span<dvec3> points) {
@@ -94,7 +94,7 @@ CoordinateFrame::CoordinateFrame(CoordinateFrame&&) noexcept = default;
 std::optional<std::size_t> CoordinateFrame::to_local(std::span<dvec3> points) const {
   if (coordinates_ == Coordinates::local) return {};
   if (coordinates_ == Coordinates::lonlat) {
-    // PROJ would wrap any number of degrees into its range, including metres passed by mistake.
+    // PROJ would wrap any number into the range of degrees, even metres passed by mistake.
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!(std::abs(points[i].x) <= 360 && std::abs(points[i].y) <= 90)) return i;
     }

@@ -10,8 +10,8 @@
 //   lonlat   degrees, WGS 84, longitude first;      metres east, north (true, as at the raster's centre) and up
 //            metres
 //
-// z is the same in all of them: metres in the field, including its exaggeration. All in double: a round trip changes
-// coordinates by their own rounding, far below 1e-9 of a cell.
+// z is the same in all of them: metres in the field, including its exaggeration. All arithmetic is in double: a round
+// trip changes coordinates only by their rounding, far below 1e-9 of a cell.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,8 @@ std::string_view name_of(Coordinates coordinates);
 /// Throws Error listing the names if `name` is unknown.
 Coordinates find_coordinates(std::string_view name);
 
-/// Conversions for one raster and one kind of coordinates. Not thread-safe, because PROJ's transformations are not.
+/// Conversions between local coordinates and one other kind, for one raster. Not thread-safe, because PROJ's
+/// transformations are not.
 class CoordinateFrame {
  public:
   /// For a raster of `cols` x `rows` samples. Throws Error without the file's name: a raster without the georeference
@@ -49,13 +50,14 @@ class CoordinateFrame {
   Coordinates coordinates() const { return coordinates_; }
 
   /// Converts points in place. Returns the index of the first point without a counterpart: a longitude beyond +-360
-  /// degrees, a latitude beyond +-90 degrees, a place outside the projection's domain. The points are then undefined.
+  /// degrees, a latitude beyond +-90 degrees, a position outside the projection's domain. The points are then
+  /// undefined.
   std::optional<std::size_t> to_local(std::span<dvec3> points) const;
   std::optional<std::size_t> from_local(std::span<dvec3> points) const;
 
-  /// Converts a direction, at any place.
+  /// Converts a direction; the result is the same at any position.
   dvec3 direction_to_local(const dvec3& direction) const;
-  /// Converts the unit normal of a surface, at any place.
+  /// Converts the unit normal of a surface; the result is the same at any position.
   dvec3 normal_from_local(const dvec3& normal) const;
 
  private:

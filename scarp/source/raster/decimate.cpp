@@ -11,9 +11,9 @@
 namespace scarp {
 namespace {
 
-// Columns whose sums stay in the processor's nearest cache.
+// Number of columns whose sums stay in the L1 cache.
 constexpr int kColumns = 1024;
-// Rows whose sum an int32 holds for any 16-bit samples: 2^15 * 65535 < 2^31.
+// Number of rows whose sum of 16-bit samples always fits in an int32: 2^15 * 65535 < 2^31.
 constexpr std::int64_t kMostRows = 1 << 15;
 
 // Sums, extremes and number of valid samples of adjacent columns: loops over columns that compilers vectorise.
@@ -72,7 +72,7 @@ Decimator<T>::Decimator(int cols, int rows, int out_cols, int out_rows, std::opt
   out_.resize(static_cast<std::size_t>(out_cols) * static_cast<std::size_t>(out_rows));
 }
 
-// The last block that starts at or before it.
+// Returns the last block that starts at or before the sample.
 template <class T>
 int Decimator<T>::out_col_of(int col) const {
   return static_cast<int>(((std::int64_t{col} + 1) * out_cols_ - 1) / cols_);
@@ -106,7 +106,7 @@ void Decimator<T>::add(const RasterWindow& rect, const T* samples) {
 template <class T>
 void Decimator<T>::add_to_row(Row& row, const RasterWindow& rect, const T* samples, std::int64_t first,
                               std::int64_t count) {
-  // Without a nodata value integers have no holes.
+  // Integers without a nodata value have no holes.
   const bool whole = !nodata_ && !std::is_floating_point_v<T>;
   for (int begin = 0; begin < rect.cols; begin += kColumns) {
     const int width = std::min(kColumns, rect.cols - begin);
@@ -186,7 +186,7 @@ T Decimator<T>::average(double sum, std::int64_t valid) const {
   }
 }
 
-// A block next to one that cannot hold both extremes.
+// Returns a neighbour of a block, for the second extreme: one block cannot hold both.
 template <class T>
 typename Decimator<T>::Place Decimator<T>::beside(const Place& place) const {
   if (out_cols_ > 1) return {place.col + 1 < out_cols_ ? place.col + 1 : place.col - 1, place.row};

@@ -31,7 +31,7 @@ struct DecimatedSize {
 /// so that there are cells between them.
 DecimatedSize decimated_size(int cols, int rows, std::int64_t most);
 
-/// The lowest and highest of some samples; low > high if there are none.
+/// The lowest and highest of a set of samples; low > high if it is empty.
 struct SampleEnds {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -41,16 +41,16 @@ struct SampleEnds {
 template <class T>
 class Decimator {
  public:
-  /// `nodata` is a hole, as is NaN.
+  /// Samples equal to `nodata` are holes, as is NaN.
   Decimator(int cols, int rows, int out_cols, int out_rows, std::optional<T> nodata);
 
   /// Adds a rectangle of rect.cols * rect.rows samples, row by row, on all threads. Samples that are never added are
-  /// holes. No row may have been closed.
+  /// holes. None of its rows may have been closed.
   void add(const RasterWindow& rect, const T* samples);
   /// States that no samples of rows before `end` will be added. Rows must be closed in order.
   void close_rows(int end);
-  /// Returns the result, out_cols * out_rows samples; all rows must be closed. Holes are `nodata`, or NaN. Extremes
-  /// beyond those of the samples, as `known` elsewhere, replace them.
+  /// Returns the result, out_cols * out_rows samples; all rows must be closed. Holes are `nodata`, or NaN. Extremes in
+  /// `known` that exceed those of the samples replace them.
   std::vector<T> finish(const SampleEnds& known = {});
 
  private:
@@ -59,7 +59,7 @@ class Decimator {
     std::vector<double> sum;
     std::vector<std::int64_t> valid;
     SampleEnds ends;
-    int low_col = 0, high_col = 0;  // of the blocks with the extremes
+    int low_col = 0, high_col = 0;  // columns of the blocks with the extremes
   };
   struct Place {
     int col = 0, row = 0;

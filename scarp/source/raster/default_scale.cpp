@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-// Greatest sample less least sample, without holes; 0 if there is none.
+// Difference of the largest and the smallest sample, without holes; 0 if there are no samples.
 double range_of(const Raster& raster) {
   return std::visit(
       [&]<class T>(const std::vector<T>& samples) {

@@ -28,7 +28,7 @@
 namespace scarp {
 namespace {
 
-// The largest block of scan lines of most compressions, so that none is decompressed twice.
+// The largest block of scan lines in most compression methods, so that no block is decompressed twice.
 constexpr int kBlockRows = 32;
 
 // Adapts GDAL's file access to OpenEXR, so that /vsizip and similar work.
@@ -64,7 +64,7 @@ std::string names_of(const Imf::ChannelList& channels) {
   return names;
 }
 
-// OpenEXR opens no image without channels.
+// There is at least one channel: OpenEXR rejects images without channels.
 bool has_several(const Imf::ChannelList& channels) { return ++channels.begin() != channels.end(); }
 
 std::string choose_channel(const Imf::ChannelList& channels, const std::string& wanted) {

@@ -10,11 +10,11 @@
 namespace scarp {
 
 /// Throws Error (without the file's name) if `path` is a pipe or a device, an empty file, a Git LFS pointer or not
-/// readable. Accepts names that are not files, which may be GDAL's own.
+/// readable. Accepts names that are not files: they may be GDAL's own.
 void check_file(const std::string& path);
 
-/// Throws Error (without the file's name) if the end of a file is missing, judging by its start: HDF5 (netCDF-4),
-/// classic netCDF, .zip. For files that GDAL cannot open.
+/// Throws Error (without the file's name) if a file is truncated, judging by its start: HDF5 (netCDF-4), classic
+/// netCDF, .zip. For files that GDAL cannot open.
 void check_end(const std::string& path);
 
 /// Returns up to `count` bytes from `begin`. Throws Error (without the file's name) if the file cannot be opened.

@@ -69,7 +69,7 @@ double choose_vertical_unit(GDALRasterBand& band, const RasterPlace& place, cons
     raster.vertical_unit = place.vertical_unit_name;
     return place.vertical_unit;
   }
-  // Maps in feet mostly have heights in feet.
+  // Maps in feet usually have heights in feet.
   if (const std::string_view foot = foot_of(place.map_unit); !foot.empty()) {
     raster.notes.push_back(
         fmt::format("map units are feet, but heights are assumed to be metres (override with --unit {})", foot));
@@ -94,7 +94,7 @@ void find_heights(GDALRasterBand& band, const RasterPlace& place, const RasterOp
   }
 }
 
-// Raster::scale is positive: with a negative one the heights are computed here.
+// Raster::scale is positive, so a negative scale is applied to the samples here.
 void apply_negative_scale(Raster& raster) {
   std::visit(
       [&](const auto& samples) {
@@ -114,7 +114,7 @@ void apply_negative_scale(Raster& raster) {
 
 double last_of(const SampleSpacing& side, int samples) { return side.first + (samples - 1) * side.step; }
 
-// Places samples between those of the window.
+// Moves the georeference from the window's samples to those of the reduced raster.
 void respace(Georeference& geo, const SampleSpacing& across, const SampleSpacing& down) {
   geo.cell_x_m *= across.step;
   geo.cell_y_m *= down.step;
@@ -140,7 +140,7 @@ void flip(Raster& raster, bool rows, bool cols) {
       raster.samples);
 }
 
-// The first colour band of any kind.
+// Whether a band is the first band of a colour image, in any colour model.
 bool is_of_photographs(GDALColorInterp meaning) {
   return meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
 }
@@ -152,7 +152,7 @@ double greatest_integer(GDALDataType type, bool with_sign) {
   return std::exp2(GDALGetDataTypeSizeBits(type) - (with_sign ? 1 : 0)) - 1;
 }
 
-// Formats of pictures, which state no height scale.
+// Whether the format is an image format, which has no height scale.
 bool is_picture_format(GDALDataset& dataset) {
   constexpr std::string_view kDrivers[] = {"PNG", "PNM", "BMP", "GIF", "JPEG", "WEBP", "SGI", "JPEGXL", "PCX"};
   GDALDriver* driver = dataset.GetDriver();
@@ -248,7 +248,7 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   raster.files = files_of(stored);
   raster.file_type = decoded ? std::string(name_of(options.encoding)) : GDALGetDataTypeName(band.GetRasterDataType());
 
-  // Errors that need no reading come first.
+  // Errors that do not require reading samples come first.
   RasterPlace place = find_place(dataset, window, options);
   raster.georeference = place.georeference;
   find_heights(band, place, options, raster);

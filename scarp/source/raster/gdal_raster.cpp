@@ -21,7 +21,7 @@
 namespace scarp {
 namespace {
 
-// The file inside a GDAL name: /vsizip/FILE/MEMBER, NETCDF:FILE:VARIABLE. Empty if there is none.
+// Returns the file within a GDAL name: /vsizip/FILE/MEMBER, NETCDF:FILE:VARIABLE. Empty if there is none.
 std::string file_inside(const std::string& path) {
   constexpr std::string_view kZip = "/vsizip/";
   VSIStatBufL status;
@@ -46,11 +46,11 @@ std::string file_inside(const std::string& path) {
   return is_file(name) ? name : "";
 }
 
-// Lists members of a .zip that was given itself.
+// Lists members of a .zip whose own name was given.
 std::string examples_in(const std::string& archive) {
   constexpr std::size_t kMembersNamed = 3;
   const std::vector<std::string> members = zip_members(archive);
-  // GDAL finds the end of the archive's name by .zip, or by braces.
+  // GDAL recognises the end of the archive's name by .zip, or by braces.
   const std::string in_name = extension_of(archive) == ".zip" ? archive : "{" + archive + "}";
   std::string text;
   for (std::size_t i = 0; i < std::min(members.size(), kMembersNamed); ++i)

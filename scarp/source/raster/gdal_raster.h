@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rasters in all formats that GDAL reads: GeoTIFF and COG, .hgt, USGS .dem, ESRI ASCII, PNG, netCDF, VRT, ...
+// Rasters in any format that GDAL reads: GeoTIFF and COG, .hgt, USGS .dem, ESRI ASCII, PNG, netCDF, VRT, ...
 #pragma once
 
 #include <string>

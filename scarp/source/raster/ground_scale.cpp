@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-// Half the step of the central differences, as a fraction of the ellipsoid's radius (about 950 m on Earth). The chord's
-// error is its square / 6 = 4e-9; iterative inverse projections stop at about 1e-10 radian, an error of 7e-7.
+// Half the step of the central differences, as a fraction of the ellipsoid's radius (about 950 m on Earth). Using the
+// chord causes an error of its square / 6 = 4e-9; iterative inverse projections stop at about 1e-10 radian, an error of
+// 7e-7.
 constexpr double kStepShare = 1.5e-4;
 
 // A note is added if the axes deviate from a right angle on the ground by more than half a degree.

@@ -15,7 +15,7 @@ struct Destroy {
   void operator()(OGRCoordinateTransformation* transform) const { OGRCoordinateTransformation::DestroyCT(transform); }
 };
 
-// Bounds at 0 stay there: rounding moves them by far less than this fraction of a cell.
+// Bounds at 0 stay at 0: rounding moves them by far less than this fraction of a cell.
 constexpr double kRounding = 1e-9;
 
 double rounded(double bound, double cell) { return std::abs(bound) < kRounding * std::abs(cell) ? 0 : bound; }
@@ -42,7 +42,7 @@ MapExtent map_extent(const Georeference& georeference, int cols, int rows) {
     for (double* y : {&bounds->south, &bounds->north}) *y = rounded(*y, map[5]);
   }
   if (georeference.crs_wkt.empty()) return extent;
-  const GdalSession session;  // silences errors of points that cannot be transformed
+  const GdalSession session;  // silences errors about points that cannot be transformed
   OGRSpatialReference crs, lonlat;
   if (crs.importFromWkt(georeference.crs_wkt.c_str()) != OGRERR_NONE || lonlat.importFromEPSG(4326) != OGRERR_NONE)
     return extent;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bounds of a raster on the map: of its samples, from which the surface extends, and of its pixels' outer edges.
+// Bounds of a raster on the map: of its samples, between which the surface extends, and of its pixels' outer edges.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,11 @@
 namespace scarp {
 
 /// Bounds in units of the CRS and in degrees, WGS 84. A raster across 180 degrees of longitude has west > east, or an
-/// east beyond 180 if its CRS is in degrees. Degrees are nullopt without a CRS, or where it has none.
+/// east beyond 180 if its CRS is in degrees. Degrees are nullopt without a CRS, or if the CRS cannot be converted to
+/// degrees.
 struct MapExtent {
-  MapBounds samples{};  ///< from the first sample to the last: what pictures show
-  MapBounds edges{};    ///< half a cell farther on each side: what --bounds means
+  MapBounds samples{};  ///< from the first sample to the last: the area that pictures show
+  MapBounds edges{};    ///< half a cell farther on each side, as in --bounds
   std::optional<MapBounds> samples_lonlat{}, edges_lonlat{};
 };
 

@@ -23,7 +23,7 @@ Raster mirrored(Raster raster) {
         std::vector<T> all;
         all.reserve(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high));
         for (int row = 0; row < high; ++row) {
-          // The raster's own rows come last, its northern border first among them.
+          // The raster's own rows come last, starting with its northern border.
           const int from_border = row - (rows - 2);
           const int source = from_border < 0 ? -from_border : from_border;
           const T* line = samples.data() + static_cast<std::size_t>(source) * static_cast<std::size_t>(cols);

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t kStreaming = 0xffffffff;  // unknown number of records
 constexpr int kTypeBytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
-// Takes big-endian numbers from the header; `good` stays false once the bytes run out.
+// Reads big-endian numbers from the header; `good` becomes false, and stays so, when the bytes run out.
 struct NetcdfHeader {
   std::string_view bytes;
   std::size_t at = 0;
@@ -69,7 +69,7 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
   }
   header.skip_attributes();
 
-  // In double: no header, valid or not, overflows these.
+  // In double, which no header, valid or not, can overflow.
   double least = 0, record_bytes = 0, last_record_end = 0;
   header.number(4);
   for (std::uint64_t n = header.count(); header.good && n > 0; --n) {
@@ -109,8 +109,8 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
 }
 
 std::optional<double> hdf5_bytes(std::string_view start) {
-  // After the signature and the superblock's version: each version states the size of addresses and the address of the
-  // end, both little-endian.
+  // After the signature and the superblock's version: every version contains the size of addresses and the address of
+  // the end, both little-endian.
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   constexpr struct { std::size_t address_bytes, end; } kSuperblocks[] = {{13, 40}, {13, 44}, {9, 28}, {9, 28}};
   if (start.substr(0, kSignature.size()) != kSignature || start.size() <= kSignature.size()) return {};

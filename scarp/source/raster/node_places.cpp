@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-// A frame for one call; there are as many as concurrent calls.
+// A frame borrowed for one call; one exists per concurrent call.
 class NodePlaces::Borrowed {
  public:
   explicit Borrowed(const NodePlaces& owner) : owner_(owner) {
@@ -39,7 +39,7 @@ class NodePlaces::Borrowed {
 
 NodePlaces::NodePlaces(const Georeference& georeference, int cols, int rows)
     : georeference_(georeference), cols_(cols), rows_(rows) {
-  const Borrowed first(*this);  // reports its errors now
+  const Borrowed first(*this);  // throws the frame's errors here, not in row()
 }
 
 NodePlaces::~NodePlaces() = default;

@@ -13,7 +13,7 @@ namespace scarp {
 
 class NodePlaces {
  public:
-  /// Throws Error without the file's name as CoordinateFrame does, for a raster without a CRS.
+  /// Throws Error without the file's name, as CoordinateFrame does for a raster without a CRS.
   NodePlaces(const Georeference& georeference, int cols, int rows);
   ~NodePlaces();
 
@@ -26,7 +26,7 @@ class NodePlaces {
 
   Georeference georeference_;
   int cols_, rows_;
-  // PROJ's transformations serve one thread at a time.
+  // PROJ's transformations can be used by only one thread at a time.
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<CoordinateFrame>> free_;
 };

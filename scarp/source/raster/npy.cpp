@@ -63,7 +63,7 @@ bool is_readable(const NpyHeader& header) {
   return is_half(header) || raw_sample_type(header.kind, header.bytes).has_value();
 }
 
-// Names other contents of arrays; empty for those without a name.
+// Returns a word for arrays that contain something else; empty if there is none.
 std::string_view word_of(const NpyHeader& header) {
   switch (header.kind) {
     case 'b':
@@ -102,7 +102,7 @@ float half_value(std::uint16_t bits) {
   return bits >> 15 ? -value : value;
 }
 
-// Returns the archive member to read: the only raster. Ignores arrays of other types (a mask) beside it.
+// Returns the archive member to read: the only raster. Ignores other members, such as a mask.
 std::string choose_member(const std::string& path, const std::string& key, const GdalSession& session) {
   if (is_zip(path)) check_end(path);
   const std::string folder = zip_folder(path);
@@ -126,7 +126,7 @@ std::string choose_member(const std::string& path, const std::string& key, const
   if (all.empty())
     throw Error(fmt::format("not a .npz archive with arrays: {}", session.reason("no member ends in .npy")));
   if (!key.empty()) throw Error(fmt::format("no array '{}' (choose one with --key: {})", key, all));
-  // Reading it reports the problem.
+  // Reading that member reports the problem.
   if (rasters.empty() && unreadable.size() == 1) rasters.swap(unreadable);
   if (rasters.size() != 1) {
     throw Error(fmt::format("{} two-dimensional arrays of heights (choose one with --key: {})", rasters.size(), all));
@@ -148,7 +148,7 @@ GDALDatasetUniquePtr open_in_memory(GDALDataset& stored, const NpyHeader& header
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   bytes.resize(count * static_cast<std::size_t>(sample_bytes));
   read_piece(band, all, band.GetRasterDataType(), bytes.data(), width, session);
-  // In place, from the last one: a float takes the space of two halves.
+  // Converts in place, starting with the last: a float takes the space of two halves.
   for (std::size_t i = is_half(header) ? count : 0; i-- > 0;) {
     std::uint16_t half = 0;
     std::memcpy(&half, bytes.data() + i * sizeof(half), sizeof(half));
@@ -199,7 +199,7 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   std::vector<std::uint8_t> whole;
   const int file_cols = static_cast<int>(header.fortran_order ? rows : cols),
             file_rows = static_cast<int>(header.fortran_order ? cols : rows);
-  // The memory image of an array in Fortran order is that of its transpose.
+  // In memory, an array in Fortran order equals its transpose in C order.
   GDALDatasetUniquePtr dataset =
       open_raw_band({file, file_cols, file_rows, type, header.bytes, header.big_endian, header.data_begin}, session);
   if (header.fortran_order || is_half(header)) dataset = open_in_memory(*dataset, header, whole, session);

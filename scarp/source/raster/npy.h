@@ -16,9 +16,9 @@ namespace scarp {
 /// Returns whether the name ends in .npy or .npz, ignoring case.
 bool is_npy_path(const std::string& path);
 
-/// Reads a two-dimensional array (or three with a leading or trailing 1); from a .npz the one named by options.key, or
-/// the only one. Arrays have no georeference: options.bounds and options.crs provide it. Throws as read_gdal_raster()
-/// does, and for other kinds and shapes, and for files shorter than their header requires.
+/// Reads a two-dimensional array (or three with a leading or trailing 1); from a .npz, the array that options.key
+/// names, or the only one. Arrays have no georeference: options.bounds and options.crs provide it. Throws as
+/// read_gdal_raster() does, and also for other kinds and shapes, and for files shorter than their header requires.
 Raster read_npy(const std::string& path, const RasterOptions& options, const Progress& progress = {});
 
 }  // namespace scarp

@@ -13,12 +13,12 @@
 namespace scarp {
 namespace {
 
-constexpr double kFinestWavelength = 2;  // in cells; shorter waves would be noise from sample to sample
+constexpr double kFinestWavelength = 2;  // in cells; shorter waves would be noise between adjacent samples
 constexpr double kLargestWavelength = kLargestProceduralSide;
 constexpr int kMostOctaves = 16;  // from 65,536 to 2 cells
 constexpr int kRowsPerPiece = 8;
 
-// Amplitude ratio of successive octaves: 0.5 gives all octaves the same slope, less emphasises the large ones.
+// Amplitude ratio of successive octaves: 0.5 gives all octaves the same slope; lower values emphasise large features.
 constexpr double kFbmGain = 0.47;
 constexpr double kRidgedGain = 0.46;
 
@@ -91,7 +91,7 @@ class GradientNoise {
   const double* south_east_ = nullptr;
 };
 
-// The settings with derived values, for one thread.
+// The settings and values derived from them, for one thread.
 class ProceduralTerrain {
  public:
   explicit ProceduralTerrain(const ProceduralDem& s) : kind_(s.kind) {
@@ -110,7 +110,7 @@ class ProceduralTerrain {
   }
 
  private:
-  // Off the lattice: (0, 0) would be a zero of every octave.
+  // Offset from the lattice: otherwise every octave would be zero at (0, 0).
   Point start(int col, int row) const { return {col / wavelength_ + 0.3125, row / wavelength_ + 0.6875}; }
   // The next octave: half the wavelength, rotated by the angle of the 3-4-5 triangle.
   static Point next(Point p) { return {2 * (0.8 * p.x - 0.6 * p.y), 2 * (0.6 * p.x + 0.8 * p.y)}; }

@@ -5,8 +5,8 @@
 // ridges (ridged). Each octave rotates the domain by the angle of the 3-4-5 triangle, so that lattice directions do not
 // add up. A height depends only on the settings and its (col, row): tiles match for any size and order.
 //
-// Bit-identical on all machines: hashes are integers, heights use only + - * / and comparisons of doubles (no function
-// of libm, no fused multiply-add).
+// Bit-identical on all machines: hashes are integers, heights use only + - * / and comparisons of doubles (no libm
+// functions, no fused multiply-add).
 //
 // Source: K. Perlin, "Improving noise", SIGGRAPH 2002; F. K. Musgrave in D. Ebert et al., "Texturing and modeling", 3rd
 // ed., 2003, chapter 16 (fBm, ridged multifractal). Cost: about 9 octaves at the default feature size, some 200 ns per
@@ -35,7 +35,7 @@ std::string_view name_of(TerrainKind kind);
 std::optional<TerrainKind> terrain_kind(std::string_view name);
 
 inline constexpr int kLargestProceduralSide = 65536;
-/// Maximum cell size, metres; the highest mountains then stay far below the largest float32.
+/// Maximum cell size, metres; even the highest mountains are then far below the largest float32.
 inline constexpr int kLargestProceduralCell = 1000000;
 
 /// Settings of a procedural terrain.

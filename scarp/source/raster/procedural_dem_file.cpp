@@ -100,7 +100,7 @@ void write_computed_dem(const std::string& path, const ComputedDem& settings, co
     const CPLErr result = band.RasterIO(GF_Write, 0, first, settings.cols, rows, strip.data(), settings.cols, rows,
                                         GDT_Float32, 0, 0, nullptr);
     if (result != CE_None) refuse(path, session);
-    // Flushes GDAL's cache at once: it must not grow, and a full disk must be reported early.
+    // Flushes GDAL's cache immediately: it must not grow, and a full disk must be reported early.
     dataset->FlushCache();
     if (session.failed()) refuse(path, session);
   }

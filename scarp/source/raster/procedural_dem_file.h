@@ -11,10 +11,10 @@
 namespace scarp {
 
 /// Writes the terrain to `path`: float32 metres, tiles of 256 x 256, lossless compression (deflate), BigTIFF if needed.
-/// Computes strips of 256 rows on all threads and writes them in order, so memory holds only a few.
+/// Computes strips of 256 rows on all threads and writes them in order, so only a few are in memory at a time.
 ///
-/// The terrain is around latitude 0, longitude 0 on a Transverse Mercator of scale 1 with its origin at the terrain's
-/// centre, so that map metres are ground metres there and north is up.
+/// The terrain is centred on latitude 0, longitude 0, in a Transverse Mercator projection of scale 1 with its origin
+/// there, so that map metres are ground metres at the centre and north is up.
 ///
 /// Throws Error (settings, folder, disk full) or Interrupted; then no file remains.
 void write_procedural_dem(const std::string& path, const ProceduralDem& settings, const Progress& progress = {});
@@ -24,7 +24,7 @@ struct ComputedDem {
   int cols = 0, rows = 0;     ///< samples, 1..kLargestProceduralSide
   double cell_m = 1;          ///< sample spacing in metres, > 0, <= kLargestProceduralCell
   std::string description{};  ///< stored in the file
-  /// Writes the heights in metres of `rows` rows from `row` on, north to south, `cols` each. Called from many threads.
+  /// Writes the heights in metres of `rows` rows from `row` on, north to south, `cols` each. Called concurrently.
   std::function<void(int row, int rows, float* out)> fill;
 };
 /// Writes computed heights to the same kind of file.

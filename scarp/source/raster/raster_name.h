@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// Returns the result of read() with `path` in it. Rethrows its Errors prefixed with the path, and Interrupted
+/// Returns the result of read() with its `path` set. Rethrows its Errors prefixed with the path, and Interrupted
 /// unchanged.
 template <class Read>
 Raster read_named(const std::string& path, Read&& read) {

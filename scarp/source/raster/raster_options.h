@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reading options: what a raster file does not state, or states wrongly. One struct for all readers.
+// Reading options: properties that a raster file does not state, or states wrongly. One struct for all readers.
 #pragma once
 
 #include <cstdint>
@@ -40,10 +40,10 @@ struct HeightRange {
   bool operator==(const HeightRange&) const = default;
 };
 
-/// RasterOptions::crs for a raster without a CRS, regardless of the file: map units are metres.
+/// Value of RasterOptions::crs that discards the file's CRS: map units are then metres.
 inline constexpr std::string_view kNoCrs = "none";
 
-/// Reads rasters of more than `above` samples with at most about `samples` samples, for pictures (source/decimate.h).
+/// Reduces rasters with more than `above` samples to at most about `samples` samples, for pictures (decimate.h).
 struct Decimation {
   std::int64_t above = 64'000'000;    ///< > 0
   std::int64_t samples = 16'000'000;  ///< at least 4, at most `above`

@@ -16,7 +16,7 @@ namespace {
 
 std::string bounds_text(const MapBounds& b) { return fmt::format("{},{},{},{}", b.west, b.south, b.east, b.north); }
 
-// The geotransform from the caller's bounds or the file; nullopt if neither has one.
+// Returns the geotransform from the caller's bounds, or else from the file; nullopt if there is neither.
 std::optional<GeoTransform> geotransform_of(GDALDataset& dataset, const RasterOptions& options) {
   const int cols = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
   GeoTransform map{};
@@ -32,7 +32,7 @@ std::optional<GeoTransform> geotransform_of(GDALDataset& dataset, const RasterOp
   return map;
 }
 
-// The CRS from the caller or the file; nullopt if neither has one.
+// Returns the CRS from the caller, or else from the file; nullopt if there is neither.
 std::optional<OGRSpatialReference> crs_of(const OGRSpatialReference* own, const RasterOptions& options) {
   OGRSpatialReference crs;
   if (options.crs == kNoCrs) return {};
@@ -80,13 +80,13 @@ std::string name_of(const OGRSpatialReference& crs) {
   return authority && code ? fmt::format("{} ({}:{})", name, authority, code) : name;
 }
 
-// Geographic rasters of many degrees are not planar: a note says by how much.
+// Geographic rasters that span many degrees are not planar: adds a note that states the error.
 void note_latitude_span(const OGRSpatialReference& crs, double north, double south, RasterPlace& place) {
   const double unit = crs.GetAngularUnits(), pole = std::numbers::pi / 2;
   const double far = std::min(std::max(std::abs(north), std::abs(south)) * unit, pole);
   const double centre = std::cos((north + south) / 2 * unit), least = std::cos(far);
   const double most = north * south < 0 ? 1 : std::cos(std::min(std::abs(north), std::abs(south)) * unit);
-  // A cell near a pole is less than a tenth as wide as at the centre: no plane shows both.
+  // If a cell near a pole is less than a tenth as wide as at the centre, no plane can represent both.
   constexpr double kNearAPole = 0.1;
   if (least < kNearAPole * centre) {
     place.notes.push_back(
@@ -94,7 +94,7 @@ void note_latitude_span(const OGRSpatialReference& crs, double north, double sou
         "regions only (choose one with --window, or gdalwarp to a projected CRS)");
     return;
   }
-  // A hundredth of a cell per cell is visible in an image.
+  // An error of a hundredth of a cell per cell is visible in an image.
   if (std::max(centre - least, most - centre) > 0.01 * centre) {
     place.notes.push_back(
         fmt::format("true cell widths are {:.1f} to {:.1f} % of the width at the centre, which is used for all cells "
@@ -103,9 +103,9 @@ void note_latitude_span(const OGRSpatialReference& crs, double north, double sou
   }
 }
 
-// Whether all bounds of the file fit degrees. Cells of a degree are coarse for an elevation model, except for one of
-// the whole globe. A corner at exactly (0, 0) is the usual origin of local metres, and a point of the open ocean; but
-// elevation models do not have cells below a centimetre.
+// Whether all bounds of the file fit degrees. Cells of a degree are too coarse for an elevation model, except for one
+// of the whole globe. A corner at exactly (0, 0) is the usual origin of local metres and, in degrees, a point in the
+// open ocean; but elevation models in metres do not have cells below a centimetre.
 enum class Degrees { no, perhaps, yes };
 constexpr double kFinestLocalCell_m = 0.01;
 Degrees like_degrees(const GeoTransform& map, double cols, double rows) {
@@ -113,7 +113,7 @@ Degrees like_degrees(const GeoTransform& map, double cols, double rows) {
   const double step_x = std::abs(map[1]), step_y = std::abs(map[5]);
   const double west = std::min(map[0], map[0] + cols * map[1]), east = west + cols * step_x,
                south = std::min(map[3], map[3] + rows * map[5]), north = south + rows * step_y;
-  // Samples at the borders of the globe have edges half a cell beyond.
+  // Samples on the borders of the globe have edges half a cell beyond them.
   const bool fits =
       west >= -180 - step_x / 2 && east <= kTurn + step_x / 2 && south >= -90 - step_y / 2 && north <= 90 + step_y / 2;
   const bool globe = std::abs(east - west - kTurn) <= step_x;
@@ -210,7 +210,7 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
     geo.cell_size_found = "no coordinate reference system: map units taken as metres, north as up";
     return place;
   }
-  // Once and a half around the Earth: from 0 to 360 and beyond either border. More indicates another CRS.
+  // One and a half times around the Earth: from 0 to 360 and beyond either border. Larger values indicate another CRS.
   constexpr double kFarthestLongitude = 540;
   if (crs->IsGeographic()) {
     const double west = first_x - 0.5 * step_x, east = first_x + (window.cols - 0.5) * step_x,

@@ -22,22 +22,22 @@ struct RasterPlace {
   bool flip_cols = false;          ///< the file's columns run from east to west
   double map_unit = 0;             ///< metres per unit of a projected or local CRS; 0: none
   double vertical_unit = 0;        ///< metres per unit of a vertical CRS; 0: none
-  std::string vertical_unit_name;  ///< its name
+  std::string vertical_unit_name;  ///< name of the vertical unit
   std::vector<std::string> notes;
 };
 
 /// GDAL's six coefficients: map = (m[0] + m[1] col + m[2] row, m[3] + m[4] col + m[5] row), for pixel edges.
 using GeoTransform = std::array<double, 6>;
 
-/// Displacements below this fraction of a cell count as rounding in the file: 1e-3 cell is Scarp's horizontal accuracy.
+/// Displacements below this, in cells, count as rounding in the file: 1e-3 cells is Scarp's horizontal accuracy.
 inline constexpr double kLargestDriftInCells = 1e-3;
 
-/// Throws Error without the file's name: not finite, rotated, cells without size.
+/// Throws Error without the file's name: not finite, rotated, cells of zero size.
 void check_geotransform(const GeoTransform& map, int cols, int rows);
 
-/// Returns a full circle in map units if the map's x is a longitude, by the CRS of the options, else of the file
-/// (`own`, may be null), else by bounds that fit degrees; otherwise 0. Throws Error without the file's name: an
-/// unusable CRS.
+/// Returns a full circle in map units if the map's x is a longitude, otherwise 0. This is decided by the CRS in the
+/// options, else by the file's (`own`, may be null), else by whether the bounds fit degrees. Throws Error without the
+/// file's name: an unusable CRS.
 double turn_of(const OGRSpatialReference* own, const GeoTransform& map, double cols, double rows,
                const RasterOptions& options);
 

@@ -42,7 +42,7 @@ std::int64_t file_bytes(const std::string& path) {
 }
 
 GDALDatasetUniquePtr open_raw_band(const RawBand& band, const GdalSession& session) {
-  // Newer GDAL reads raw bands of virtual datasets only with permission.
+  // Newer versions of GDAL read raw bands of virtual datasets only if this option permits it.
   const GdalOption raw("GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "ALL");
   const std::string xml = fmt::format(
       "<VRTDataset rasterXSize=\"{0}\" rasterYSize=\"{1}\"><VRTRasterBand dataType=\"{2}\" band=\"1\" "

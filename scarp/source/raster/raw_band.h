@@ -15,16 +15,18 @@ namespace scarp {
 /// GDAL's name for a sample type.
 struct RawSampleType {
   GDALDataType type;
-  bool signed_bytes;  ///< GDAL before 3.7: Byte with metadata for the sign
+  bool signed_bytes;  ///< in GDAL before 3.7: Byte, with metadata for the sign
 };
 
-/// `kind` is 'i' signed, 'u' unsigned, 'f' float. Returns nullopt for types that GDAL cannot read raw (half floats).
+/// Returns GDAL's type for a sample; `kind` is 'i' signed, 'u' unsigned, 'f' float. Returns nullopt for types that GDAL
+/// cannot read raw (half floats).
 std::optional<RawSampleType> raw_sample_type(char kind, int bytes);
 
-/// Returns a name by which GDAL finds the file from anywhere: absolute, unless it is one of GDAL's own (/vsi...).
+/// Returns a name that does not depend on the working directory: an absolute path, unless it is one of GDAL's own names
+/// (/vsi...).
 std::string full_path(const std::string& path);
 
-/// Returns the length of the file. Throws Error if it does not exist or is a directory.
+/// Returns the length of the file in bytes. Throws Error if it does not exist or is a directory.
 std::int64_t file_bytes(const std::string& path);
 
 /// Position and layout of the samples.

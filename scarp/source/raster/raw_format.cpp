@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kLargestOffset = std::int64_t{1} << 62;
 
-// The rest of a text that is read from left to right.
+// The remainder of a text that is parsed from left to right.
 class Rest {
  public:
   explicit Rest(std::string_view text) : text_(text) {}
@@ -23,7 +23,7 @@ class Rest {
     text_.remove_prefix(word.size());
     return true;
   }
-  // An integer of digits alone, in [least, most].
+  // Parses an integer in [least, most] that consists only of digits.
   bool take_number(std::int64_t least, std::int64_t most, std::int64_t& number) {
     if (text_.empty() || text_[0] < '0' || text_[0] > '9') return false;
     const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);

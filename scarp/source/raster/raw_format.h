@@ -29,7 +29,7 @@ struct RawFormat {
 };
 
 /// Parses the text above. Throws Error, in one line with the text and the expected form: anything else, extents below
-/// 1, rows of more bytes than 32 bits count, an offset beyond 2^62.
+/// 1, rows with more bytes than 32 bits can count, an offset beyond 2^62.
 RawFormat parse_raw_format(std::string_view text);
 
 /// Returns the format as text: parse_raw_format(text_of(f)) is f.

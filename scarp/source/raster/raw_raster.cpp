@@ -13,7 +13,8 @@
 namespace scarp {
 namespace {
 
-// Bytes after the samples. Throws Error if there are too few, or extra ones without an offset.
+// Returns the number of bytes after the samples. Throws Error if there are too few bytes, or extra bytes although no
+// offset was given.
 std::int64_t bytes_left(const RawFormat& format, std::int64_t bytes) {
   // In double: neither the product nor the sum can overflow.
   const double needed = static_cast<double>(format.offset) +

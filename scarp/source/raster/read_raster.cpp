@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kFilesNamed = 3;
 
-// Rejects options that apply to other file types only.
+// Rejects options that apply only to other file types.
 void refuse_foreign_options(const std::string& path, const RasterOptions& options) {
   const bool raw = options.raw.has_value(), exr = !raw && extension_of(path) == ".exr",
              archive = !raw && extension_of(path) == ".npz", array = !raw && is_npy_path(path);

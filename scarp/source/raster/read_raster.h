@@ -19,7 +19,7 @@ Raster read_raster(const std::string& path, const RasterOptions& options, const 
 /// Reads several files and folders as one mosaic, placed by their georeference. A folder contributes all rasters in it,
 /// sorted by name. Where tiles overlap, the later one wins. Gaps become holes, reported in a note. A single file is
 /// read as by read_raster(). Throws Error naming the file if it has no georeference; if its CRS, cell size, sample
-/// type, nodata value, scale or vertical unit differs from the first file's; if its samples are off the first file's
+/// type, nodata value, scale or vertical unit differs from the first file's; if its samples are not on the first file's
 /// grid; or if a folder contains no rasters.
 Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& options, const Progress& progress = {});
 

@@ -13,7 +13,7 @@
 namespace scarp {
 namespace {
 
-// 2^40 samples take a quarter of an hour at a billion a second, about what one pass over memory reaches.
+// 2^40 samples take a quarter of an hour at a billion samples per second, about the speed of one pass over memory.
 constexpr double kMostSamples = 1099511627776.0;
 
 // The coarsest overview that has at least the wanted number of samples for the whole band; nullptr if there is none.
@@ -28,8 +28,7 @@ GDALRasterBand* overview_for(GDALRasterBand& band, double wanted_cols, double wa
   return best;
 }
 
-// The samples of the overview whose centres are in part of a side, and the spacing of the `out` samples computed from
-// them.
+// The overview samples whose centres are in part of a side, and the spacing of the `out` samples computed from them.
 struct Side {
   int first, count;
 };
@@ -40,7 +39,7 @@ Side side_of_overview(int side, int overview_side, int first, int count) {
   return {begin, std::max(end - begin, 1)};
 }
 
-// `begin` and `count` describe the averaged part, in samples of the request.
+// `begin` and `count` describe the averaged part, in samples of the requested window.
 SampleSpacing spacing(double begin, double count, int out) {
   const double step = count / out;
   return {begin + (step - 1) / 2, step};
@@ -71,7 +70,8 @@ ReadingPlan plan_reading(GDALRasterBand& band, const RasterWindow& window, const
   if (overview) {
     const Side across = side_of_overview(band.GetXSize(), overview->GetXSize(), window.col, window.cols),
                down = side_of_overview(band.GetYSize(), overview->GetYSize(), window.row, window.rows);
-    // Whole blocks of the overview, which has less than twice as many samples to a side as wanted in most files.
+    // Averages whole blocks of the overview, which in most files has less than twice the wanted number of samples per
+    // side.
     int block = std::max(1, std::min(across.count / wanted.cols, down.count / wanted.rows));
     const auto reduced = [&](int count) { return std::max((count + block - 1) / block, std::min(count, 2)); };
     while (static_cast<double>(reduced(across.count)) * reduced(down.count) > static_cast<double>(decimation->above))

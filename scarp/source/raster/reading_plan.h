@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// Position of the samples of a result along one side, in samples of the request.
+/// Positions of the result's samples along one side, in samples of the requested window.
 struct SampleSpacing {
   double first = 0;
   double step = 1;
@@ -21,17 +21,17 @@ struct SampleSpacing {
 
 struct ReadingPlan {
   GDALRasterBand* band = nullptr;  ///< the band or one of its overviews
-  RasterWindow window;             ///< of it
+  RasterWindow window;             ///< window of `band`
   bool decimates = false;          ///< whether the result has fewer samples than requested
   int cols = 0;                    ///< of the result
   int rows = 0;
   SampleSpacing across, down;
-  SampleEnds known;  ///< of the file, as an overview may lack them
+  SampleEnds known;  ///< extremes of the file, because an overview may lack them
   std::string note;  ///< empty if everything is read
 };
 
-/// Plans to read a window of a band. `own_nodata`: holes are those that the file states. Throws Error without the
-/// file's name if there are too many samples even to reduce them.
+/// Plans to read a window of a band. `own_nodata`: whether holes are those that the file states. Throws Error without
+/// the file's name if there are too many samples even to reduce them.
 ReadingPlan plan_reading(GDALRasterBand& band, const RasterWindow& window, const std::optional<Decimation>& decimation,
                          bool own_nodata);
 

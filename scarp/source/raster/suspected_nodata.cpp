@@ -13,14 +13,14 @@ namespace scarp {
 namespace {
 
 constexpr double kLowMarks[] = {-32768, -32767, -9999, -99999, -999999};
-// From the Challenger Deep, -10,935 m, to the top of Everest, 8,849 m, rounded up: no heights on Earth are farther
-// apart, so no step between successive values is larger.
+// From the Challenger Deep, -10,935 m, to the top of Everest, 8,849 m, rounded up: heights on Earth differ by no more,
+// so no step between successive values is larger.
 constexpr double kReliefOfTheEarth_m = 20000;
 
 // The lowest and highest value, and those next to them.
 struct Ends {
   double lowest, above_lowest, below_highest, highest;
-  bool several = false;  // whether there are several values; otherwise there is no next one
+  bool several = false;  // whether there are several values; otherwise no next value exists
 };
 
 template <class T>
@@ -52,7 +52,7 @@ std::vector<std::string> suspected_nodata(const Raster& raster, std::optional<do
   std::vector<std::string> notes;
   const auto look_at = [&](std::string_view end, double value, bool marked, bool marked_if_apart, double gap,
                            double range_of_others) {
-    // If there are only two values, either is isolated; ground is nearer to height 0.
+    // If there are only two values, either one is isolated; the ground is the one nearer to height 0.
     const bool of_two = ends.lowest == ends.below_highest;
     const bool apart = ends.several && gap > range_of_others &&
                        (!of_two || std::abs(value) == std::max(std::abs(ends.lowest), std::abs(ends.highest)));

@@ -5,8 +5,8 @@
 //   highest sample           above 1e30; the largest value of its type, if isolated
 //   either                   if isolated by more than the relief of the Earth
 //
-// A value is isolated if it is farther from the next value than all others are from each other; of two values, the one
-// farther from 0.
+// A value is isolated if it is farther from the next value than all others are from each other; if there are only two
+// values, the one farther from 0 is isolated.
 #pragma once
 
 #include <optional>
@@ -17,10 +17,10 @@
 
 namespace scarp {
 
-/// Marks such as -3.4e38, 1e38 and 9.96e36 (netCDF's) exceed it; measured values do not.
+/// Nodata marks such as -3.4e38, 1e38 and 9.96e36 (netCDF's) exceed this; measured values do not.
 inline constexpr double kBeyondHeights = 1e30;
 
-/// Returns a note for the lowest and for the highest sample if it may mark holes; the note names the option that
+/// Returns a note for the lowest and for the highest sample, each if it may mark holes; the note names the option that
 /// declares it. `greatest` is the largest value of the file's sample type; nullopt for floats.
 std::vector<std::string> suspected_nodata(const Raster& raster, std::optional<double> greatest);
 

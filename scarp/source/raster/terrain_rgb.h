@@ -7,7 +7,8 @@
 //   terrarium     height = n / 256 - 32768 m     -32768 to 32768 m in steps of 1/256 m
 //
 // The colours themselves must never be interpolated: there is no height between red 1, green 0 and red 0, green 255.
-// Samples are decoded to integers here, which float32 represents exactly, and the field interpolates these.
+// Samples are decoded to integers here, which float32 represents exactly, and the field interpolates between these
+// integers.
 //
 // Source: Mapbox, "Mapbox Terrain-RGB v1"; Mapzen, "Terrain tiles", formats, terrarium.
 #pragma once
@@ -26,7 +27,7 @@ std::string_view name_of(HeightEncoding encoding);
 /// Returns the encoding with that name, or nullopt.
 std::optional<HeightEncoding> height_encoding(std::string_view name);
 
-/// height in metres = n * scale + offset
+/// Height in metres = n * scale + offset.
 struct EncodingScale {
   double scale;
   double offset;

@@ -54,7 +54,7 @@ std::size_t words_in(std::string_view line) {
   return words;
 }
 
-// A name with a value, or all of them on one line.
+// Whether a line is part of the header: a name with a value, or all of them on one line.
 bool is_header_line(std::string_view line) {
   const std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return true;
@@ -77,7 +77,7 @@ void TextSamples::take(std::string_view bytes) {
   if (left_ <= 0) return;
   rest_ += bytes;
   std::string_view text = without_header(rest_);
-  // A word at the end may continue in the next piece.
+  // The last word may continue in the next piece.
   std::size_t end = text.size();
   while (!in_header_ && end > 0 && kind_of(text[end - 1]) != kSpace) --end;
   if (in_header_) end = 0;

@@ -28,8 +28,8 @@ std::vector<int> turns_side_by_side(const std::vector<TileSpan>& tiles, double c
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return in_circle(tiles[a].west) < in_circle(tiles[b].west); });
 
-  // The widest gap ends at a tile's west edge: that tile starts the mosaic. Tiles may reach across the end of the
-  // circle, so the gap before the first tile follows the easternmost of all.
+  // The widest gap ends at a tile's west edge: that tile starts the mosaic. Tiles may extend across the end of the
+  // circle, so the gap before the first tile begins at the easternmost edge of all tiles.
   double reached = -circle;
   for (const TileSpan& tile : tiles)
     reached = std::max(reached, in_circle(tile.west) + (tile.east - tile.west) - circle);
@@ -45,7 +45,7 @@ std::vector<int> turns_side_by_side(const std::vector<TileSpan>& tiles, double c
   const double west = tiles[begin].west;
   double east = tiles[begin].east, least_west = west, greatest_east = east;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    // Tiles of one column may differ by rounding.
+    // Tiles in one column may differ by rounding.
     turns[i] = -static_cast<int>(std::floor((tiles[i].west - west + least) / circle));
     east = std::max(east, tiles[i].east + turns[i] * circle);
     least_west = std::min(least_west, tiles[i].west);
@@ -66,7 +66,7 @@ double covered_samples(const std::vector<TileRect>& tiles) {
   std::vector<TileRect> by_row = tiles;
   std::sort(by_row.begin(), by_row.end(), [](const TileRect& a, const TileRect& b) { return a.row < b.row; });
 
-  // Between adjacent edges every column has the same tiles: merge their rows from north to south.
+  // Between two adjacent edges, all columns are covered by the same tiles: merges their rows from north to south.
   double covered = 0;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     std::int64_t rows = 0, south = std::numeric_limits<std::int64_t>::min();

@@ -24,11 +24,12 @@ struct TileSpan {
   double east = 0;
 };
 
-/// Returns for each tile how many full circles to add to its longitudes, so that all tiles lie side by side: the circle
-/// of longitudes is cut in its widest gap. All 0 if that saves less than `least`, a fraction of a cell. Time: n log n.
+/// Returns, for each tile, how many full circles to add to its longitudes so that all tiles are side by side: the
+/// circle of longitudes is cut at its widest gap. All are 0 if that saves less than `least`, a fraction of a cell.
+/// Time: n log n.
 std::vector<int> turns_side_by_side(const std::vector<TileSpan>& tiles, double circle, double least);
 
-/// Returns the number of samples covered by at least one tile. Time: tiles times their distinct edges.
+/// Returns the number of samples covered by at least one tile. Time: number of tiles times number of distinct edges.
 double covered_samples(const std::vector<TileRect>& tiles);
 
 }  // namespace scarp

@@ -25,8 +25,8 @@ namespace {
 // Properties of one file.
 struct Tile {
   std::string path;
-  int band = 1;   // the first to read
-  int bands = 1;  // one, or with an encoding three or four
+  int band = 1;   // the first band to read
+  int bands = 1;  // one; with an encoding, three or four
   GDALDataType type = GDT_Unknown;
   std::optional<double> nodata;
   bool masked = false;
@@ -109,7 +109,7 @@ void compare(const Tile& first, const Tile& tile, const RasterOptions& options) 
            fmt::format("x {} + {}", first.scale, first.offset), "gdal_translate -unscale -ot Float32 IN OUT.tif");
   if (tile.unit != first.unit)
     differ("vertical unit", fmt::format("'{}'", tile.unit), fmt::format("'{}'", first.unit), "convert one of them");
-  // Over the width or height of the tile, its cells must not drift from those of the first.
+  // Across the tile's width and height, its cells must not drift from those of the first tile.
   if (std::abs(tile.map[1] - first.map[1]) * tile.cols > kLargestDriftInCells * first.map[1] ||
       std::abs(tile.map[5] - first.map[5]) * tile.rows > kLargestDriftInCells * -first.map[5]) {
     differ("cell size", fmt::format("{} x {}", tile.map[1], -tile.map[5]),
@@ -117,7 +117,7 @@ void compare(const Tile& first, const Tile& tile, const RasterOptions& options) 
   }
 }
 
-// Position of the tile, in whole samples from the first one's north-west sample.
+// Returns the position of the tile, in whole samples from the first tile's north-west sample.
 TileRect rect_of(const Tile& first, const Tile& tile) {
   const double col = (tile.map[0] - first.map[0]) / first.map[1], row = (tile.map[3] - first.map[3]) / first.map[5];
   // Rasters have int extents, so farther offsets are impossible.
@@ -168,20 +168,20 @@ bool can_mark(const Tile& tile, double value) {
   return !clamped && !rounded;
 }
 
-// The sample value that marks holes in the tiles, and may mark those between them.
+// Returns the sample value that marks holes in the tiles, and can mark gaps between them.
 std::optional<double> mark_of_holes(const Tile& tile, const RasterOptions& options) {
   const std::optional<double> value = options.nodata ? options.nodata : tile.nodata;
   return value && !std::isnan(*value) && can_mark(tile, *value) ? value : std::nullopt;
 }
 
-// A type that represents all samples of `type` and NaN.
+// Returns a type that represents all samples of `type`, and NaN.
 GDALDataType type_with_nan(GDALDataType type) {
   return GDALDataTypeIsFloating(type) ? type : GDALGetDataTypeSizeBits(type) <= 16 ? GDT_Float32 : GDT_Float64;
 }
 
 // XML elements that map part of a file to part of the dataset.
 std::string source_xml(const Tile& tile, const TileRect& at, int band, std::string_view kind, const std::string& more) {
-  // Opened again when it is read, by GDAL alone.
+  // GDAL opens the file again when it reads it.
   const std::string open_as = tile.ascii_grid ? fmt::format("<OpenOptions><OOI key=\"DATATYPE\">{}</OOI></OpenOptions>",
                                                             GDALGetDataTypeName(tile.type))
                                               : "";
@@ -246,7 +246,7 @@ void add_colours(GDALDataset& dataset, const std::vector<Tile>& tiles, const std
   if (!alpha && !gaps) return;
   GDALRasterBand& band = add_band(dataset, GDT_Byte, session);
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    // A tile without alpha is opaque: any of its bands times 0 plus 255.
+    // A tile without alpha is opaque: its alpha is any of its bands, times 0 plus 255.
     add_source(band,
                source_xml(tiles[i], places[i], alpha ? 4 : 1, "ComplexSource",
                           alpha ? "<NODATA>0</NODATA>" : "<ScaleOffset>255</ScaleOffset><ScaleRatio>0</ScaleRatio>"),

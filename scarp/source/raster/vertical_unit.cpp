@@ -27,8 +27,8 @@ constexpr Unit kUnits[] = {
     {6 * kFoot, " fathom fathoms "},
 };
 
-// Feet of other countries (Clarke's, Indian, Gold Coast) differ from the international one by at most 5e-5, the two US
-// feet by 2e-6; texts of the same unit by their rounding, about 1e-9.
+// Relative differences: feet of other countries (Clarke's, Indian, Gold Coast) differ from the international foot by at
+// most 5e-5, the two US feet by 2e-6, and texts of the same unit only by their rounding, about 1e-9.
 constexpr double kFeetDiffer = 1e-4, kSameLength = 1e-7;
 
 }  // namespace
@@ -36,7 +36,7 @@ constexpr double kFeetDiffer = 1e-4, kSameLength = 1e-7;
 std::optional<double> metres_per_vertical_unit(std::string_view name) {
   // "1/3 ft", "10 m" and "m^2" are not the unit that they contain.
   if (name.find_first_of("0123456789/*^%") != std::string_view::npos) return {};
-  // "U.S. survey foot", "us-ft" and "Foot_US" differ by case and punctuation only.
+  // "U.S. survey foot", "us-ft" and "Foot_US" differ only in case and punctuation.
   std::string plain = " ";
   for (const char c : name) {
     if (c >= 'A' && c <= 'Z') plain += static_cast<char>(c - 'A' + 'a');

@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// The file of a source, from the element that describes it; empty if there is none.
+// Returns the file of a source from the element that describes it; empty if there is none.
 std::string file_of(const CPLXMLTreeCloser& source, const std::string& vrt) {
   if (!source.get()) return {};
   const char* const name = CPLGetXMLValue(source.get(), "SourceFilename", nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks the sources of virtual rasters, whose read errors rarely name the file at fault.
+// Checks the sources of virtual rasters, because GDAL's read errors rarely name the faulty file.
 #pragma once
 
 #include <gdal_priv.h>

@@ -9,13 +9,13 @@
 
 namespace scarp {
 
-/// Returns whether the file starts like an archive.
+/// Returns whether the file starts like a .zip archive.
 bool is_zip(const std::string& path);
 
 /// Returns whether the file has the end record, without which its members cannot be found.
 bool has_zip_end(const std::string& path);
 
-/// Returns GDAL's folder name of the archive. /vsizip needs the full name, in braces unless it ends in .zip.
+/// Returns GDAL's folder name of the archive. /vsizip requires the full name, in braces unless it ends in .zip.
 std::string zip_folder(const std::string& path);
 
 /// Returns all files in the archive, with their folders.

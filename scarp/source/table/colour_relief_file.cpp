@@ -100,7 +100,7 @@ class ColourReliefReader {
   }
 
   vec3 colour(const std::vector<std::string_view>& fields) const {
-    // A number here is the beginning of R G B; names have no digits.
+    // A number here is the start of R G B: colour names contain no digits.
     if (fields[1].find_first_of("0123456789") == std::string_view::npos) {
       const std::string name = lower_case(fields[1]);
       const auto found = std::find_if(kNamed.begin(), kNamed.end(), [&](const auto& c) { return c.name == name; });
@@ -127,7 +127,7 @@ class ColourReliefReader {
       const Entry &low = entries_[i - 1], &high = entries_[i];
       if (low.value < high.value) stops.slices.push_back({low.value, high.value, low.srgb, high.srgb});
     }
-    // One colour everywhere.
+    // The same colour everywhere.
     const Entry& last = entries_.back();
     if (stops.slices.empty()) stops.slices.push_back({last.value, last.value + 1, last.srgb, last.srgb});
     return stops;

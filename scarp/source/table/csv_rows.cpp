@@ -58,7 +58,7 @@ std::string_view CsvRows::quoted_field() {
     if (at_ == text_.size()) throw Error(fmt::format("line {}: unclosed quote", row_line_));
     if (text_[at_] == '"') {
       if (at_ + 1 == text_.size() || text_[at_ + 1] != '"') break;
-      // From here on the field is no longer a substring of the text.
+      // From here on, the field is no longer a substring of the text.
       if (!unescaped) unescaped = &unescaped_.emplace_back(text_.substr(begin, at_ - begin));
       ++at_;
     } else if (text_[at_] == '\n' || (text_[at_] == '\r' && !text_.substr(at_).starts_with("\r\n"))) {

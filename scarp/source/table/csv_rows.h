@@ -21,7 +21,7 @@ class CsvRows {
   bool next();
   /// Fields of the row, valid until next().
   const std::vector<std::string_view>& fields() const { return fields_; }
-  /// First line of the row, from 1.
+  /// Number of the row's first line, from 1.
   std::int64_t line() const { return row_line_; }
 
  private:

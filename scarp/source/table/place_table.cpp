@@ -25,7 +25,7 @@ enum Column : std::size_t { x, y, z, tx, ty, tz, lon, lat, tlon, tlat, column_co
 constexpr std::array<std::string_view, column_count> kNames = {"x",  "y",   "z",   "tx",   "ty",
                                                                "tz", "lon", "lat", "tlon", "tlat"};
 
-// The columns of a header; those that are missing are `npos`.
+// The columns of a header; missing columns are `npos`.
 struct Header {
   std::array<std::size_t, column_count> at;
   std::vector<std::size_t> carried;

@@ -26,12 +26,13 @@ struct PoseRow {
 struct PoseTable {
   std::string path;           ///< for messages
   bool lonlat = false;        ///< x and y are from columns lon and lat
-  bool above_ground = false;  ///< z is from the column above
-  std::vector<PoseRow> rows;  ///< one at least; times rise
+  bool above_ground = false;  ///< z is from the column `above`
+  std::vector<PoseRow> rows;  ///< at least one; times increase
 };
 
-/// Throws Error with the line but without the file's name: missing columns, two columns of one name, x and lon or z and
-/// above both, rows of another length, fields that are not finite numbers, times that do not rise, no rows.
+/// Throws Error with the line but without the file's name: missing columns, duplicate columns, both x and lon, both z
+/// and above, rows with more or fewer fields than the header, fields that are not finite numbers, times that do not
+/// increase, no rows.
 PoseTable parse_pose_csv(std::string_view bytes);
 
 /// Reads a file. Throws Error naming it.

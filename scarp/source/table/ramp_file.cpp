@@ -44,7 +44,7 @@ class CptReader {
     std::istringstream words(text);
     std::vector<std::string> parts;
     for (std::string word; words >> word;) parts.push_back(word);
-    // Label marks (L, U, B) may follow the colours; lines that start with B, F and N are not slices.
+    // Label marks (L, U, B) may follow the colours; lines that start with B, F or N are not slices.
     while (!parts.empty() && (parts.back() == "L" || parts.back() == "U" || parts.back() == "B")) parts.pop_back();
     if (parts.empty() || parts[0] == "B" || parts[0] == "F" || parts[0] == "N") return;
     std::size_t at = 0;

@@ -55,7 +55,7 @@ void check(const RayRow& row, RayAim aim, const Place& place) {
   }
 }
 
-// Maps fields of a row to columns.
+// Maps the fields of a row to columns.
 class CsvHeader {
  public:
   CsvHeader(std::span<const std::string_view> fields, RayRows are) : fields_(fields.size()), are_(are) {
@@ -119,7 +119,7 @@ class CsvHeader {
   bool lonlat_ = false;
 };
 
-// Without rows.
+// Returns a table with this header and without rows.
 RayTable table_of(const CsvHeader& header) {
   RayTable table;
   table.are = header.are();
@@ -187,7 +187,7 @@ class CsvRow {
   std::size_t number_;
 };
 
-// Reads a number of an array at these bytes.
+// Reads one number of an array from these bytes.
 template <class Number, class Bits>
 double number_at(const char* bytes, bool big_endian) {
   Bits bits = 0;
@@ -200,7 +200,7 @@ double number_at(const char* bytes, bool big_endian) {
 
 using NumberReader = double (*)(const char* bytes, bool big_endian);
 
-// Null for types that are not numbers.
+// Returns null for types that are not numbers.
 NumberReader reader_of(char kind, int bytes) {
   switch (kind) {
     case 'f':
@@ -225,7 +225,7 @@ NumberReader reader_of(char kind, int bytes) {
   return nullptr;
 }
 
-// Number of rays after a header that states `bytes` per ray.
+// Returns the number of rays after a header, at `bytes` per ray.
 std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64_t bytes) {
   // In double: the product cannot overflow.
   const double needed = static_cast<double>(header.shape[0]) * static_cast<double>(bytes);

@@ -10,9 +10,9 @@
 // are skipped. Numbers have a decimal point.
 //
 // Arrays are float32 or float64 of shape (N, 6) or (N, 8): x, y, z, dx, dy, dz[, t_min, t_max]; or N structures with
-// numeric fields of the names above. Other fields are skipped.
+// numeric fields named as above. Other fields are skipped.
 //
-// Coordinates are those of the table: coordinates.h converts them to metres of a field.
+// Coordinates are kept as in the table: coordinates.h converts them to a field's metres.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ enum class RayAim : std::uint8_t {
   target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max is given
 };
 
-/// The kind of a table: rays or cameras. Tables of rays must have the columns z and tz. Tables of cameras may lack
-/// them, which counts as 0, and may have columns lon, lat, tlon, tlat in place of x, y, tx, ty.
+/// The kind of a table: rays or cameras. Tables of rays must have the columns z and tz. Tables of cameras may lack them
+/// (they are then 0), and may have columns lon, lat, tlon, tlat instead of x, y, tx, ty.
 enum class RayRows : std::uint8_t { rays, cameras };
 
 /// One ray of the table.
@@ -45,7 +45,7 @@ struct RayRow {
   double t_max = std::numeric_limits<double>::infinity();
   RayStart start = RayStart::free;  ///< on_surface if start_col and start_row are given
   Cell start_cell{};
-  std::int64_t line = 0;  ///< line in the file, from 1; 0: a file without lines
+  std::int64_t line = 0;  ///< line in the file, from 1; 0 for files without lines
 };
 
 /// The rays of a table.
@@ -58,13 +58,14 @@ struct RayTable {
   std::vector<RayRow> rows;
   TextColumns carried;  ///< the other columns; one row per ray
 
-  /// For messages: "a.csv: line 8 (ray 6)", or (camera 6); lines count from 1, the others from 0.
+  /// Returns the position of a row for messages: "a.csv: line 8 (ray 6)", or (camera 6); line numbers start at 1, the
+  /// others at 0.
   std::string where(std::size_t row) const;
 };
 
-/// Throws Error with line and ray but without the file's name: missing columns, duplicate columns or both direction and
-/// target; rows of a different length than the header, fields that are not finite numbers, zero directions; unclosed
-/// quotes; an empty text. A header alone is a table without rays.
+/// Throws Error with line and ray but without the file's name: missing columns, duplicate columns, or both direction
+/// and target; rows with more or fewer fields than the header, fields that are not finite numbers, zero directions;
+/// unclosed quotes; an empty text. A header alone is a table without rays.
 RayTable parse_ray_csv(std::string_view bytes, RayRows are = RayRows::rays);
 
 /// Parses the bytes of a .npy file. Throws Error without the file's name: another type or shape, truncated bytes, and

@@ -13,10 +13,10 @@ namespace scarp {
 /// a directory or a device, a Git LFS pointer, not readable to its end.
 std::string table_bytes(const std::string& path);
 
-/// A field in a form that fits in a one-line message.
+/// Returns a field in a form that fits in a one-line message.
 std::string shown_field(std::string_view text);
 
-/// The number in a field. Throws Error naming line and column if it is none, or not finite.
+/// Returns the number in a field. Throws Error naming line and column if the field is not a finite number.
 double finite_field(std::string_view field, std::string_view column, std::int64_t line);
 
 /// Parses a whole field; returns whether it is a number.

@@ -7,7 +7,7 @@
 //   scale S
 //   data                         then pairs of bytes: 0 or 1, and a count of 1 to 255; y fastest, then z, then x
 //
-// Source: P. Min, "binvox", www.patrickmin.com/binvox. Allocates nothing before it has counted the runs.
+// Source: P. Min, "binvox", www.patrickmin.com/binvox. The reader counts the runs before it allocates memory.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Binvox {
   ivec3 size{1};  ///< each 1..kMaxSide
   dvec3 translate{0.0};
   double scale = 1;
-  std::vector<std::uint64_t> bits;  ///< voxels in file order, from the lowest bit on
+  std::vector<std::uint64_t> bits;  ///< voxels in file order, lowest bit first
 
   std::size_t place(const ivec3& v) const {
     return static_cast<std::size_t>(v.y) +

@@ -68,7 +68,7 @@ double number(const char* at) {
   return static_cast<double>(std::bit_cast<Number>(bits));
 }
 
-// Samples in memory: the first one, and the bytes from one to the next along each axis of a brick.
+// Samples in memory: the first one, and the distance in bytes from one to the next along each axis of a brick.
 struct Samples {
   const char* first;
   std::array<std::ptrdiff_t, 3> apart;
@@ -89,7 +89,7 @@ void convert(const Samples& samples, std::span<double, 64> numbers) {
   };
   const auto rows = [&]<bool swapped>() {
     constexpr std::ptrdiff_t kAdjacent = sizeof(Number);
-    // Nearly all rows; with constants the compiler uses vectors.
+    // Applies to nearly all rows; constants let the compiler use vectors.
     if (samples.count.x == 4 && samples.apart[0] == kAdjacent) {
       all.template operator()<swapped>(std::integral_constant<int, 4>(),
                                        std::integral_constant<std::ptrdiff_t, kAdjacent>());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volumes with one number per voxel: .npy arrays of three dimensions, which describe themselves, and raw files, which
-// need a format
+// Volumes with one number per voxel: three-dimensional .npy arrays, which describe themselves, and raw files, which
+// need a format:
 //
 //   NXxNYxNZ:TYPE[+OFFSET]       256x256x128:u8      512x512x301:i16le+1024
 //
@@ -41,18 +41,19 @@ VolumeFormat npy_volume_format(std::string_view bytes);
 /// A volume of numbers, in memory or in a file.
 class DenseVolume {
  public:
-  /// `bytes` is a whole file. Throws Error if it is shorter than the format requires, or longer without permission.
+  /// `bytes` is a whole file. Throws Error if it is shorter than the format requires, or longer unless `may_go_on` is
+  /// set.
   DenseVolume(const VolumeFormat& format, std::string bytes);
-  /// The file's numbers, which are read when they are first used: it must not change meanwhile. Throws Error, without
-  /// the path, as above, or because it cannot be opened.
+  /// The numbers of a file, each read when it is first used: the file must not change meanwhile. Throws Error without
+  /// the path: as above, or if the file cannot be opened.
   static DenseVolume in_file(const VolumeFormat& format, const std::string& path);
 
   const ivec3& size() const { return format_.size; }
   const VolumeFormat& format() const { return format_; }
-  /// The voxel must be inside. 64-bit integers are rounded.
+  /// Returns the number of a voxel, which must be inside. 64-bit integers are rounded.
   double operator[](const ivec3& voxel) const;
-  /// Writes the number of voxel from + x * step[0] + y * step[1] + z * step[2] to numbers[x + 4 y + 16 z], for x, y and
-  /// z below `count`, each 0..4. All must be inside.
+  /// Writes the number of voxel from + x * step[0] + y * step[1] + z * step[2] to numbers[x + 4 y + 16 z], for all x, y
+  /// and z below `count`, each 0..4. All voxels must be inside.
   void brick(const ivec3& from, const std::array<ivec3, 3>& step, const ivec3& count,
              std::span<double, 64> numbers) const;
 
@@ -62,12 +63,12 @@ class DenseVolume {
 
   VolumeFormat format_;
   std::array<std::size_t, 3> stride_;
-  std::shared_ptr<const void> owner_;  // of the bytes
+  std::shared_ptr<const void> owner_;  // keeps the bytes alive
   std::string_view bytes_;
 };
 
-/// Returns the format of a file without its samples. `format`: the text above, or "npy". Throws Error naming the file,
-/// also if it is too short or too long.
+/// Returns the format of a file without reading its samples. `format`: the text above, or "npy". Throws Error naming
+/// the file, also if it is too short or too long.
 VolumeFormat volume_format_of(const std::string& path, const std::string& format);
 /// Opens a volume; see DenseVolume::in_file(). `format`: the text above, or "npy". Throws Error naming the file.
 DenseVolume read_volume(const std::string& path, const std::string& format);

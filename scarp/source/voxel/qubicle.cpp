@@ -45,14 +45,14 @@ class Matrix {
  public:
   Matrix(const Header& header, const ivec3& size, const ivec3& position, std::size_t& listed)
       : header_(header), size_(size), listed_(listed) {
-    // y is up in the file. Its z points away from the viewer if it is left-handed, and at the viewer otherwise.
+    // y is up in the file. Its z points away from the viewer if the file is left-handed, otherwise towards the viewer.
     part.size = {size.x, size.z, size.y};
     part.low = {position.x, header.right_handed ? -position.z - size.z : position.z, position.y};
     part.file_turn = {{0, 2, 1}, {1, 1, header.right_handed ? -1 : 1}};
     part.file_origin.z = header.right_handed ? size.z : 0;
   }
 
-  // `place`: in the slice.
+  // `place`: position in the slice.
   void add(int place, int z, std::int32_t colour) {
     const auto bits = static_cast<std::uint32_t>(colour);
     if (bits >> 24 == 0) return;

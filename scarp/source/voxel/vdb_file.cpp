@@ -21,8 +21,8 @@ namespace scarp {
 namespace {
 
 #ifdef SCARP_OPENVDB
-// Next to the program or library that contains this code, in a build folder and when installed; for programs that link
-// the static library, where Scarp was installed.
+// The module is next to the program or library that contains this code, both in a build folder and when installed; for
+// programs that link the static library, it is where Scarp was installed.
 const VdbModule& vdb_module() {
   static const VdbModule* const module = [] {
     Dl_info here{};
@@ -30,7 +30,7 @@ const VdbModule& vdb_module() {
     if (::dladdr(reinterpret_cast<const void*>(&is_vdb_path), &here) != 0 && here.dli_fname) {
       std::error_code error;
       auto file = std::filesystem::canonical(here.dli_fname, error);
-      // For a program this is the name it was started with.
+      // For a program, this is the name that it was started with.
       if (error) file = std::filesystem::read_symlink("/proc/self/exe", error);
       places = {file.parent_path().parent_path() / SCARP_VDB_FOLDER, file.parent_path() / "scarp"};
     }
@@ -38,7 +38,7 @@ const VdbModule& vdb_module() {
     std::string reason;
     for (const auto& place : places) {
       const auto file = place / SCARP_VDB_MODULE;
-      // Its symbols stay private.
+      // RTLD_LOCAL keeps the module's symbols private.
       if (void* opened = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
         if (const void* found = ::dlsym(opened, kVdbModule)) return static_cast<const VdbModule*>(found);
       }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Voxels of OpenVDB (.vdb) and NanoVDB (.nvdb) files.
+// Voxels from OpenVDB (.vdb) and NanoVDB (.nvdb) files.
 //
 //   level set (float, double)   solid where the number is negative, inside of the narrow band as well
 //   bool or mask grid           solid where active
 //   Vec3 grid                   colours in linear light. Alone in a file, it is solid where active
 //
-// Reading is in a separate module (vdb_module.h), which is opened for the first such file: OpenVDB takes as long to
+// The reader is a separate module (vdb_module.h), which is loaded for the first such file: OpenVDB takes as long to
 // start as the rest of the program.
 #pragma once
 
@@ -29,9 +29,9 @@ struct VdbLeaf {
   std::array<std::uint64_t, 8> solid{};
 };
 
-/// A cube that is solid throughout.
+/// A completely solid cube.
 struct VdbTile {
-  ivec3 low{0};  ///< multiples of 8, as the side
+  ivec3 low{0};  ///< multiples of 8, like the side
   int side = 8;
 };
 
@@ -42,15 +42,15 @@ struct VdbVoxels {
   std::vector<VdbTile> tiles;
   std::vector<VdbColour>
       colours;  ///< of the leaves' solid voxels, leaf by leaf in the order of bricks and bits; or none
-  glm::dmat3 world_from_index{1.0};  ///< a rotation or reflection times the side of a voxel
-  dvec3 origin{0.0};                 ///< of voxel (0, 0, 0): its middle, in the file's space
+  glm::dmat3 world_from_index{1.0};  ///< a rotation or reflection, times the side of a voxel
+  dvec3 origin{0.0};                 ///< centre of voxel (0, 0, 0) in the file's space
   std::vector<std::string> notes;    ///< for users, one line each
 };
 
-/// Voxels of a file per axis, as of grids.
+/// Maximum number of voxels per axis in a file, the same as for grids.
 constexpr int kMaxVdbSide = 16384;
 
-/// Returns whether the ending is .vdb or .nvdb.
+/// Returns whether the extension is .vdb or .nvdb.
 bool is_vdb_path(std::string_view path);
 /// Throws Error naming the file: not readable, no grid, none of these kinds, voxels that are not cubes, more than
 /// kMaxVdbSide voxels along an axis, or Scarp was built without OpenVDB.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The module with OpenVDB and NanoVDB. NanoVDB's grids are converted to OpenVDB's first, so that the same code reads
-// both.
+// The module that contains OpenVDB and NanoVDB. NanoVDB grids are first converted to OpenVDB grids, so that the same
+// code reads both.
 #include "scarp/source/voxel/vdb_module.h"
 
 #include <fmt/format.h>
 
-// NanoVDB's headers need it and do not include it.
+// Needed by NanoVDB's headers, which do not include it.
 #include <iostream>
 #define NANOVDB_USE_OPENVDB
 #define NANOVDB_USE_ZIP
@@ -35,7 +35,7 @@ struct Refused : std::runtime_error {
   using runtime_error::runtime_error;
 };
 
-// The place of a leaf's voxel among its bricks: OpenVDB counts with z fastest.
+// The position of a leaf's voxel in the leaf's bricks: in OpenVDB, z varies fastest.
 struct Place {
   std::size_t brick;
   int bit;
@@ -73,7 +73,7 @@ class Box {
                            std::numeric_limits<std::int64_t>::min()};
 };
 
-// solid(number, active): of a voxel, or of all voxels of a tile.
+// solid(number, active) is called for a voxel, or for all voxels of a tile at once.
 template <class TypedGrid, class Solid>
 void read_solid(const TypedGrid& grid, const Solid& solid, VdbVoxels& voxels) {
   Box box;
@@ -231,7 +231,7 @@ std::vector<Grid> grids_of(const std::string& path, VdbVoxels& voxels) {
   }
   voxels.format = "OpenVDB";
   openvdb::io::File file(path);
-  // Without it, grids of a file are mapped to memory, and a truncated file ends the program.
+  // `false` prevents memory mapping, with which a truncated file would end the program.
   file.open(false);
   for (auto name = file.beginName(); name != file.endName(); ++name) grids.push_back(file.readGrid(name.gridName()));
   file.close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the interface of the module with OpenVDB. Both sides are built together.
+// Private to the station: the interface to the module that contains OpenVDB. Both sides are built together.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@ std::int64_t frame_of(const VoxAttributes& attributes) {
   return text ? whole_number(*text, "frame") : 0;
 }
 
-// The frame of a loop, first..last, that is shown at any frame.
+// Maps any frame to the frame of the loop, first..last, that is shown.
 std::int64_t looped(std::int64_t frame, std::int64_t first, std::int64_t last) {
   const std::int64_t length = last - first + 1, turn = (frame - first) % length;
   return first + (turn < 0 ? turn + length : turn);

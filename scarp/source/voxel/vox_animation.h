@@ -46,7 +46,8 @@ struct VoxMoment {
   std::int64_t passed = 0, distance = 1;  ///< frames since the earlier keyframe; frames between both, > 0
 };
 
-/// Finds the keyframes around a frame. `keyframes`: at least one, in any order; of equal ones the last one counts.
+/// Finds the keyframes around a frame. `keyframes`: at least one, in any order; if several are equal, the last one
+/// counts.
 VoxMoment vox_moment(std::span<const std::int64_t> keyframes, bool loop, std::int64_t frame);
 
 }  // namespace scarp

@@ -29,10 +29,10 @@ class VoxBytes {
   std::string_view rest_;
 };
 
-/// Formats bytes of a file for a message: in quotes, at most 24, with dots for unprintable ones.
+/// Formats bytes of a file for a message: in quotes, at most 24, with dots for unprintable bytes.
 std::string printable(std::string_view bytes);
 
-/// Parses an attribute that is an integer. Throws Error naming it as `what`.
+/// Parses an integer attribute. Throws Error naming it as `what`.
 int whole_number(std::string_view text, std::string_view what);
 
 }  // namespace scarp

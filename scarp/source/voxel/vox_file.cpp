@@ -127,7 +127,7 @@ class Parser {
     known_ = true;
   }
 
-  // Whether the last chunk was one of those above.
+  // Whether the last chunk was of one of the kinds above.
   bool known() { return std::exchange(known_, false); }
 
   void finish() const {
@@ -178,12 +178,12 @@ const VoxPalette& vox_default_palette() {
   static const VoxPalette palette = [] {
     VoxPalette colours{};
     std::size_t count = 0;
-    // 255, 204, ..., 0 in red, green, blue; black, the last one, is not included.
+    // 255, 204, ..., 0 in red, green, blue; black, which would be last, is not included.
     for (int i = 0; i < 215; ++i, ++count) {
       const auto level = [](int step) { return static_cast<std::uint8_t>(255 - 51 * step); };
       colours[count] = {level(i / 36), level(i / 6 % 6), level(i % 6), 255};
     }
-    // Sixteenths of full light that are not fifths: ee dd bb aa 88 77 55 44 22 11.
+    // Fifteenths of full light that are not fifths: ee dd bb aa 88 77 55 44 22 11.
     for (int channels = 0; channels < 4; ++channels) {
       for (int level = 14; level > 0; --level) {
         if (level % 3 == 0) continue;

@@ -41,7 +41,7 @@ struct VoxVoxel {
 /// A model.
 struct VoxModel {
   ivec3 size{1};                 ///< each 1..256
-  std::vector<VoxVoxel> voxels;  ///< inside the size; of several at one position the last counts
+  std::vector<VoxVoxel> voxels;  ///< inside `size`; if several have one position, the last one counts
   friend bool operator==(const VoxModel&, const VoxModel&) = default;
 };
 
@@ -109,7 +109,7 @@ struct VoxChunk {
 
 /// Red, green, blue, alpha.
 using VoxColour = std::array<std::uint8_t, 4>;
-/// As in the file: entry i is the colour of palette index i + 1; the last entry is unused.
+/// In file order: entry i is the colour of palette index i + 1; the last entry is unused.
 using VoxPalette = std::array<VoxColour, 256>;
 
 /// The document of a .vox file.

@@ -15,7 +15,7 @@ bool has_type(const VoxMaterial& material, std::string_view type) {
   return find_attribute(material.attributes, "_type") == type;
 }
 
-// `fallback` where there is no such attribute, or no number in it.
+// Returns `fallback` if there is no such attribute, or if it is not a number.
 float number(const VoxMaterial& material, std::string_view name, float fallback) {
   const auto text = find_attribute(material.attributes, name);
   if (!text) return fallback;

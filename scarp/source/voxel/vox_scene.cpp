@@ -64,8 +64,8 @@ ivec3 interpolated(const ivec3& from, const ivec3& to, const VoxMoment& moment) 
 
 // Placement or model of a node at a frame.
 struct AtFrame {
-  VoxInstance place;  // of a transform, without a model
-  int model = 0;      // of a shape
+  VoxInstance place;  // for transforms; without a model
+  int model = 0;      // for shapes
 };
 
 AtFrame at_frame(const VoxNode& node, int frame) {

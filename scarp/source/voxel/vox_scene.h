@@ -11,8 +11,8 @@
 //
 // The root is node 0, or the first node of a scene without a node 0.
 //
-// A model rotates about its centre, rounded down to a voxel corner: a point p of it moves to turn * (p - floor(size /
-// 2)) + move.
+// A model rotates about its centre, rounded down to a voxel corner: its point p moves to turn * (p - floor(size / 2)) +
+// move.
 #pragma once
 
 #include <string>
@@ -32,15 +32,15 @@ struct VoxInstance {
 
 /// Selection of instances.
 struct VoxSceneOptions {
-  int frame = 0;        ///< of animations, >= 0; beyond the last frame: see vox_animation.h
+  int frame = 0;        ///< animation frame, >= 0; beyond the last frame: see vox_animation.h
   bool hidden = false;  ///< whether to include hidden nodes and layers
 
   bool operator==(const VoxSceneOptions&) const = default;
 };
 
-/// Returns instances in file order, which decides overlaps: from version 200 on the first wins, before that the last.
-/// Without a scene, returns the first model, or that of the frame in a file with PACK. Throws Error for more than 2^20
-/// instances, or positions beyond 2^24 voxels.
+/// Returns instances in file order, which decides overlaps: from version 200 on, the first one wins, before that the
+/// last one. Without a scene, returns the first model or, in a file with PACK, the model of the frame. Throws Error for
+/// more than 2^20 instances, or positions beyond 2^24 voxels.
 std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOptions& options = {});
 
 /// Returns notes for users, one line each: a frame beyond the end, voxels with palette index 0,

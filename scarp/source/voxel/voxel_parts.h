@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Content of files of listed voxels, in any format: parts, each with its voxels and their colours.
+// Contents of files that list voxels, in any format: parts, each with its voxels and their colours.
 #pragma once
 
 #include <array>
@@ -22,10 +22,11 @@ struct ListedVoxel {
 
 /// Voxels in a box, right-handed, z up, each at most once.
 struct VoxelPart {
-  ivec3 low{0};   ///< of the box in the file's space, after its axes were turned
+  ivec3 low{0};   ///< lowest corner of the box in the file's space, after its axes were turned
   ivec3 size{1};  ///< each 1..kMaxPartSide
   std::vector<ListedVoxel> voxels;
-  /// The file's own coordinates: a corner p of the box is file_turn(p) + file_origin there. Files mirror axes.
+  /// Converts to the file's own coordinates: a corner p of the box is at file_turn(p) + file_origin there. Some files
+  /// mirror axes.
   LatticeRotation file_turn{};
   ivec3 file_origin{0};
 };
@@ -38,14 +39,14 @@ struct VoxelParts {
 };
 
 constexpr int kMaxPartSide = 2048;
-/// Voxels of a file; limits the size of run-length encoded data of a few bytes.
+/// Maximum number of voxels in a file; it limits the size to which a few bytes of run-length encoded data can expand.
 constexpr std::size_t kMostListedVoxels = std::size_t{1} << 26;
 
-/// Returns whether the ending of a file is one of these formats: .qb, .kv6, .vxl.
+/// Returns whether the file's extension is .qb, .kv6 or .vxl.
 bool is_voxel_parts_path(std::string_view path);
-/// Returns whether a file is one that read_voxel_parts() reads, by its ending and, for .vox, its first bytes.
+/// Returns whether read_voxel_parts() reads this file, judging by its extension and, for .vox, its first bytes.
 bool is_voxel_parts_file(const std::string& path);
-/// Reads a .qb, .kv6 or .vxl file, or a .vox file of Voxlap. Throws Error naming the file.
+/// Reads a .qb, .kv6 or .vxl file, or a Voxlap .vox file. Throws Error naming the file.
 VoxelParts read_voxel_parts(const std::string& path);
 
 }  // namespace scarp

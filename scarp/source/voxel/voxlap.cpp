@@ -37,13 +37,13 @@ ivec3 parse_size(VoxBytes& bytes, int axes) {
   return size;
 }
 
-// Half a turn about x: y points away from the viewer and z up.
+// Half a turn about x: then y points away from the viewer and z points up.
 ListedVoxel upright(const ivec3& v, const ivec3& size, const std::array<std::uint8_t, 3>& colour) {
   return {static_cast<std::int16_t>(v.x), static_cast<std::int16_t>(size.y - 1 - v.y),
           static_cast<std::int16_t>(size.z - 1 - v.z), colour};
 }
 
-// The same for corners of the box, backwards.
+// The inverse turn, for corners of the box.
 VoxelPart upright_part(const ivec3& size) {
   VoxelPart part;
   part.size = size;
@@ -62,7 +62,7 @@ class MapColumns {
   MapColumns(std::string_view bytes, const ivec3& columns) : bytes_(bytes), columns_(columns) {}
 
   std::vector<ListedVoxel> voxels;  // z as in the file
-  int depth = 0;                    // the lowest voxel and 1
+  int depth = 0;                    // 1 + z of the lowest voxel
 
   void parse() {
     for (int y = 0; y < columns_.y; ++y) {
@@ -83,7 +83,7 @@ class MapColumns {
         {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z), from_bgr(colour)});
     depth = std::max(depth, z + 1);
   }
-  // The inside of the ground, which is visible at the border of the map; it has the colour above.
+  // Adds the inside of the ground, which is visible at the border of the map, in the colour above it.
   void add_inside(int x, int y, int begin, int end, std::string_view colour) {
     const bool border = x == 0 || y == 0 || x == columns_.x - 1 || y == columns_.y - 1;
     for (int z = begin; border && z < end; ++z) add(x, y, z, colour);
@@ -144,7 +144,7 @@ VoxelParts parse_kv6(std::string_view file) {
                             size.z, needed, bytes.left(), kFetchAgain));
   }
   const std::string_view voxels = bytes.take(std::size_t{8} * count);
-  bytes.take(4 * static_cast<std::size_t>(size.x));  // counts per x, which those per column repeat
+  bytes.take(4 * static_cast<std::size_t>(size.x));  // counts per x, which follow from the counts per column
   const std::string_view counts = bytes.take(2 * columns);
   VoxelPart part = upright_part(size);
   part.voxels.reserve(count);
