@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Draws why the height above a terrain function is not a distance, and which ball is certainly free of ground: an SVG
-// on standard output. Ground, slope and hits are the library's; only their places on the page are chosen here.
+// Draws a figure that shows why the height above a terrain function is not a distance, and which ball is guaranteed to
+// be free of ground: an SVG on standard output. The library computes ground, slope and hits; only the page layout is
+// defined here.
 //
 //   cone_figure > from-height-to-distance.svg
 #include <cmath>
@@ -35,7 +36,7 @@ int main() {
   const HeightFunction ground(make_function(Sines{{{25, 170, 0, 2.5}, {13, 83, 0, 2.9}, {3, 31, 0, 0}}}));
   const dvec3 p(110, 0, 27);
   const double h = p.z - ground.value(p.x, p.y);
-  // The bound of the slope over the page, and the ball that follows from it.
+  // The bound of the slope on the page, and the ball that follows from it.
   const double c = ground.bound({0, kWidth, 0, 0}).slope, shrink = 1 / std::sqrt(1 + c * c);
   const Hit level = march_lipschitz_local(ground, {p, {1, 0, 0}});
   if (!level) return 1;
@@ -51,7 +52,7 @@ int main() {
   }
   std::printf("L%.1f %.1fZ\"/>\n", page_x(kWidth + 1), page_y(kLow - 1));
 
-  // The cone under P, of the steepest slope, and the point of it that is nearest to P.
+  // The cone of the steepest slope under P, and its point that is nearest to P.
   const double o = p.z - h, up = (kHigh - o) / c;
   line(p.x, o, p.x + up, kHigh, "stroke=\"#2a6f97\" stroke-width=\"2\" stroke-dasharray=\"7 5\"");
   line(p.x, o, p.x - up, kHigh, "stroke=\"#2a6f97\" stroke-width=\"2\" stroke-dasharray=\"7 5\"");

@@ -28,7 +28,7 @@ int main() {
   auto terrain = scarp::Terrain::own(heights, side, side, {.cell_x = 10.0, .cell_y = 10.0});
   std::printf("before: the target is %s\n", sees(terrain, {500, 100}, {500, 900}) ? "visible" : "hidden");
 
-  // 5 columns at x = 480 .. 520 m, from border to border. Only the pyramid over them is updated.
+  // 5 columns at x = 480 .. 520 m, from border to border. Only the pyramid entries over them are updated.
   const scarp::SampleRect cutting{.col = 48, .row = 0, .cols = 5, .rows = side};
   const std::vector<float> ground(static_cast<std::size_t>(cutting.cols * cutting.rows), 0.0f);
   terrain.set_samples(cutting, ground.data());

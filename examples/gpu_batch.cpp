@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A batch of rays on a Vulkan device: gpu_batch [DEVICE], by default the best one. The same call as on the CPU.
+// A batch of rays on a Vulkan device, with the same call as on the CPU: gpu_batch [DEVICE]; the default is the best
+// device.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

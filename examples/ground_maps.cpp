@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an observer sees, and where the sun shines: maps as the command line makes them. Links scarp::scarp.
+// Maps of the ground that an observer sees and of sunlit ground, as on the command line. Links scarp::scarp.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

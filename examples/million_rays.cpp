@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A million rays in one call: the part of a terrain that an oblique view sees, and how much of that is in shadow.
+// A million rays in one call: finds the part of a terrain that is visible in an oblique view, and how much of it is in
+// shadow.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -8,7 +9,7 @@
 #include "scarp/scarp.h"
 
 int main() {
-  // Round hills of 100 m in a square grid, 25 cells apart, cells of 10 m.
+  // Round hills 100 m high on a square grid, 25 cells apart; cells of 10 m.
   const int side = 1001;
   std::vector<std::int16_t> heights;
   for (int row = 0; row < side; ++row) {
@@ -19,14 +20,14 @@ int main() {
   }
   const auto terrain = scarp::Terrain::view(heights.data(), side, side, {.cell_x = 10.0, .cell_y = 10.0});
 
-  // Parallel rays, 45 degrees down to the north. hits[i] belongs to rays[i].
+  // Parallel rays towards the north, 45 degrees down. hits[i] belongs to rays[i].
   std::vector<scarp::Ray> rays;
   for (int i = 0; i < 1000 * 1000; ++i)
     rays.push_back({.origin = {5.0 + 10 * (i % 1000), 5.0 + 8 * (i / 1000) - 200, 200}, .direction = {0, 1, -1}});
   std::vector<scarp::Hit> hits(rays.size());
   scarp::cast(terrain, rays, hits);
 
-  // From each hit to the sun, low in the east. from[i] is the hit on whose surface to_sun[i] starts.
+  // Rays from each hit to the sun, low in the east. to_sun[i] starts on the surface of hit from[i].
   std::vector<scarp::Ray> to_sun;
   std::vector<const scarp::Hit*> from;
   for (std::size_t i = 0; i < rays.size(); ++i) {

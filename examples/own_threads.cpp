@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In an engine: rays as arrays of floats, on the engine's own threads.
+// Use in an engine: rays as arrays of floats, on the engine's own threads.
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +13,7 @@
 
 namespace {
 
-// Stands in for the engine's job system: it runs jobs by their index and waits for the last one.
+// Stands in for the engine's job system: runs jobs by index and waits until all have finished.
 class Jobs final : public scarp::Executor {
  public:
   void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) override {

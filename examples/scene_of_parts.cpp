@@ -7,7 +7,7 @@
 #include "scarp/scarp.h"
 
 int main() {
-  // A slope of 1:10 up to the east, 1 km wide.
+  // A slope of 1:10 that rises to the east, 1 km wide.
   const int side = 101;
   std::vector<std::int16_t> heights;
   for (int i = 0; i < side * side; ++i) heights.push_back(static_cast<std::int16_t>(i % side));

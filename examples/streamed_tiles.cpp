@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A terrain larger than memory: tiles around a moving eye, the near ones at full resolution, while another thread casts
+// A terrain larger than memory: tiles around a moving eye, with full resolution near it, while another thread casts
 // rays.
 #include <atomic>
 #include <cmath>
@@ -31,7 +31,7 @@ scarp::HeightField load(scarp::TilePlace place, int level) {
   return scarp::HeightField::own(std::move(samples), side, side, {.cell_x = kCell * step, .cell_y = kCell * step});
 }
 
-// The tile below the eye and its neighbours in full detail, the next two rings coarser; -1: not loaded.
+// The tile below the eye and its neighbours have full detail, the next two rings are coarser; -1: not loaded.
 int wanted_level(scarp::TilePlace place, int eye_col, int eye_row) {
   const int away = std::max(std::abs(place.col - eye_col), std::abs(place.row - eye_row));
   return away <= 1 ? 0 : away <= 3 ? away - 1 : -1;
@@ -48,7 +48,7 @@ int main() {
   std::atomic<int> eye{-1};
   std::atomic<bool> done{false};
   std::atomic<int> lost{0}, frames{0};
-  // Steep rays around the eye hit the ground in every frame: borders of levels have no gaps, and no tile is half
+  // Steep rays around the eye hit the ground in every frame: there are no gaps between levels, and no tile is half
   // loaded.
   std::thread frame([&] {
     while (!done) {

@@ -58,7 +58,7 @@ class Builder {
     model_.voxels.push_back(
         {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z), colour});
   }
-  // Walls of a box without floor and ceiling; x1, y1, z1 are outside of it.
+  // The walls of a box, without floor and ceiling; x1, y1, z1 are exclusive.
   void walls(int x0, int y0, int z0, int x1, int y1, int z1, Colour colour) {
     for (int z = z0; z < z1; ++z) {
       for (int y = y0; y < y1; ++y) {
@@ -68,7 +68,8 @@ class Builder {
       }
     }
   }
-  // A roof along y over [x0, x1) from z0 up, height to the ridge is `steep` times the width, with gables below it.
+  // A roof along y over [x0, x1) from z0 up, with gables below it; the ridge is `steep` times as high as the roof is
+  // wide.
   void gable_roof(int x0, int x1, int y0, int y1, int z0, int steep, Colour tiles, Colour top, Colour gable) {
     for (int inset = 0; x0 + inset < x1 - inset; ++inset) {
       const int left = x0 + inset, right = x1 - 1 - inset;
@@ -129,7 +130,7 @@ Builder church() {
   for (int z = 0; z < 6; ++z) {
     for (int x = 7; x < 11; ++x) b.set(x, 1, z, door);
   }
-  for (int z = 21; z < 26; ++z) {  // where the bells hang
+  for (int z = 21; z < 26; ++z) {  // belfry
     for (int i = 7; i < 11; ++i)
       b.set(i, 1, z, timber), b.set(i, 10, z, timber), b.set(4, i - 1, z, timber), b.set(13, i - 1, z, timber);
   }
@@ -157,7 +158,7 @@ Builder pine() {
     for (int i = 0; i < 4; ++i) b.set(7 + i % 2 - 1, 7 + i / 2 - 1, z, bark);
   }
   for (int z = 4; z < 30; ++z) {
-    // Tiers of branches: wide at their foot, narrower upwards.
+    // Tiers of branches: wide at the bottom, narrower towards the top.
     const double up = (z - 4) / 26.0, tier = 1.25 - 0.55 * ((z - 4) % 6) / 5.0;
     const double radius = std::max(0.6, 6.4 * (1 - up) * tier);
     for (int y = 0; y < 15; ++y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A voxel world: grass over stone with a tower on it, a tunnel dug afterwards, and rays through both.
+// A voxel world: a tower on grass over stone, a tunnel that is dug afterwards, and rays before and after.
 #include <cstdio>
 
 #include "scarp/scarp.h"
@@ -27,7 +27,7 @@ int main() {
   grid.fill({{56, 56, 20}, {72, 72, 60}}, brick);
   scarp::Voxels voxels(std::move(grid), {.side = 0.5, .palette = {{}, {128, 128, 128}, {96, 140, 64}, {168, 74, 50}}});
 
-  // Downwards beside the tower, and level into its western wall. Directions are unit vectors, so t is in metres.
+  // One ray down beside the tower, and one level into its western wall. Directions are unit vectors, so t is in metres.
   const scarp::Ray down{.origin = {10, 10, 40}, .direction = {0, 0, -1}};
   const scarp::Ray level{.origin = {0, 32, 15}, .direction = {1, 0, 0}};
   report(voxels, "down", down);

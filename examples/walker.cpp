@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A character, an upright capsule, that walks over terrain and slides along a tower: one sweep per step, and another
-// one along the surface that it touched.
+// A character, modelled as an upright capsule, walks over terrain and slides along a tower: each step is a sweep,
+// followed by another along the surface that it touched.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSide = 65;
 constexpr double kRadius = 0.4, kHeight = 1.0, kGap = 0.01;
-// Metres: far more than doubles lose over a world of 64 m, far less than anyone sees.
+// In metres: far more than the rounding of doubles in a world of 64 m, far less than is visible.
 constexpr double kRounding = 1e-9;
 
 scarp::Scene world() {
@@ -31,12 +31,13 @@ scarp::Scene world() {
   return scarp::combine({{ground}, {scarp::scene_voxels({.models = {model}, .places = {{.origin = {28, 16, -4}}}})}});
 }
 
-// Moves up to the first contact, then along it, at most three times. Returns the number of contacts with the tower.
+// Moves up to the first contact, then along the touched surface, at most three times. Returns the number of contacts
+// with the tower.
 int step(const scarp::SceneQuery& query, scarp::Capsule& walker, scarp::dvec3 motion) {
   int towers = 0;
   for (int i = 0; i < 3 && length(motion) > kGap; ++i) {
     const auto contact = query.sweep(walker, motion);
-    // It stops a little before contact, so that the next step does not start in contact.
+    // Stops slightly before contact, so that the next step does not start in contact.
     const double t = contact ? std::max(0.0, contact->t - kGap / length(motion)) : 1;
     walker.a += t * motion, walker.b += t * motion;
     if (!contact) break;

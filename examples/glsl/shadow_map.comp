@@ -12,7 +12,7 @@ layout(push_constant) uniform Push {
   vec3 sun;
 };
 
-// Defined by the host: where the samples and the pyramid's codes are.
+// Defined by the host program: access to the samples and to the pyramid's codes.
 float scarp_sample(int col, int row) { return heights[row * (cells + 1) + col]; }
 bool scarp_is_nodata(float height) { return false; }
 float scarp_maximum(int level, int col, int row) {
@@ -41,7 +41,7 @@ void main() {
   field.code_step = code_step;
   field.lowest = lowest;
   field.highest = highest;
-  // It starts on the surface: no offset is needed, and the ground does not shadow itself.
+  // The ray starts on the surface: no offset is needed, and the ground does not shadow itself.
   ScarpRay ray = scarp_ray(cell, vec2(0.5, 0.5), 0.0, sun, kScarpNever, kScarpOnSurface);
   shadows[cell.y * cells + cell.x] = scarp_max_mip(field, ray, true).status == kScarpHit ? 1u : 0u;
 }

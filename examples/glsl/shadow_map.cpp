@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A plain Vulkan program that uses nothing of Scarp except its shader sources: it makes a field of heights and a
-// pyramid of their maxima, runs shadow_map.comp, which calls max-mip for each cell to find out whether it sees the sun,
-// and writes the shadow map.
+// A plain Vulkan program that uses only Scarp's shader sources. It generates heights and a pyramid of their maxima,
+// runs shadow_map.comp, which calls max-mip for each cell to determine whether the cell sees the sun, and writes the
+// shadow map.
 //   shadow_map shadow_map.spv shadows.pgm
 #include <algorithm>
 #include <cmath>
@@ -39,8 +39,8 @@ std::vector<float> hills() {
   return heights;
 }
 
-// Level 1, level 2, ..., each half of the one below, rounded up, to the level of one block: the highest sample on the
-// border or inside of each block of 2^level x 2^level cells, in steps, rounded up.
+// Returns levels 1, 2, ..., each with half the size of the one before, rounded up, to the level with one block. A
+// block's entry is the highest sample in or on the border of its 2^level x 2^level cells, in steps, rounded up.
 std::vector<float> maxima_of(const std::vector<float>& heights, float step, std::int32_t& top_level) {
   std::vector<float> maxima, below;
   int side = kCells;
@@ -77,7 +77,7 @@ Buffer make_buffer(const vk::raii::PhysicalDevice& physical, const vk::raii::Dev
   made.buffer = device.createBuffer({{}, bytes, vk::BufferUsageFlagBits::eStorageBuffer});
   const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();
   const vk::PhysicalDeviceMemoryProperties memory = physical.getMemoryProperties();
-  // Every device has a memory type that is host-visible and allowed for buffers.
+  // Every device has a host-visible memory type that buffers can use.
   constexpr auto kSeen = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
   std::uint32_t type = 0;
   while (!(needs.memoryTypeBits >> type & 1) || (memory.memoryTypes[type].propertyFlags & kSeen) != kSeen) ++type;
@@ -94,7 +94,8 @@ Buffer make_buffer(const vk::raii::PhysicalDevice& physical, const vk::raii::Dev
   return made;
 }
 
-// Runs the shader once for each cell; shadows[row * kCells + col] is 1 where the sun is hidden. Empty without a device.
+// Runs the shader once per cell; element row * kCells + col of the result is 1 where the sun is hidden. Empty without a
+// device.
 std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& shader, const std::vector<float>& heights,
                                const std::vector<float>& maxima, const Push& push) {
   const vk::raii::Context context;

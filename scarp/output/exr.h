@@ -15,7 +15,7 @@ namespace scarp {
 /// Storage of a channel: half keeps 11 significant bits and becomes infinite above 65504.
 enum class ExrStorage { half, full };
 
-/// One caller-owned number per pixel.
+/// One number per pixel, in caller-owned memory.
 struct ExrChannel {
   std::string name;  ///< "R", "Z", "N.X", ...; not empty
   /// First pixel. Floats are stored as half or float, uint32 always as uint32.
@@ -39,11 +39,11 @@ struct ExrView {
   std::vector<ExrMatrix> matrices{};
 };
 
-/// Writes scan lines with lossless ZIP compression to the temporary file of `file`, and commits it. `path` is for
-/// messages only. Throws Error if writing fails (disk full); then no file remains once `file` is destroyed.
+/// Writes scan lines with lossless ZIP compression to the temporary file of `file`, and commits it. `path` is only used
+/// in messages. Throws Error if writing fails (disk full); then no file remains once `file` is destroyed.
 void write_exr(ReplaceFile& file, const std::string& path, const ExrView& picture);
 
-/// Opens `path` and writes to it as above.
+/// Writes to `path` as above.
 void write_exr(const std::string& path, const ExrView& picture);
 
 }  // namespace scarp

@@ -50,7 +50,7 @@ struct FigureKey {
   std::vector<Entry> entries;
 };
 
-/// A scale bar, black and white in turn between its ticks.
+/// A scale bar that alternates between black and white at its ticks.
 struct FigureScale {
   double pixels = 0;    ///< length in pixels, > 0
   std::string title{};  ///< may be empty
@@ -72,7 +72,7 @@ struct FigureLine {
 /// A text in the picture.
 struct FigureLabel {
   FigurePoint centre{};
-  double angle = 0;  ///< radians clockwise from a text that runs to the right
+  double angle = 0;  ///< radians clockwise from horizontal text
   std::string text{};
 };
 
@@ -83,14 +83,14 @@ enum class FigureLayout : std::uint8_t {
 };
 
 struct Figure {
-  std::string title{};  ///< UTF-8; empty: none. Broken between words into at most three lines
+  std::string title{};  ///< UTF-8; empty: none. wrapped between words into at most three lines
   std::optional<FigureLegend> legend{};
   std::optional<FigureKey> key{};  ///< replaces the legend
   std::optional<FigureScale> scale{};
   std::optional<double> north{};  ///< direction of the north arrow, radians clockwise from up; nullopt: none
   std::vector<FigureLine> graticule{};
-  /// In order of preference: labels that would touch what is drawn already, or would repeat a text within twenty times
-  /// its height, are omitted.
+  /// In order of preference: labels that would touch anything drawn before, or repeat a text within twenty times its
+  /// height, are omitted.
   std::vector<FigureLabel> labels{};
   FigureLayout layout = FigureLayout::on;
 };
@@ -101,11 +101,11 @@ struct FigureImage {
   std::vector<std::uint8_t> rgb;  ///< as RgbView
 };
 
-/// Returns tick values in [low, high]: multiples of 1, 2 or 5 times a power of ten that is not below `least_step`, at
-/// most `most`, and at least two wherever two exist. low < high, most >= 2.
+/// Returns tick values in [low, high]: multiples of a step that is 1, 2 or 5 times a power of ten and not below
+/// `least_step`. At most `most` values, and at least two where two exist. low < high, most >= 2.
 std::vector<double> round_numbers(double low, double high, int most, double least_step = 0);
 
-/// Returns the height of text over a picture, in pixels, and that of Figure::labels.
+/// Return the height in pixels of text on a picture, and of Figure::labels.
 double figure_text_height(int width, int height);
 double figure_label_height(int width, int height);
 
@@ -119,9 +119,9 @@ void require_room(const Figure& figure, int width, int height);
 /// but never the last one. Throws Error if the picture is too small for the figure.
 FigureImage draw_figure(const RgbView& picture, const Figure& figure);
 
-/// Writes a PDF of one page: the picture at `dots_per_inch`, > 0, and the figure as lines and text. Writes the
-/// temporary file of `file`, and commits it; `path` is for messages only. Throws Error as above, and if writing fails
-/// (disk full); then no file remains once `file` is destroyed.
+/// Writes a PDF of one page: the picture at `dots_per_inch`, > 0, and the figure as lines and text. Writes to the
+/// temporary file of `file`, and commits it; `path` is only used in messages. Throws Error as above, and if writing
+/// fails (disk full); then no file remains once `file` is destroyed.
 void write_pdf(ReplaceFile& file, const std::string& path, const RgbView& picture, const Figure& figure,
                double dots_per_inch);
 

@@ -16,10 +16,10 @@ struct FigureMargins {
 FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule, double width,
                                 double height);
 
-/// Draws into the picture in `frame`. `taken` holds the occupied areas, and grows.
+/// Draws the graticule into the picture in `frame`. `taken` holds the occupied areas; the function adds to it.
 void draw_graticule(const FigurePen& pen, const Figure& figure, const FigureRect& frame,
                     std::vector<FigureRect>& taken);
-/// `pen` of figure_label_height().
+/// Draws labels; the text height of `pen` is figure_label_height().
 void draw_labels(const FigurePen& pen, const Figure& figure, const FigureRect& frame, std::vector<FigureRect>& taken);
 
 }  // namespace scarp

@@ -11,10 +11,11 @@ namespace scarp {
 
 class FigurePage {
  public:
-  /// For a picture of this size. Refers to the figure. Throws Error if the picture is too small for it.
+  /// Lays the figure out for a picture of this size, and keeps a reference to it. Throws Error if the picture is too
+  /// small for it.
   FigurePage(const Figure& figure, int width, int height);
 
-  /// Size in pixels: that of the picture, or with margins.
+  /// Size in pixels: the picture's, plus margins if the layout has them.
   int width() const { return width_; }
   int height() const { return height_; }
   /// `cr`: in pixels, (0, 0) is the upper left corner of the page. `picture`: an image surface.
@@ -23,7 +24,7 @@ class FigurePage {
  private:
   struct Placed {
     FigurePanel panel;
-    FigureRect rect;  // with padding
+    FigureRect rect;  // including padding
   };
 
   void place_on(const FigurePen& pen, int width, int height);
@@ -33,7 +34,7 @@ class FigurePage {
   const Figure& figure_;
   double text_, label_text_;
   int width_, height_;
-  FigureRect frame_;  // of the picture
+  FigureRect frame_;  // the picture's position
   std::vector<Placed> placed_;
 };
 

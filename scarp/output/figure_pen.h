@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text and shapes of figures, in units of pixels of the picture.
+// Draws text and shapes of figures. Units are pixels of the picture.
 #pragma once
 
 #include <cairo.h>
@@ -24,10 +24,10 @@ using CairoContext = std::unique_ptr<cairo_t, CairoDeleter>;
 /// Throws Error "figure: ..." if the surface or the context has failed.
 void require_good(cairo_surface_t* surface, cairo_t* context);
 
-/// Cairo's callback that writes to a std::ofstream.
+/// A callback for Cairo that writes to a std::ofstream.
 cairo_status_t write_bytes(void* stream, const unsigned char* bytes, unsigned int count);
 
-/// Returns an image surface with these pixels, in Cairo's order of bytes.
+/// Returns an image surface with these pixels, in Cairo's byte order.
 CairoSurface image_surface(const RgbView& picture);
 
 struct FigureRect {
@@ -41,7 +41,7 @@ struct FigureRect {
 /// Draws on a context that it does not own.
 class FigurePen {
  public:
-  /// `text`: height of text.
+  /// `text`: text height.
   FigurePen(cairo_t* context, double text);
 
   cairo_t* cr() const { return cr_; }
@@ -54,9 +54,10 @@ class FigurePen {
   double width_of(const std::string& text) const;
 
   void write(double x, double baseline, const std::string& text) const;
-  /// With a white halo, for text on pictures; `centre` of the text, turned by `angle` (FigureLabel).
+  /// Writes text with a white halo, for pictures; `centre` is the text's centre, `angle` its rotation as in
+  /// FigureLabel.
   void write_on_picture(const FigurePoint& centre, double angle, const std::string& text) const;
-  /// A background for text.
+  /// Draws a background for text.
   void paper(const FigureRect& rect) const;
   void fill(const FigureRect& rect, const std::array<std::uint8_t, 3>& colour) const;
   void frame(const FigureRect& rect, double line_width) const;

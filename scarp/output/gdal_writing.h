@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// Keeps GDAL's messages off stderr during its lifetime, and GDAL from writing files beside the picture.
+/// During its lifetime, keeps GDAL's messages off stderr and prevents GDAL from writing files beside the picture.
 class GdalWriting {
  public:
   GdalWriting();
@@ -20,8 +20,8 @@ class GdalWriting {
   GdalWriting(const GdalWriting&) = delete;
   GdalWriting& operator=(const GdalWriting&) = delete;
 
-  /// Throws Error "PATH: cannot be written: ..." if GDAL has reported an error since construction. Some are reported
-  /// only when a dataset is closed, by functions that return nothing.
+  /// Throws Error "PATH: cannot be written: ..." if GDAL has reported an error since construction. GDAL reports some
+  /// errors only when a dataset is closed, by functions that return nothing.
   void require_good(const std::string& path) const;
 
  private:

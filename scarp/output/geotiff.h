@@ -23,9 +23,9 @@ struct MapPlace {
 
 /// Writes red, green, blue and opacity (not multiplied into the colours), 8 bits each, with lossless DEFLATE
 /// compression, in tiles if a side is longer than 512 pixels. `alpha`: a byte per pixel; empty: all are opaque.
-/// `place`: nullopt for a TIFF without georeference. Writes the temporary file of `file`, and commits it; `path` is for
-/// messages only. Throws Error if the CRS is invalid or writing fails (disk full); then no file remains once `file` is
-/// destroyed.
+/// `place`: nullopt for a TIFF without georeference. Writes to the temporary file of `file`, and commits it; `path` is
+/// only used in messages. Throws Error if the CRS is invalid or writing fails (disk full); then no file remains once
+/// `file` is destroyed.
 void write_geotiff(ReplaceFile& file, const std::string& path, const RgbView& picture,
                    std::span<const std::uint8_t> alpha, const std::optional<MapPlace>& place);
 

@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// Writes a JPEG of quality 90 to the temporary file of `file`, and commits it. `path` is for messages only. Throws
+/// Writes a JPEG of quality 90 to the temporary file of `file`, and commits it. `path` is only used in messages. Throws
 /// Error if a side is longer than 65500 pixels, the format's limit, or writing fails (disk full); then no file remains
 /// once `file` is destroyed.
 void write_jpeg(ReplaceFile& file, const std::string& path, const RgbView& picture);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// LAS 1.4: point clouds as numbers of 32 bits, with a scale and an offset per coordinate.
+// LAS 1.4: point clouds as 32-bit integers, with a scale and an offset per coordinate.
 //
 //   header (375 bytes), WKT of the CRS if known, description of the extra bytes, then 40 bytes per point:
 //   point data record format 6 (X, Y, Z, return 1 of 1, scan angle, GPS time) and the extra bytes
@@ -20,13 +20,13 @@ namespace scarp {
 /// Properties of a file that do not follow from its points.
 struct LasSettings {
   dvec3 scale{0.001};   ///< size of a step, > 0
-  dvec3 offset{0.0};    ///< coordinates of the number 0
+  dvec3 offset{0.0};    ///< coordinates that the integer 0 stands for
   std::string crs_wkt;  ///< WKT 1, as LAS requires (las_wkt() in las_crs.h); empty: none
 };
 
-/// Returns whole offsets and steps, powers of ten, with which 32 bits hold the box from low to high with a quarter of
-/// it to spare on each side: near to a millimetre, or the next larger ones that suffice. `millimetre` is its length in
-/// the units of each coordinate.
+/// Returns integer offsets, and steps that are powers of ten, with which 32 bits can hold the box from low to high with
+/// a quarter of it to spare on each side. Steps are about a millimetre, or the next larger ones that suffice.
+/// `millimetre` is the length of a millimetre in the units of each coordinate.
 LasSettings las_settings(const dvec3& low, const dvec3& high, const dvec3& millimetre = dvec3(0.001));
 
 /// Number and bounds of points.

@@ -6,8 +6,8 @@
 
 namespace scarp {
 
-/// Returns a CRS, given in any form that GDAL reads ("EPSG:32610", WKT 2, ...), as WKT 1 (OGC 01-009), which LAS
-/// requires; empty if WKT 1 cannot represent it.
+/// Converts a CRS in any form that GDAL reads ("EPSG:32610", WKT 2, ...) to WKT 1 (OGC 01-009), which LAS requires;
+/// returns an empty text if WKT 1 cannot represent it.
 std::string las_wkt(const std::string& crs);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: numbers as bytes, least significant first, on every machine.
+// Private to the station: converts numbers to bytes, least significant first, on every machine.
 #pragma once
 
 #include <bit>

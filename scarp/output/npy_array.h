@@ -11,7 +11,7 @@ namespace scarp {
 
 struct NpyColumn {
   std::string_view name;
-  std::string_view type = "<f8";  ///< NumPy's description
+  std::string_view type = "<f8";  ///< NumPy's type description
 };
 
 /// Returns the header of `rows` structures. Its length does not depend on `rows`, so it can be rewritten at the end.

@@ -13,13 +13,15 @@ namespace scarp {
 
 class OutputFile {
  public:
-  /// Opens the file at once. An empty path: standard output. Throws Error if the path is not writable.
+  /// Opens the file immediately; an empty path means standard output. Throws Error if the path is not writable.
   explicit OutputFile(const std::string& path);
   ~OutputFile();
 
-  /// Adds bytes; they are written in large pieces. Throws Error if writing fails (disk full), as do the calls below.
+  /// Appends bytes; they are buffered and written in large pieces. Throws Error if writing fails (disk full), as do the
+  /// calls below.
   void add(std::string_view bytes);
-  /// Writes the rest, then `header` over the beginning of the file unless it is empty, and renames the file.
+  /// Writes the remaining bytes, then overwrites the beginning of the file with `header` unless it is empty, and
+  /// renames the file.
   void commit(std::string_view header = {});
 
   /// Throws Error "PATH: WHAT".

@@ -9,11 +9,11 @@
 
 namespace scarp {
 
-/// Writes an 8-bit RGB PNG to the temporary file of `file`, and commits it. `path` is for messages only. Throws Error
-/// if writing fails (disk full); then no file remains once `file` is destroyed.
+/// Writes an 8-bit RGB PNG to the temporary file of `file`, and commits it. `path` is only used in messages. Throws
+/// Error if writing fails (disk full); then no file remains once `file` is destroyed.
 void write_png(ReplaceFile& file, const std::string& path, const RgbView& picture);
 
-/// Opens `path` and writes to it as above.
+/// Writes to `path` as above.
 void write_png(const std::string& path, const RgbView& picture);
 
 }  // namespace scarp

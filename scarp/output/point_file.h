@@ -7,8 +7,8 @@
 //   .ply   binary little-endian, element `vertex`: x, y, z and time are double, the rest as in .npy, column as double
 //   .las   LAS 1.4, point data record format 6 (las.h)
 //
-// Numbers in CSV restore the exact value. Misses have no range and no position: empty fields in CSV, NaN in .npy; PLY
-// and LAS cannot hold them.
+// Numbers in CSV round-trip exactly. Misses have no range and no position: empty fields in CSV, NaN in .npy; PLY and
+// LAS cannot represent them.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,11 @@ namespace scarp {
 class OutputFile;
 class PointFormat;
 
-/// A return of a scanner, or a miss.
+/// A scanner return, or a miss.
 struct ScanPoint {
-  dvec3 position{0.0};      ///< in the coordinates of the file
+  dvec3 position{0.0};      ///< in the file's coordinate system
   double time = 0;          ///< seconds
-  std::int64_t column = 0;  ///< of the scan, from 0
+  std::int64_t column = 0;  ///< index of the scan column, from 0
   std::int32_t channel = 0;
   std::uint32_t object = 0;
   float azimuth = 0, elevation = 0;  ///< degrees
@@ -38,13 +38,13 @@ struct ScanPoint {
 };
 
 enum class PointKind : std::uint8_t { csv, npy, ply, las };
-/// Returns the kind by the extension; CSV for an empty path. Throws Error for other extensions.
+/// Returns the kind that matches the extension; CSV for an empty path. Throws Error for other extensions.
 PointKind point_kind_of(const std::string& path);
 
 class PointFile {
  public:
-  /// Opens the file at once; an empty path is standard output. `las` is for LAS only. Throws Error for another
-  /// extension, and if the path is not writable.
+  /// Opens the file immediately; an empty path means standard output. `las` is only used for LAS. Throws Error for
+  /// another extension, or if the path is not writable.
   explicit PointFile(const std::string& path, const LasSettings& las = {});
   ~PointFile();
 

@@ -13,9 +13,10 @@ class PointFormat {
  public:
   virtual ~PointFormat() = default;
 
-  /// The bytes before the points. Their number does not depend on the summary: they are rewritten at the end.
+  /// Returns the bytes before the points. Their number does not depend on the summary, because they are rewritten at
+  /// the end.
   virtual std::string header(const PointSummary& summary) const = 0;
-  /// Appends a point. Called from many threads. Throws Error for one that it cannot represent, without the path.
+  /// Appends a point. Called concurrently. Throws Error without the path for a point that the format cannot represent.
   virtual void append(std::string& out, const ScanPoint& point) const = 0;
 };
 

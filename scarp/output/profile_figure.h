@@ -12,14 +12,14 @@ namespace scarp {
 /// One point along the profile.
 struct ProfileFigurePoint {
   double distance = 0;      ///< metres
-  double ground = 0;        ///< metres above sea; NaN: a hole
-  double sight = 0;         ///< line of sight, metres above sea
+  double ground = 0;        ///< metres above sea level; NaN: a hole
+  double sight = 0;         ///< height of the line of sight, metres above sea level
   bool visible = true;      ///< whether the observer sees the ground here
-  bool after_hole = false;  ///< whether there is a hole between this point and the one before
+  bool after_hole = false;  ///< whether there is a hole between this point and the previous one
 };
 
 struct ProfileFigure {
-  std::vector<ProfileFigurePoint> points;  ///< at least 2, by distance
+  std::vector<ProfileFigurePoint> points;  ///< at least 2, in order of distance
   std::string title{};
   std::string remark{};  ///< below the title: method, curvature
   bool blocked = false;  ///< the line of sight is blocked at `block`
@@ -27,8 +27,8 @@ struct ProfileFigure {
   int width = 1200, height = 480;  ///< pixels
 };
 
-/// Writes the temporary file of `file` as SVG or PNG, by the extension of `path`, and commits it. Throws Error naming
-/// `path` if writing fails (disk full), or for another extension.
+/// Writes SVG or PNG, depending on the extension of `path`, to the temporary file of `file`, and commits it. Throws
+/// Error naming `path` if writing fails (disk full), or for another extension.
 void write_profile_figure(ReplaceFile& file, const std::string& path, const ProfileFigure& figure);
 
 }  // namespace scarp

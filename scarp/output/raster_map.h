@@ -16,7 +16,7 @@
 
 namespace scarp {
 
-/// A class of a band of codes.
+/// A class in a band of codes.
 struct MapClass {
   int code = 0;
   std::string name;                      ///< "visible"
@@ -32,7 +32,7 @@ struct MapBand {
   std::vector<MapClass> classes{};  ///< colour table of Byte bands; empty: none
 };
 
-/// A map and how to write it.
+/// A map, and the format to write it in.
 struct RasterMap {
   int cols = 0, rows = 0;
   std::vector<MapBand> bands;  ///< at least one
@@ -42,17 +42,17 @@ struct RasterMap {
   std::vector<std::string> creation_options{};                  ///< NAME=VALUE; override the defaults
 };
 
-/// Throws Error without a file's name if GDAL lacks the driver, it cannot write rasters, or it does not take one of the
-/// creation options NAME=VALUE. For programs that compute for long before they write.
+/// Throws Error without a file's name if GDAL lacks the driver, or if the driver cannot write rasters or does not
+/// accept one of the creation options NAME=VALUE. For programs with long computations before they write.
 void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options = {});
 
-/// Returns the driver for a file name: GTiff for .tif, else by extension. Throws Error naming the file if there is
-/// none.
+/// Returns the driver for a file name: GTiff for .tif, otherwise the driver for the extension. Throws Error naming the
+/// file if there is none.
 std::string raster_driver_of(const std::string& path);
 
-/// Writes the map to `path`, whole or not at all, with all files that the format needs. GTiff and COG files are tiled
-/// and compressed (DEFLATE) unless options say otherwise. Throws Error naming the file: a bad option, a format that
-/// cannot hold the map, writing fails (disk full).
+/// Writes the map to `path`, completely or not at all, with all files that the format needs. GTiff and COG files are
+/// tiled and compressed (DEFLATE) unless options say otherwise. Throws Error naming the file: an invalid option, a
+/// format that cannot store the map, failed writing (disk full).
 void write_raster_map(const std::string& path, const RasterMap& map, const Progress& progress = {});
 
 }  // namespace scarp

@@ -32,7 +32,7 @@ class Commands {
   explicit Commands(const Device& device);
   Commands(Commands&&) noexcept;
   Commands& operator=(Commands&&) noexcept;
-  /// Waits for a run that has not finished; on a device that was given up, for a few seconds.
+  /// Waits for a run that has not finished; at most a few seconds on a device that was given up.
   ~Commands();
 
   using Groups = std::array<std::uint32_t, 3>;
@@ -51,14 +51,15 @@ class Commands {
   void copy(const RasterTarget& from, std::uint32_t image, const DeviceBuffer& to);
   /// Fills part of a buffer with a 32-bit word; offset and size as for upload().
   void fill(const DeviceBuffer& buffer, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
-  /// Copies part of a buffer to `to` by the time run() returns; offset and size as for download(). For counters: all
-  /// reads of a run have at most kMaxReadBytes together. Sees the writes of earlier passes only after a barrier().
+  /// Copies part of a buffer to `to`, which is filled when run() returns; offset and size as for download(). Meant for
+  /// counters: all reads of a run together have at most kMaxReadBytes. Sees the writes of earlier passes only after a
+  /// barrier().
   void read(const DeviceBuffer& from, std::uint64_t offset, std::uint64_t bytes, void* to);
   static constexpr std::uint64_t kMaxReadBytes = 256;
   /// Full barrier: earlier commands finish, and their writes are visible, before later ones begin.
   void barrier();
 
-  /// Runs the recorded commands and waits. Throws Error if the device is lost, or has exceeded
+  /// Runs the recorded commands and waits. Throws Error if the device is lost or has exceeded
   /// DeviceSettings::timeout_s, in this run or an earlier one.
   void run();
   /// Dispatches and draws of the last run(), in order.

@@ -11,8 +11,8 @@
 //   download(numbers, 0, data, bytes);
 //
 // Shaders access buffers only through addresses in push constants: there are no descriptors, and only the allocation
-// limit bounds what one shader can access. Objects made from a device keep it open. A device and its objects are for
-// one thread at a time. The Vulkan loader is opened on first use, so programs that do not use a device start without
+// limit bounds what one shader can access. Objects made from a device keep it open. Only one thread at a time may use a
+// device and its objects. The Vulkan loader is opened on first use, so programs that do not use a device run without
 // it.
 #pragma once
 
@@ -43,7 +43,7 @@ struct DeviceAbilities {
   bool draws = false;  ///< the compute queue also supports graphics
 };
 
-/// Returns the first required feature that is missing, as in "Vulkan 1.2 (it has 1.1)"; empty if none is.
+/// Returns the first required feature that is missing, as in "Vulkan 1.2 (it has 1.1)"; empty if none is missing.
 std::string missing_ability(const DeviceAbilities& abilities);
 
 /// Properties of a device.
@@ -74,16 +74,15 @@ DeviceList list_devices();
 
 /// Selection and settings of a device.
 struct DeviceSettings {
-  /// "auto": the first usable device in the order discrete, integrated, virtual GPU, CPU, other. "gpu": the same
-  /// without CPU and other. "cpu": a CPU device. Otherwise the first device whose name contains the text, ignoring
-  /// case.
+  /// "auto": the first usable device in the order discrete, integrated, virtual GPU, CPU, other. "gpu": the same,
+  /// except CPU and other. "cpu": a CPU device. Otherwise the first device whose name contains the text, ignoring case.
   std::string choice = "auto";
   bool validation =
       false;  ///< enables the Khronos validation layer with synchronisation validation and collects its messages
-  /// Time limit of one run of commands, > 0; after it the device is given up and runs nothing more. nullopt: 60 s, on
-  /// CPU devices 600 s.
+  /// Time limit of one run of commands, in seconds, > 0; a device that exceeds it is given up and runs nothing more.
+  /// nullopt: 60 s, 600 s on CPU devices.
   std::optional<double> timeout_s = {};
-  /// Whether compiled pipelines are kept in the user's cache folder, from process to process (doc/user/devices.md).
+  /// Whether compiled pipelines are kept in the user's cache folder, for later processes (doc/user/devices.md).
   bool keep_pipelines = true;
 };
 
@@ -94,11 +93,12 @@ std::size_t choose_device(const std::vector<DeviceDescription>& devices, const s
 /// An open device. Copies are cheap and share it.
 class Device {
  public:
-  /// Throws Error if there is no loader, no device, no match for the choice, a missing feature or no validation layer.
+  /// Throws Error if there is no loader, no device, no match for the choice or no validation layer, or if a feature is
+  /// missing.
   explicit Device(const DeviceSettings& settings = {});
 
   const DeviceDescription& description() const;
-  /// Messages of the validation layer so far; empty without `validation`.
+  /// Returns the validation layer's messages so far; empty without `validation`.
   std::vector<std::string> validation_messages() const;
 
   struct Impl;  // raii.h

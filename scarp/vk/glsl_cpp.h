@@ -8,10 +8,10 @@
 //   SCARP_FN uint entry_of(Level level, uint col, uint row) { return level.begin + row * level.cols + col; }
 //   SCARP_GLSL_END
 //
-// Structs contain float, int, uint, vectors of these and Address; no bool, no matrices, no 64-bit types
-// (doubles in accel/voxel_buffers.glsl.h, for shaders that need float64). In C++
-// everything is in namespace scarp::glsl. Functions that also run in C++ use no swizzles. Shaders that include such a
-// file enable GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for their blocks.
+// Structs contain float, int, uint, vectors of these and Address; no bool, no matrices, no 64-bit types (doubles in
+// accel/voxel_buffers.glsl.h, for shaders that need float64). In C++, everything is in namespace scarp::glsl. Functions
+// that also run in C++ use no swizzles. Shaders that include such a file enable GL_GOOGLE_include_directive, and
+// GL_EXT_scalar_block_layout for their blocks.
 #ifndef SCARP_VK_GLSL_CPP_H
 #define SCARP_VK_GLSL_CPP_H
 
@@ -73,8 +73,8 @@ struct Address {
 
 #endif
 
-// Marks the start of a block of a shader for `scarp-bench simt`, which counts them; expands to nothing in all other
-// builds.
+// Marks the start of a block of shader code for `scarp-bench simt`, which counts executions of blocks; expands to
+// nothing in all other builds.
 #ifndef SCARP_COUNT
 #define SCARP_COUNT(block)
 #endif

@@ -34,7 +34,7 @@ class DeviceBuffer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Copy to and from a buffer, and return when the copy is done. Offsets and sizes are multiples of 4 and within the
+/// Copy to and from a buffer; return when the copy is complete. Offsets and sizes are multiples of 4 and within the
 /// buffer. Throw Error if the device is lost.
 void upload(const DeviceBuffer& to, std::uint64_t offset, const void* from, std::uint64_t bytes);
 void download(const DeviceBuffer& from, std::uint64_t offset, void* to, std::uint64_t bytes);

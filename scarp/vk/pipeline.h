@@ -13,7 +13,7 @@ namespace scarp {
 
 struct ShaderProgram;  // shader_program.h
 
-/// Push-constant size that every device supports.
+/// Push-constant size that every device supports, in bytes.
 constexpr std::uint32_t kMaxPushBytes = 128;
 
 /// A compute shader with its layout.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: implementation types in terms of Vulkan-Hpp. Neither vk:: types nor vk:: exceptions leave the
-// station.
+// Private to the station: implementation types in terms of Vulkan-Hpp. Other stations see neither vk:: types nor vk::
+// exceptions.
 #pragma once
 
 #include <algorithm>
@@ -21,10 +21,10 @@
 
 namespace scarp {
 
-/// Message that no driver was found, and where drivers were searched.
+/// Returns the message that no driver was found, and where drivers were searched for.
 std::string no_driver();
 
-/// Message for a Vulkan failure during `what`; `device` names the device.
+/// Returns the message for a Vulkan failure during `what`; `device` names the device.
 std::string vulkan_failure(vk::Result result, const std::string& device, const std::string& what);
 
 /// Calls `f` and converts exceptions of Vulkan-Hpp to Error.
@@ -75,10 +75,10 @@ struct Device::Impl {
 
   /// Throws Error if the device has been given up.
   void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence);
-  /// Waits for the fence and resets it. Gives the device up after the time limit, and throws Error then
-  /// and from then on.
+  /// Waits for the fence and resets it. After the time limit, gives the device up and throws Error, as does every later
+  /// call.
   void wait(const vk::raii::Fence& fence, const std::string& what);
-  /// Waits for the fence before its resources are destroyed; on a device that was given up, only a few seconds.
+  /// Waits for the fence before its resources are destroyed; at most a few seconds on a device that was given up.
   void wait_at_end(const vk::raii::Fence& fence) noexcept;
   const std::string& name() const { return description.name; }
   /// Returns the first memory type for a buffer that has all `flags`.
@@ -87,7 +87,7 @@ struct Device::Impl {
   void save_pipelines() noexcept;
 
   DeviceSettings settings;
-  double timeout_s = 0;  // of the settings, or the usual one
+  double timeout_s = 0;  // from the settings, or the default
   DeviceDescription description;
   VulkanInstance instance;
   vk::raii::PhysicalDevice physical;
@@ -98,12 +98,12 @@ struct Device::Impl {
   vk::raii::Device device;
   vk::raii::Queue queue;
   vk::raii::CommandPool pool;
-  std::string pipelines_path;         // empty: they are not kept
+  std::string pipelines_path;         // empty: pipelines are not kept
   std::size_t pipelines_on_file = 0;  // bytes
   vk::raii::PipelineCache pipelines = nullptr;
   std::unique_ptr<StagingRing> staging;  // made on first use
-  std::string given_up;                  // why, in a sentence; empty: it was not
-  bool hangs = false;                    // it did not even finish by the end
+  std::string given_up;                  // the reason, as a sentence; empty if the device was not given up
+  bool hangs = false;                    // the device did not even finish before it was closed
   bool has_drawn = false;                // whether a first drawing has been tried
 };
 
@@ -155,21 +155,21 @@ vk::SpecializationInfo specialisation(std::span<const std::uint32_t> constants,
                                       std::vector<vk::SpecializationMapEntry>& entries);
 
 vk::raii::PipelineLayout compute_layout(const vk::raii::Device& device, std::uint32_t push_bytes);
-/// Compiles a shader whose entry point is main; `constants` as for specialisation().
+/// Compiles a shader with the entry point main; `constants` as for specialisation().
 vk::raii::Pipeline compute_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
                                     std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants,
                                     vk::PipelineCreateFlags flags,
                                     const vk::Optional<const vk::raii::PipelineCache>& cache);
 
 vk::raii::PipelineLayout raster_layout(const vk::raii::Device& device, std::uint32_t push_bytes);
-/// Links a vertex and a fragment shader; as for compute_pipeline().
+/// Compiles a vertex and a fragment shader, as compute_pipeline() does.
 vk::raii::Pipeline raster_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
                                    std::span<const std::uint32_t> vertex, std::span<const std::uint32_t> fragment,
                                    const RasterSettings& settings, std::span<const std::uint32_t> constants,
                                    vk::PipelineCreateFlags flags,
                                    const vk::Optional<const vk::raii::PipelineCache>& cache);
 
-/// Earlier commands finish, and their writes are visible, before later ones begin.
+/// Makes earlier commands finish, and their writes visible, before later commands begin.
 void full_barrier(const vk::raii::CommandBuffer& commands);
 
 }  // namespace scarp

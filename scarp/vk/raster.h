@@ -6,9 +6,9 @@
 //   commands.draw(target, {draw_call(pipeline, push, corners)});       commands.h
 //   commands.copy(target, 0, colours);  commands.copy(target, 1, depths);
 //
-// There is no window and no vertex format: vertex shaders fetch data from buffers through addresses in push constants
-// and gl_VertexIndex. Depths are 32-bit floats, reversed: 1 at the near plane, 0 at the far plane, larger is nearer.
-// Reversed floats keep their precision at a distance. No face is culled.
+// There are no windows and no vertex formats: vertex shaders fetch data from buffers through addresses in push
+// constants and gl_VertexIndex. Depths are 32-bit floats, reversed: 1 at the near plane, 0 at the far plane, larger is
+// nearer. Reversed floats keep their precision at large distances. No faces are culled.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ namespace scarp {
 /// A pixel of a colour image has four 32-bit numbers, of one of these types.
 enum class RasterColours : std::uint8_t { floats, words };
 
-/// Images of one size: colours, all alike, and one depth image.
+/// Images of one size: colour images of one format, and one depth image.
 class RasterTarget {
  public:
   /// Throws Error if the device does not support graphics or this size (each side at least 1 pixel), or lacks memory.
@@ -45,8 +45,8 @@ class RasterTarget {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Maximum pixels per side of a target, and sub-pixel bits of vertex positions: a vertex is within 2^-(bits + 1) pixel
-/// of its shader's position along either axis.
+/// Maximum pixels per side of a target, and sub-pixel bits of vertex positions: along either axis, a vertex is within
+/// 2^-(bits + 1) pixels of the position that its shader computes.
 struct RasterLimits {
   std::uint32_t most_pixels = 0;
   std::uint32_t subpixel_bits = 0;
@@ -58,15 +58,15 @@ struct RasterSettings {
   std::uint32_t push_bytes = 0;  ///< size of the block shared by both shaders; a multiple of 4, at most kMaxPushBytes
   std::uint32_t colours = 1;     ///< number of colour images of the target
   bool depth_test = true;        ///< false: draws every fragment and writes its depth
-  RasterColours of = RasterColours::floats;  ///< as of the target
+  RasterColours of = RasterColours::floats;  ///< as in the target
 };
 
-/// Vertex and fragment shader with their layout.
+/// A vertex and a fragment shader with their layout.
 class RasterPipeline {
  public:
-  /// Vertex and fragment shader with entry point main and no bindings; `fragment` may be empty without colours.
-  /// `constants` as for ComputePipeline, for both shaders. Throws Error if the device does not support graphics or the
-  /// driver rejects a shader.
+  /// The shaders have the entry point main and no bindings; `fragment` may be empty without colours. `constants` as for
+  /// ComputePipeline, for both shaders. Throws Error if the device does not support graphics or the driver rejects a
+  /// shader.
   RasterPipeline(const Device& device, std::span<const std::uint32_t> vertex, std::span<const std::uint32_t> fragment,
                  const std::string& name, const RasterSettings& settings,
                  std::span<const std::uint32_t> constants = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scalar types for formulas that run in double on the CPU and in single precision on devices.
+// Number types for formulas that run in double on the CPU and in single precision on devices.
 //
 //   real, real2, real3   double, dvec2, dvec3 in C++; float, vec2, vec3 in GLSL; literals are real(0.1)
 //   vec3                 colours, single precision on both sides

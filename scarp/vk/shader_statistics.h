@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a driver's compiler makes of a compute or fragment shader: instructions, registers, spills. Nothing runs and
-// nothing is allocated, so a device without memory will do, such as the null device of Mesa's RADV:
+// Reports how a driver compiles a compute or fragment shader: instructions, registers, spills. Nothing runs and no
+// memory is allocated, so a device without memory suffices, such as the null device of Mesa's RADV:
 //
 //   ShaderCompiler compiler;                            the first device whose driver reports statistics
 //   for (const auto& [name, value] : compiler.statistics(program)) ...
@@ -14,13 +14,14 @@
 
 namespace scarp {
 
-/// One figure of a compiled shader, by the driver's name for it, such as "VGPRs" or "Code size".
+/// One statistic of a compiled shader, with the driver's name for it, such as "VGPRs" or "Code size".
 struct ShaderStatistic {
   std::string name;
   double value = 0;
 };
 
-/// The compiler of a Vulkan driver. Each object searches for drivers again, so the environment may change in between.
+/// The compiler of a Vulkan driver. Each object searches for drivers again, so the environment may change between
+/// objects.
 class ShaderCompiler {
  public:
   /// Throws Error if there is no loader, no device, or none whose driver reports statistics
@@ -36,8 +37,8 @@ class ShaderCompiler {
 
   /// Compiles the program and returns the statistics in the driver's order. Throws Error if the driver rejects it.
   std::vector<ShaderStatistic> statistics(const ShaderProgram& program) const;
-  /// Compiles the program and returns its machine code as text, which RADV reports. Throws Error if the driver rejects
-  /// the program or does not report the text.
+  /// Compiles the program and returns its disassembly, which RADV reports. Throws Error if the driver rejects the
+  /// program or does not report a disassembly.
   std::string disassembly(const ShaderProgram& program) const;
 
  private:

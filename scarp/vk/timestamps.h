@@ -15,11 +15,12 @@ class Timestamps {
 
   /// Records a reset. Call outside passes, before the first begin() of a run.
   void reset(const vk::raii::CommandBuffer& commands);
-  /// Record a timestamp when earlier commands have passed `stage`: the pass's stage, or the last of several.
+  /// Record a timestamp when earlier commands have passed `stage`: the pass's stage, or its last one if there are
+  /// several.
   void begin(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage);
   void end(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage);
-  /// Durations of the passes in nanoseconds, after the run. Empty if the device has no timestamps, and for passes
-  /// beyond kMaxPasses.
+  /// Returns the durations of the passes in nanoseconds; call it after the run. Empty if the device has no timestamps,
+  /// and for passes beyond kMaxPasses.
   std::vector<std::optional<double>> read(std::size_t passes) const;
 
   static constexpr std::uint32_t kMaxPasses = 512;  ///< timed passes per run
