@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A terrain over caller-owned heights, and a ray.
+// Heights in caller-owned memory, and a ray.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -7,8 +7,7 @@
 #include "scarp/scarp.h"
 
 int main() {
-  // 513 x 513 heights in metres, 10 m apart, rows from north to south: waves with a height of 160 m from trough to
-  // crest.
+  // 513 x 513 heights in metres, 10 m apart, rows from north to south: waves 160 m from trough to crest.
   const int side = 513;
   std::vector<float> heights;
   for (int row = 0; row < side; ++row) {
