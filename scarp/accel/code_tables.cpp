@@ -87,7 +87,7 @@ std::vector<std::uint32_t> code_tables(const HeightCode& code) {
   parallel_for(kCodes, 1 << 12, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t at = begin; at < end; ++at) {
       const auto wanted = static_cast<std::uint16_t>(at);
-      // A block of holes has key 0, and no sample may lie below the ceiling of code 0.
+      // A block of holes has key 0, and no sample may be below the ceiling of code 0.
       const auto above = [&](Key key) { return code_above(code, key) <= wanted; };
       tables[static_cast<std::size_t>(at)] =
           above(least) ? last_key(least, greatest, key_near(code, wanted - kClear), above) : 0;

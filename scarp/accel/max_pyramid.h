@@ -37,7 +37,7 @@ struct Blocks;
 /// queries.
 class MaxPyramid {
  public:
-  /// Code of a block without a minimum: it has a hole, or the lowest code.
+  /// Code of a block without a minimum: the block contains a hole, or the lowest code.
   static constexpr std::uint16_t kNoMinimum = 0;
 
   /// Builds all levels, on all threads. A field without cells has no levels. `reserve` widens the code range of float
@@ -75,7 +75,7 @@ class MaxPyramid {
   /// Upper bound of the height difference within any cell, in code steps; up to 65535 with holes. After edits it may
   /// exceed the bound that a rebuild would give.
   int cell_relief() const { return shared_->cell_relief; }
-  /// HeightField::edits() at the last update; if the field has more, queries may lose hits.
+  /// HeightField::edits() at the last update; if the field has more, queries may miss hits.
   std::uint64_t edits() const { return shared_->edits; }
 
  private:

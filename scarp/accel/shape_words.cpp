@@ -34,9 +34,9 @@ std::uint32_t shape_function_parts(const DistanceProgram& program) {
   return parts;
 }
 
-// The error counts for doubles (distance_program.cpp), at 2^-24 instead of 2^-53, times 1.5: constants are rounded to
-// floats, and roots and divisions of devices are accurate to 2.5 units. Functions have their own bounds, which grow in
-// steps; this is the line above them.
+// The rounding counts for doubles (distance_program.cpp), with 2^-24 instead of 2^-53, times 1.5: constants are rounded
+// to floats, and square roots and divisions on devices are accurate to 2.5 units. Functions have their own bounds,
+// which grow in steps; the linear bound computed here is above these steps.
 ShapeSingleRounding::ShapeSingleRounding(const DistanceField& shape) {
   const DistanceProgram& program = shape.program();
   at_origin_ = 0x1.8p29 * program.rounding;

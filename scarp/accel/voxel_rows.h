@@ -26,7 +26,7 @@ struct VoxelRows {
   }
   bool test(const ivec3& voxel) const { return row(voxel.y, voxel.z)[voxel.x / 64] >> (voxel.x % 64) & 1; }
 
-  /// Sets all voxels within Chebyshev distance 1 of a set one.
+  /// Sets all voxels within Chebyshev distance 1 of a set voxel.
   void dilate();
   /// Returns whether all voxels of the grid are set.
   bool full() const;

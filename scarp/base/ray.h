@@ -35,7 +35,8 @@ struct Ray {
   double t_min = 0.0;                                      ///< finite; may be negative
   double t_max = std::numeric_limits<double>::infinity();  ///< >= t_min; may be infinite
   RayStart start = RayStart::free;
-  std::uint8_t frame = 0;  ///< orientation of its space in the world, for ties of voxels (voxel_ray.h); set by scenes
+  std::uint8_t frame = 0;  ///< orientation of its space in the world, for ties between voxels (voxel_ray.h); set by
+                           ///< scenes
   std::uint16_t room = 0;  ///< rounding of its coordinates, for planes between voxels (ray_room.h); set by scenes
   Cell start_cell{};  ///< on_surface: height fields: the cell that contains the point at t_min; meshes: Hit::cell of
                       ///< the hit

@@ -78,7 +78,7 @@ struct Torus {
   double radius = 2;  ///< of the tube's centre line, >= 0
   double tube = 0.5;  ///< radius of the tube
 };
-/// A bound, not the exact distance: too short by at most the factor largest / smallest radius, mostly off the long
+/// A bound, not the exact distance: too short by at most the factor largest / smallest radius, mostly beyond the long
 /// ends.
 struct Ellipsoid {
   dvec3 radii{1, 1, 0.5};

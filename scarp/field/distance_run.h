@@ -112,7 +112,7 @@ Result<typename Mode::Value> run(const DistanceProgram& program, const Mode& mod
   return {v[0], material[0]};
 }
 
-/// Clamps to the reach of terrain functions; the ground continues constant beyond it.
+/// Clamps to the reach of terrain functions; the ground is constant beyond it.
 inline dvec3 within_reach(const dvec3& q) {
   return {std::clamp(q.x, -kFunctionReach, kFunctionReach), std::clamp(q.y, -kFunctionReach, kFunctionReach), q.z};
 }

@@ -153,9 +153,9 @@ class HeightField {
   }
 
   /// Returns the cell that contains a world position, [col, col+1) x [row, row+1) with the last column and row closed,
-  /// and the position (u, v) in it. On the rim of a hole that is a cell with ground; otherwise it may be a hole. A
-  /// position beside the border or a rim by no more than rounding_of_line() is on it. Returns nullopt outside a field
-  /// without wrap.
+  /// and the position (u, v) in it. On the rim of a hole, this is a cell with ground; elsewhere it may be a hole. A
+  /// position within rounding_of_line() of the border or a rim counts as on it. Returns nullopt outside a field without
+  /// wrap.
   struct Place {
     Cell cell;
     double u, v;

@@ -36,9 +36,9 @@ struct NoiseBound {
 /// Coordinates are clamped to this, in lattice units: doubles beyond are integers.
 inline constexpr double kLatticeReach = 0x1p52;
 
-/// Returns the bounds of a kind. For any lattice a derivative is at most the sum over its corners of the weight's
-/// length. The maximum of these sums was found by a search over positions and directions on a grid of 400 x 400 x 180,
-/// and rounded up by 0.5 % to 1 %.
+/// Returns the bounds of a kind. For any lattice, a derivative is at most the sum, over the lattice's corners, of the
+/// weight's length. The maximum of these sums was found by a search over positions and directions on a grid of 400 x
+/// 400 x 180, and rounded up by 0.5 % to 1 %.
 NoiseBound bound_of(NoiseKind kind);
 
 /// Returns a bound of the rounding error of the noise, or of one of its derivatives, as computed at (x, y): fewer than
@@ -58,7 +58,7 @@ double lattice_value(std::uint32_t hash);                             ///< in [-
 const double* lattice_direction(std::uint32_t hash);                  ///< x and y, one of 12 of length 1
 std::uint32_t octave_seed(std::uint64_t seed, std::uint32_t octave);  ///< mixes the two
 
-/// Scales that make the extremes 1: sqrt(1/2) for Perlin noise, 0.01008 for simplex noise.
+/// Scales that map the extremes to 1; unscaled, they are sqrt(1/2) for Perlin noise and 0.01008 for simplex noise.
 inline constexpr double kPerlinScale = 1.4142135623730951;
 inline constexpr double kSimplexScale = 99;
 

@@ -10,7 +10,7 @@
 
 namespace scarp {
 
-/// In sample units. Samples are int16, uint16 or float32; a float holds each exactly.
+/// In sample units. Samples are int16, uint16 or float32, which a float represents exactly.
 struct SampleExtent {
   float min = std::numeric_limits<float>::infinity();
   float max = -std::numeric_limits<float>::infinity();

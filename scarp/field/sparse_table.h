@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A table of numbers, most of them 0, for grids with more cells than memory: up to kFlat entries in an array, more in
-// chunks of kChunk entries. Chunks of zeros share storage.
+// A table of numbers, most of them 0, for grids with more cells than fit in memory. A table of up to kFlat entries is
+// one array; a larger one consists of chunks of kChunk entries. Chunks of zeros share storage.
 #pragma once
 
 #include <cstddef>

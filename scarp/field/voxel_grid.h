@@ -43,7 +43,7 @@ class VoxelGrid {
   /// Throws Error as the constructor does.
   static void require_size(const ivec3& size, int entry_bits);
 
-  /// Fills a brick: sets the entries of its solid voxels, by bit_of(), and returns its mask.
+  /// Fills a brick: sets the entries of its solid voxels, indexed by bit_of(), and returns its mask.
   using FillBrick = std::function<std::uint64_t(const ivec3& brick, std::span<std::uint32_t, 64> entries)>;
   /// Builds a grid brick by brick, on all threads; faster than edit(). `fill` is called once per brick, concurrently;
   /// voxels outside the grid are ignored. Throws Error as the constructor does, or if an entry does not fit.
@@ -57,7 +57,7 @@ class VoxelGrid {
   /// Source of the voxels of a large grid. Its functions are called concurrently.
   struct Source {
     std::function<Contents(const VoxelBox& page)> contents;  ///< may extend beyond the grid
-    std::function<Brick(const ivec3& brick, std::span<std::uint32_t, 64> entries)> fill;  ///< of mixed pages
+    std::function<Brick(const ivec3& brick, std::span<std::uint32_t, 64> entries)> fill;  ///< called for mixed pages
   };
   /// The same for large grids, page by page.
   static VoxelGrid built(const ivec3& size, int entry_bits, const Source& source);

@@ -69,7 +69,7 @@ struct FigureLine {
   bool meridian = false;
 };
 
-/// A text in the picture.
+/// A text label in the picture.
 struct FigureLabel {
   FigurePoint centre{};
   double angle = 0;  ///< radians clockwise from horizontal text

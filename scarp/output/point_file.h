@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes the points of a scanner as CSV, .npy, PLY or LAS, piece by piece: memory does not grow with their number.
+// Writes the points of a scanner as CSV, .npy, PLY or LAS, piece by piece: memory use does not depend on the number of
+// points.
 //
 //   .csv   a header line, then one line per point: time, column, channel, azimuth, elevation, range, x, y, z, object
 //   .npy   a one-dimensional structured array with fields of these names (NEP 1, version 1.0): time, x, y, z are

@@ -36,7 +36,7 @@ std::vector<std::string> files_of(GDALDataset& dataset);
 int height_band(GDALDataset& dataset, int wanted);
 
 /// Converts the height range, if any, to a scale and offset for samples of this type. Throws Error without the file's
-/// name: an empty range, signed samples, or a scale in addition.
+/// name: an empty range, signed samples, or a scale that is also set.
 void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_byte);
 
 /// Returns whether the dataset is a picture: bands of red, green and blue, or a palette.

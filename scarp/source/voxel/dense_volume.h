@@ -52,8 +52,8 @@ class DenseVolume {
   const VolumeFormat& format() const { return format_; }
   /// Returns the number of a voxel, which must be inside. 64-bit integers are rounded.
   double operator[](const ivec3& voxel) const;
-  /// Writes the number of voxel from + x * step[0] + y * step[1] + z * step[2] to numbers[x + 4 y + 16 z], for all x, y
-  /// and z below `count`, each 0..4. All voxels must be inside.
+  /// Writes the number of the voxel at from + x * step[0] + y * step[1] + z * step[2] to numbers[x + 4 y + 16 z], for
+  /// all x, y and z below `count`, each 0..4. All voxels must be inside.
   void brick(const ivec3& from, const std::array<ivec3, 3>& step, const ivec3& count,
              std::span<double, 64> numbers) const;
 
