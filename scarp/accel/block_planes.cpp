@@ -14,17 +14,18 @@
 namespace scarp {
 namespace {
 
-// The slopes' range, in mean height differences in blocks of 2 x 2 cells. A smaller range has finer steps but cuts off
-// more slopes (doc/dev/decisions/accel.md).
+// Range of the slopes, as a multiple of the mean height difference in blocks of 2 x 2 cells. A smaller range has finer
+// steps but clamps more slopes (doc/dev/decisions/accel.md).
 constexpr double kSteepest = 0.5;
-// Codes of tilt over half a block: floats stay accurate.
+// Maximum tilt over half a block, in codes, so that floats stay accurate.
 constexpr double kMostTilt = 0x1p15;
 
-// Range of codes for 16-bit samples, which rarely use that of their type: room for edits on either side, an eighth of
-// `range` at least. At most 2^7 codes per sample: vectors err by about one code, less than anything samples can show.
+// Range of codes for 16-bit samples, which rarely use the full range of their type: `range`, with room for edits on
+// either side, at least an eighth of it. At most 2^7 codes per sample unit: vector code errs by about one code, less
+// than samples can resolve.
 constexpr double kLowestWhole = -0x1p15, kHighestWhole = 0x1p16;  // beyond all 16-bit samples
 constexpr double kRoom = 1.25, kLeastSpan = 256;
-// Its step is that of the pyramid times a power of two, so conversions are exact.
+// The step is the pyramid's step times a power of two, so conversions are exact.
 HeightCode code_with_room(const SampleRange& range) {
   const double span = std::max(kRoom * (range.high - range.low), kLeastSpan);
   const double per_step = std::exp2(std::floor(std::log2(kTopCode / span)));
@@ -160,7 +161,7 @@ void BlockPlanes::fit(const HeightField& field, const Blocks& blocks, const Cell
   CellBox part = changed;
   for (std::size_t l = 0; l < blocks.levels.size(); ++l) {
     part = coarser(part);
-    // Cells from the middle of a child to its border; of a block it is twice that.
+    // Distance in cells from the middle of a child to its border; for a block it is twice that.
     const auto half = static_cast<float>(std::ldexp(0.5, static_cast<int>(l)));
     const double most = std::min(static_cast<double>(kMostSteps), kMostTilt / static_cast<double>(2 * half * unit_));
     const PlaneFit plane_fit{unit_, half, static_cast<std::int32_t>(most), scale_, shift_};

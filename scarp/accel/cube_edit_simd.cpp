@@ -85,7 +85,7 @@ class CubeEdit {
             const Range found =
                 from_y == y && from_z == z ? find_in_box(y, z) : find_beside(range(from_y, from_z), y, z);
             if (found.empty()) {
-              // Rows farther out follow from those of the previous slab, or from this one.
+              // Rows farther out can only continue ranges of the previous slab, or of this row.
               if (from_z == z ? from_y != y : to_y > 0 ? y > high_y : y < low_y) break;
               continue;
             }
@@ -104,7 +104,7 @@ class CubeEdit {
   bool may_change(int y, int z, int vector) {
     const std::size_t x = N * static_cast<std::size_t>(vector);
     const V distance = hn::AndNot(rows_.beyond(x), hn::LoadU(d8, distances_.at({0, y, z}) + x));
-    // Not less than the distance from the box; lanes beyond the row are 0 here, and 255 there.
+    // Voxels whose distance is at least that from the box. Lanes beyond the row are 0 in `distance` and 255 in `from`.
     const V from = hn::Or(from_box(y, z, x), rows_.beyond(x));
     return !hn::AllTrue(d8, hn::Ne(hn::Max(distance, from), distance));
   }
@@ -172,7 +172,7 @@ class CubeEdit {
       }
       distance = hn::Min(distance, hn::SaturatedAdd(beside_it, one));
       distance = spread<kRising>(hn::Or(distance, rows_.beyond(x)));
-      // Known before the vector is, so that vectors need not wait for one another.
+      // Computed before the vector is complete, so that vectors need not wait for one another.
       const unsigned next = std::min(static_cast<unsigned>(hn::ExtractLane(distance, kRising ? N - 1 : 0)),
                                      std::min<unsigned>(255, passed + N));
       distance = hn::Min(distance, hn::SaturatedAdd(hn::Set(d8, static_cast<std::uint8_t>(passed)), away_lanes));

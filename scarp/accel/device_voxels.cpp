@@ -42,7 +42,7 @@ std::uint32_t march_of(const MarchedGrid& parts) {
   return parts.bricks ? glsl::kScarpVoxelBricks : glsl::kScarpVoxelPlanes;
 }
 
-// The bytes of an accelerator that has one per voxel, as they are on the CPU.
+// The bytes of an accelerator with one byte per voxel, as on the CPU.
 std::span<const std::byte> voxel_bytes_of(const MarchedGrid& parts) {
   const auto bytes_of = [](const VoxelBytes& of) {
     const ivec3& size = of.size();
@@ -80,7 +80,7 @@ void require_size(const MarchedGrid& parts) {
   }
 }
 
-// Uploads from a byte to another of a block; both are widened to words, which `data` must have.
+// Uploads bytes [begin, end) of a block, widened to whole words; pads beyond the end of `data`.
 void upload_part(const DeviceBuffer& to, std::uint64_t offset, std::span<const std::byte> data, std::uint64_t begin,
                  std::uint64_t end) {
   begin = begin / 4 * 4;

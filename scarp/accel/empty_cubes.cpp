@@ -93,7 +93,7 @@ void EmptyCubes::summed_area(const VoxelGrid& grid) {
            sum(b.high.x, b.low.y, b.low.z) - sum(b.low.x, b.low.y, b.low.z);
   };
   for_each_voxel(grid.box(), [&](const ivec3& v) {
-    // The least radius whose cube is not empty.
+    // Searches for the smallest radius whose cube is not empty.
     int empty = -1, full = kFarthest;
     while (full - empty > 1) {
       const int radius = (empty + full) / 2;

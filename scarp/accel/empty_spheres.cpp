@@ -33,7 +33,7 @@ void EmptySpheres::update(const VoxelGrid& grid, const VoxelBox& changed) {
   }
   const SphereEdit edit = find_spheres(box, distances_);
   if (!any_removed(VoxelNearness(grid, box), box, distances_)) {
-    // Distances only become smaller, by voxels of the box, which count as dilated by one.
+    // Distances can only decrease, and only because of voxels in the box, which count as dilated by one.
     VoxelBox rows = intersection(box.grown(1), grid.box());
     rows.low.x = edit.region.low.x, rows.high.x = edit.region.high.x;
     build(grid, {rows, edit.region, &box, true});

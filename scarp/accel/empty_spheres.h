@@ -3,8 +3,8 @@
 // that a ray may travel from any point of the voxel without a hit. Space outside the grid is empty; distances are
 // capped at 254.
 //
-//   two boxes |delta| voxels apart along each axis are sqrt(sum of max(0, |delta| - 1)^2) apart: the distance from the
-//   voxel to the nearest voxel of the solid ones, dilated by one in all directions
+//   two boxes |delta| voxels apart along each axis are sqrt(sum of max(0, |delta| - 1)^2) apart, which is the distance
+//   from the voxel to the nearest voxel of the solid set, dilated by one in all directions
 //
 // Built one axis after the other, exact in integers (sphere_rows.h). Cost: one byte per voxel.
 #pragma once

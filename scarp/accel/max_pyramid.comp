@@ -52,7 +52,7 @@ void add_cell(uvec2 north, uvec2 south, uint hole, inout Extremes extremes) {
 uint ceiling(uint code) { return GroundWords(push.codes).words[code]; }
 uint floor_of(uint code) { return GroundWords(push.codes).words[kPyramidCodes + code]; }
 
-// Estimates the code of a key, `beyond` its place; the tables decide.
+// Estimates the code of a key, moved by `beyond` codes; the tables determine the exact code.
 uint guess_code(Ground ground, uint key, float beyond) {
   float place = (uintBitsToFloat(float_bits(key)) - ground.is.code_base) * ground.is.code_per_step + beyond;
   return min(uint(clamp(place, 0.0, 65535.0)), kPyramidCodes - 1u);

@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-// Rows prefetched ahead. More would keep the processor from other requests.
+// Rows prefetched ahead. More would delay other memory requests.
 constexpr int kRowsAhead = 4;
 
 // One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners. Holes get

@@ -93,7 +93,7 @@ class OctantEdit {
     return N * static_cast<std::size_t>(kDown ? vector : rows_.count() - 1 - vector);
   }
 
-  // Which voxels of a row are solid: in the box as the grid now has it.
+  // Returns which voxels of a row are solid; in the box, as the edited grid has them.
   const std::uint8_t* solid_row(const std::uint8_t* row, int y, int z) {
     for (std::size_t x = 0; x < rows_.padded(); x += N) {
       const V sides = hn::LoadU(d8, row + x);
@@ -129,7 +129,7 @@ class OctantEdit {
       previous = least;
       side = hn::IfThenZeroElse(solid ? hn::Ne(hn::LoadU(d8, solid + x), zero) : hn::Eq(before, zero), side);
       side = spread<kDown>(hn::Or(side, beyond));
-      // The hindmost side is known before the vector is, so that vectors need not wait for one another.
+      // The hindmost side is computed before the vector is complete, so that vectors need not wait for one another.
       const unsigned hindmost =
           std::min<unsigned>(hn::ExtractLane(side, kDown ? N - 1 : 0), std::min<unsigned>(255, passed + N));
       side = hn::Min(side, hn::SaturatedAdd(hn::Set(d8, static_cast<std::uint8_t>(passed)), away));

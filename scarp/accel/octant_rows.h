@@ -16,7 +16,7 @@ namespace scarp {
 
 struct OctantRows {
   int octant;
-  bool and_opposite;             ///< also computes the octant that differs in z alone
+  bool and_opposite;             ///< also computes the octant that differs only in z
   const VoxelNearness* along_x;  ///< of the region, spread from the side ahead: lower voxels if bit 0 is set
 };
 

@@ -16,7 +16,8 @@ constexpr int kSide = 1 << ReliefMap::kLevel;
 // the smallest normal float are exact.
 float rounded_up(float steepest) { return steepest * (1 + 0x1p-22f); }
 
-// To the steepest edges so far, those of one row of samples, columns [begin, begin + count) to the next column each.
+// Adds one row of samples to the steepest edges so far: the edges from columns [begin, begin + count) to the next
+// column.
 template <class T>
 void add_along(const T* row, int begin, int plain, int count, float* steepest) {
   const T* samples = row + begin;

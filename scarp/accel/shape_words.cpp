@@ -17,7 +17,7 @@ ShapeWords shape_words(const DistanceProgram& program) {
   const double endless{glsl::kScarpEndless};
   for (const double number : program.numbers)
     words.numbers.push_back(static_cast<float>(std::clamp(number, -endless, endless)));
-  // Shaders read as many constants for any solid as the longest one has.
+  // For every solid, shaders read the number of constants that the longest solid has.
   words.numbers.resize(words.numbers.size() + 8);
   return words;
 }

@@ -36,7 +36,7 @@ constexpr int kReach = EmptySpheres::kFarthest + 1;  // its square is the larges
 
 std::size_t to_size(int i) { return static_cast<std::size_t>(i); }
 
-// Squares in rows, or in slabs of rows: those that are not empty.
+// Squares of the non-empty rows, or of the non-empty slabs of rows.
 struct Lines {
   std::size_t stride;
   std::vector<int> places;  // ascending
@@ -113,7 +113,7 @@ class FromBox {
     for (int x = region.low.x; x < region.high.x; ++x) x_[to_size(x - region.low.x)] = square_from(box, 0, x);
   }
   std::uint16_t of_row(int y, int z) const { return saturated(square_from(box_, 1, y) + square_from(box_, 2, z)); }
-  // Whether distances plus `slack` reach the box. Those of solid voxels never do.
+  // Whether distances plus `slack` reach the box. Distances of solid voxels never do.
   HWY_INLINE hn::Mask<decltype(d16)> reached(V distances, int slack, std::size_t x, std::uint16_t of_row) const {
     const auto solid = hn::Eq(distances, hn::Set(d16, EmptySpheres::kSolid));
     const V far = hn::Min(hn::Add(distances, hn::Set(d16, static_cast<std::uint16_t>(slack))), hn::Set(d16, kReach));
@@ -127,8 +127,8 @@ class FromBox {
   std::vector<std::uint16_t> x_;
 };
 
-// A voxel beside the straight way to the box is less than 1 away from it, so that each of both distances is off by less
-// than 1, and they are rounded down.
+// A voxel beside the straight path to the box is less than 1 away from the path, so each of the two distances is off by
+// less than 1; both are also rounded down.
 constexpr int kBeside = 3;
 
 SphereEdit find(const VoxelBox& changed, const VoxelBytes& distances) {

@@ -18,7 +18,7 @@ using distance::PointMode;
 // Gradient of a 1-Lipschitz function from its values at the corners of a tetrahedron; its length is arbitrary at a
 // crease.
 dvec3 from_differences(const DistanceField& field, const dvec3& p) {
-  constexpr double kStep = 0x1p-17;  // relative step: between the cube roots of the rounding error, 2^-53, and of 1
+  constexpr double kStep = 0x1p-17;  // relative step: about the cube root of the rounding error, 2^-53
   const double h = kStep * std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   dvec3 sum(0.0);
   for (const dvec3& corner : {dvec3(1, -1, -1), dvec3(-1, -1, 1), dvec3(-1, 1, -1), dvec3(1, 1, 1)}) {

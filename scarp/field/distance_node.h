@@ -49,7 +49,7 @@ namespace shape {
 struct Sphere {
   double radius = 1;
 };
-/// A box with edges 2 * half. `round` rounds edges and corners inwards.
+/// A box with edge lengths 2 * half. `round` rounds edges and corners inwards.
 struct Box {
   dvec3 half{0.5};
   double round = 0;  ///< radius, between 0 and the smallest half
@@ -136,7 +136,7 @@ struct Subtraction {
   Shape from, what;
   double smooth = 0;
 };
-/// Assigns a material to all parts without their own.
+/// Assigns a material to all parts that have none of their own.
 struct Painted {
   Shape shape;
   int material = 0;
@@ -151,7 +151,7 @@ using Form = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Torus
 struct ShapeNode {
   shape::Form form;
   int depth;     ///< 1: a leaf
-  ShapeBox box;  ///< bounding box, as tight as is cheap
+  ShapeBox box;  ///< bounding box, tight where that is cheap to compute
 };
 
 /// Throws Error for a setting out of range (by name), a missing operand, a field with holes, a repeated shape larger

@@ -456,7 +456,7 @@ class Compiler {
         place);
     return program_.code.size() - 1;
   }
-  // Testing whether a single solid is far costs as much as the solid.
+  // Testing whether a single solid is far costs as much as evaluating it.
   std::size_t skip_far(const Shape& part, const ShapeFrame& place, int out, int mask, double radius) {
     return cost_of(part) == Cost::single ? kNoSkip : skip_box(part->box, place, out, mask, radius);
   }

@@ -90,7 +90,7 @@ Taylor<N> combine(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b, 
   return t;
 }
 
-/// k0 a + k1 b of positions, whose linear model is nearly exact: their range is that of the model.
+/// k0 a + k1 b for positions: their linear model is nearly exact, so the range is that of the model.
 template <std::size_t N>
 Taylor<N> turned_place(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b) {
   Taylor<N> t;
@@ -285,7 +285,7 @@ void radial_slope(const Taylor<N>& x, const Taylor<N>& y, const FunctionInstruct
   out_y = part(y.low - in.k1, y.high - in.k1);
 }
 
-/// Maximum distance of the position (a, b) from its middle.
+/// Maximum distance of the position (a, b) from the middle position.
 template <std::size_t N>
 double wander(const Taylor<N>& a, const Taylor<N>& b) {
   double sum = std::sqrt(a.rest * a.rest + b.rest * b.rest);

@@ -39,7 +39,7 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
       }
       if ((dx == 0 && dy == 0) || !field.cell_heights({c, r}) == hole) continue;
       const double away = std::hypot(to_x[dx + 1], to_y[dy + 1]);
-      // Sides before corners at the same distance.
+      // At equal distances, sides take precedence over corners.
       if (away < nearest || (away == nearest && dx * dy == 0 && side_x * side_y != 0)) {
         nearest = away, side_x = dx, side_y = dy;
       }

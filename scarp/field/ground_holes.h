@@ -23,8 +23,9 @@ struct OverHole {
 /// `place` is a position in the field, x and y in metres; callers clamp positions outside the field first.
 OverHole over_hole(const HeightField& field, dvec2 place, double radius);
 
-/// Returns the field with nodata replaced by heights: the maximum over all samples of a cone with this slope (metres
-/// per metre) below the sample, but at least the lowest sample. Samples become float32. Throws Error if all are nodata.
+/// Returns the field with nodata replaced by heights. Each is the maximum, over all samples, of a cone that descends
+/// from the sample with this slope (metres per metre), but at least the lowest sample. Samples become float32. Throws
+/// Error if all are nodata.
 HeightField filled_holes(const HeightField& field, double slope);
 
 }  // namespace scarp

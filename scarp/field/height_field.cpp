@@ -175,7 +175,8 @@ void HeightField::require_shared_border(const SampleGrid<T>& grid, const Sample&
 
 CellBox HeightField::cells_of(const SampleRect& rect) const {
   const int first = settings_.wrap == Wrap::none ? 0 : -1;
-  // With a shared border the first sample is also the last; the rectangle must contain both, or the border is torn.
+  // With a shared border the first sample is also the last; the rectangle must contain both, otherwise they would
+  // differ.
   return {std::max(rect.col - 1, first), std::max(rect.row - 1, first), std::min(rect.col + rect.cols, cell_cols()),
           std::min(rect.row + rect.rows, cell_rows())};
 }
@@ -323,7 +324,7 @@ dvec3 HeightField::normal(Cell cell, double u, double v) const {
   return normalize(dvec3(-slope.x, -slope.y, 1.0));
 }
 
-// The common case of shading_normal(), with the same operations: all neighbours exist.
+// shading_normal(), with the same operations, for the common case that all neighbours exist.
 template <class T>
 dvec3 HeightField::shading_normal_inside(const SampleGrid<T>& grid, Cell cell, double u, double v) const {
   const T* rows[4];

@@ -64,7 +64,8 @@ class HeightFunction {
   /// Returns a lower and an upper bound of dh/dt along the same segment.
   dvec2 slope_along(dvec2 origin, dvec2 direction, double t0, double t1, FunctionUse use = FunctionUse::march) const;
 
-  /// Whether normals are those of the marched surface: FunctionUse::normal and FunctionUse::march have one program.
+  /// Whether normals are those of the marched surface: FunctionUse::normal and FunctionUse::march have the same
+  /// program.
   bool normals_are_of_march() const { return normals_are_of_march_; }
 
  private:

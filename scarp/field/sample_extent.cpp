@@ -15,7 +15,7 @@ namespace scarp {
 namespace {
 
 // SampleGrid::is_nodata in three variants, so that each sample is tested no more than needed. kCompares: whether nodata
-// samples take part in comparisons, as NaN does not.
+// samples affect comparisons; NaN does not.
 struct NoHoles {
   static constexpr bool kCompares = false;
   bool operator()(auto) const { return false; }

@@ -282,7 +282,7 @@ VoxelBox VoxelGrid::set(std::span<const Placed> voxels) {
     order.push_back(&placed);
   }
   if (order.empty()) return {};
-  // Each page is unpacked once. Few voxels in many pages are sorted; otherwise they are counted.
+  // Sorted by page, so that each page is unpacked once: few voxels in many pages by comparison, otherwise by counting.
   if ((high - low) / 64 > order.size()) {
     std::stable_sort(order.begin(), order.end(),
                      [&](const Placed* a, const Placed* b) { return page_of(*a) < page_of(*b); });

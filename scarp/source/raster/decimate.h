@@ -3,7 +3,7 @@
 //
 //   n = ceil(N / k)   samples on a side of N; sample i is the average of the valid ones in the block of columns
 //                     [i N / n, (i + 1) N / n), rounded down, so that it is displaced by less than half a column
-//   k                 the smallest whole number whose result keeps to the caller's limit
+//   k                 the smallest whole number whose result is within the limit of the caller
 //   a hole            where less than half of a block is valid
 //   the extremes      the blocks with the lowest and the highest sample take exactly these values, so that relief,
 //                     colour ramps and legends stay true
@@ -27,8 +27,8 @@ struct DecimatedSize {
   int block = 1;  ///< k
 };
 
-/// Returns the size with the smallest k that has at most `most` (>= 4) samples. Sides of two or more samples keep two,
-/// so that there are cells between them.
+/// Returns the size with the smallest k that has at most `most` (>= 4) samples. Sides of two or more samples keep at
+/// least two, so that the field has cells.
 DecimatedSize decimated_size(int cols, int rows, std::int64_t most);
 
 /// The lowest and highest of a set of samples; low > high if it is empty.
