@@ -5,7 +5,7 @@
 //
 //   // Caller-owned heights, without a copy; builds the pyramid.
 //   auto terrain = scarp::Terrain::view(heights, cols, rows, {.cell_x = 10, .cell_y = 10});
-// scarp::Hit hit = scarp::cast(terrain, ray); // the ray's closest hit
+//   scarp::Hit hit = scarp::cast(terrain, ray);              // the ray's closest hit
 //   bool hidden = scarp::occluded(terrain, ray);             // whether anything blocks it
 //   scarp::cast(terrain, rays, hits);                        // a batch, on all threads
 //   scarp::cast_from(terrain, camera, answers);              // all rays of a camera or a scanner

@@ -2,7 +2,7 @@
 // Voxel grids in device memory, each with the accelerator of its march. Shaders read them through voxel_buffers.glsl.h,
 // from one address:
 //
-// const DeviceVoxels voxels(device, grids); // grids of a field; objects that share a grid share its memory
+//   const DeviceVoxels voxels(device, grids);          // grids of a field; objects that share a grid share its memory
 //   push.grids = voxels.address();                     // Address in the push constants of the shader
 //   VoxelGrids(push.grids).grids[i] ... voxel_mask(...) // in GLSL
 //

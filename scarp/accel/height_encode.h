@@ -12,11 +12,11 @@ namespace scarp {
 
 constexpr double kTopCode = 65535;
 
-// Encodes outwards. Floats are first moved outwards by kClear of a step, more than all rounding errors. Let M be the
-// greatest magnitude that codes cover: steps are at least kLeastStep * M, which even adjacent floats do not require. A
-// position, at most 2^16 steps, has a relative error of 4 * 2^-53; the height of a code has an error of 2^-51 M, which
-// is 2^-11 steps. All operations are in double and without branches, so that compilers vectorise them. Blocks of holes
-// have -infinity here, and the lowest code.
+// Encodes outwards. Floats are first moved outwards by the fraction kClear of a step, which exceeds all rounding
+// errors. Let M be the greatest magnitude that codes cover: steps are at least kLeastStep * M, which even adjacent
+// floats do not require. A position, at most 2^16 steps, has a relative error of 4 * 2^-53; the height of a code has an
+// error of 2^-51 M, which is 2^-11 steps. All operations are in double and without branches, so that compilers
+// vectorise them. Blocks of holes have -infinity here, and the lowest code.
 constexpr double kClear = 0x1p-8, kLeastStep = 0x1p-40;
 
 template <class T>

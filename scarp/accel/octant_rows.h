@@ -2,7 +2,7 @@
 // Builds octant cubes row by row, in place, in byte vectors.
 //
 //   along x   distance to the next solid voxel of the same row (voxel_nearness.h)
-// along y in each slab: the minimum of that and 1 + the row ahead: its voxel and the next one along x
+//   along y   in each slab: the minimum of that and 1 + the row ahead: its voxel and the next one along x
 //   along z   the minimum of that and 1 + the slab ahead: its row, the row ahead of that, and the next voxels along x
 //
 // This is exact: values of the slab ahead differ by at most 1 between adjacent voxels, so they need not spread along x

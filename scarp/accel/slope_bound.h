@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maximum slope of a height field: the Lipschitz constant of its height between points without a hole between them.
+// Maximum slope of a height field: the Lipschitz constant of its height between points that no hole separates.
 #pragma once
 
 #include "scarp/field/height_field.h"

@@ -3,7 +3,7 @@
 //
 //   along x   nearness of the nearest solid voxel of the same row (voxel_nearness.h), over nine rows for boxes of solid
 //             voxels dilated by one; the square of that distance
-// along y minimum over the rows of a slab of their square plus the square of their distance, searched outwards
+//   along y   minimum over the rows of a slab of their square plus the square of their distance, searched outwards
 //   along z   the same with slabs; the root, rounded down
 //
 // Rows and slabs without a solid voxel are skipped. A search ends when the squared distance of the next row, plus the

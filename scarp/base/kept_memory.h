@@ -24,7 +24,7 @@ std::vector<std::vector<T>>& kept_memory() {
   return kept;
 }
 
-/// Gives a vector without memory the memory of one that this thread keeps for its type.
+/// If the vector has no memory, gives it memory that this thread keeps for its type.
 template <class T>
 void borrow(std::vector<T>& vector) {
   auto& kept = kept_memory<T>();

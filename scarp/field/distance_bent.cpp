@@ -11,8 +11,8 @@ namespace {
 
 double sign_of(double x) { return x < 0 ? -1 : 1; }
 
-// Curvature bound, in a ball of radius r, of the distance to a point, line or core that is `away`: at most 1 /
-// distance.
+// Bounds, in a ball of radius r, the curvature of the distance to a point, line or core at distance `away`: the
+// curvature is at most 1 / distance.
 double bend_of(double away, double r) { return away > r ? 1 / (away - r) : kCreased; }
 
 // Direction away from the z axis; arbitrary on the axis.

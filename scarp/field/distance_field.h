@@ -45,7 +45,7 @@ class DistanceField {
   double value(const dvec3& position) const;
   /// Returns a bound of the rounding error of value(), in metres, for positions up to `reach` metres from the origin.
   double rounding(double reach) const;
-  /// Returns the material of the solid whose surface is nearest by value(); 0 if that solid has no material.
+  /// Returns the material of the solid whose surface is nearest according to value(); 0 if that solid has no material.
   int material(const dvec3& position) const;
 
   /// Returns the analytic gradient of value(). At a crease it is the gradient of one side. Where it is undefined (at

@@ -240,7 +240,7 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
     col -= std::floor(col / cols) * cols;
     row -= std::floor(row / rows) * rows;
   }
-  // NaN counts as outside; positions beside the border by no more than rounding count as on it.
+  // NaN counts as outside; positions within rounding of the border count as on it.
   const auto inside = [](double position, int cells) {
     const double off = rounding_of_line(position, cells);
     return position >= -off && position <= cells + off;

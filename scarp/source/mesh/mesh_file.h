@@ -14,7 +14,7 @@
 
 namespace scarp {
 
-/// Colour of surfaces without a colour, in linear light.
+/// Default colour of surfaces, in linear light.
 constexpr vec3 kMeshGrey(0.6f);
 
 /// A vertex of a triangle.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"local", "map", "lonlat"};
 
-// Number of points that PROJ transforms at a time: some kilobytes.
+// Number of points per PROJ call: some kilobytes of coordinates.
 constexpr std::size_t kBatch = 1024;
 
 std::optional<std::size_t> apply(OGRCoordinateTransformation& transform, std::span<dvec3> points) {

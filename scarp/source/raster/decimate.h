@@ -3,7 +3,7 @@
 //
 //   n = ceil(N / k)   samples on a side of N; sample i is the average of the valid ones in the block of columns
 //                     [i N / n, (i + 1) N / n), rounded down, so that it is displaced by less than half a column
-//   k                 the smallest whole number whose result is within the limit of the caller
+//   k                 the smallest whole number whose result is within the caller's limit
 //   a hole            where less than half of a block is valid
 //   the extremes      the blocks with the lowest and the highest sample take exactly these values, so that relief,
 //                     colour ramps and legends stay true

@@ -80,7 +80,7 @@ void write_computed_dem(const std::string& path, const ComputedDem& settings, co
     throw Error(fmt::format("terrain: sample spacing of {} m (must be above 0 and at most {} m)", settings.cell_m,
                             kLargestProceduralCell));
   GdalSession session;
-  // Declared before the dataset, so that the file is closed before it is deleted on every exit.
+  // Declared before the dataset, so that on every exit the file is closed before it is deleted.
   ReplaceFile output(path);
   GDALDatasetUniquePtr dataset = create(path, output.temporary_path(), settings, session);
   GDALRasterBand& band = *dataset->GetRasterBand(1);

@@ -5,7 +5,7 @@
 //   # comment                     lines "value R G B [A]" in any order; separators are blanks, tabs, commas and colons
 //   0      46 154  88             components are 0..255, or one name: white, black, red, green, blue, yellow, magenta,
 //   900,251,255,128,255           cyan, aqua, grey, gray, orange, brown, purple, violet, indigo
-// 50% white values are metres or percent of the range, the same in all lines
+//   50%    white                  values are metres or percent of the range, the same in all lines
 //   nv     0 0 0 0                nv and default (holes), and the line INTERPOLATION:INTERPOLATED of QGIS are skipped
 //
 // Colours between two values are interpolated in sRGB; two lines with the same value make a step. Opacity is ignored.

@@ -2,7 +2,7 @@
 // Colour ramps from files: .cpt of the Generic Mapping Tools, and images one row high.
 //
 //   .cpt    lines "low colour high colour", ascending and without gaps; a colour is R G B (0..255), R/G/B, or a grey.
-// Colours between low and high are interpolated. Lines starting with B, F or N (below, above, no data) and
+//           Colours between low and high are interpolated. Lines starting with B, F or N (below, above, no data) and
 //           text after a ';' are ignored. "# HINGE = 0" in a file from -1 to 1: both halves are stretched, the hinge
 //           stays.
 //   row     a PNG of N x 1 pixels (only the first row of a higher image is used): N colours, evenly spaced from the

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Voxels from OpenVDB (.vdb) and NanoVDB (.nvdb) files.
 //
-//   level set (float, double)   solid where the number is negative, inside of the narrow band as well
+//   level set (float, double)   solid where the value is negative, including the interior that the narrow band encloses
 //   bool or mask grid           solid where active
 //   Vec3 grid                   colours in linear light. Alone in a file, it is solid where active
 //
@@ -52,7 +52,7 @@ constexpr int kMaxVdbSide = 16384;
 
 /// Returns whether the extension is .vdb or .nvdb.
 bool is_vdb_path(std::string_view path);
-/// Throws Error naming the file: not readable, no grid, none of these kinds, voxels that are not cubes, more than
+/// Throws Error naming the file: not readable, no grid, no grid of these kinds, voxels that are not cubes, more than
 /// kMaxVdbSide voxels along an axis, or Scarp was built without OpenVDB.
 VdbVoxels read_vdb(const std::string& path);
 /// Writes a .vdb file with a bool grid, `solid`. Colours are not written. Throws Error naming the file: it cannot be
