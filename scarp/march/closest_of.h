@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// The point of a triangle closest to p, by the region of its plane in which p is.
+/// Returns the point of a triangle closest to p, by the Voronoi region of the triangle that contains p.
 inline dvec3 closest_of_triangle(const dvec3& p, const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   const dvec3 ab = b - a, ac = c - a, ap = p - a;
@@ -31,13 +31,14 @@ inline dvec3 closest_of_triangle(const dvec3& p, const Triangle& triangle) {
   return a + vb / sum * ab + vc / sum * ac;
 }
 
-/// Two points, one of each.
+/// Two points, one on each shape.
 struct ClosestPair {
   dvec3 first{0.0}, second{0.0};
   double square() const { return dot(first - second, first - second); }
 };
 
-/// The closest points of the segments p + s d and q + t e, s and t from 0 to 1. Either may be a point.
+/// Returns the closest points of the segments p + s d and q + t e, with s and t from 0 to 1. Either segment may be a
+/// point.
 inline ClosestPair closest_of_segments(const dvec3& p, const dvec3& d, const dvec3& q, const dvec3& e) {
   const dvec3 r = p - q, n = cross(d, e);
   const double dd = dot(d, d), ee = dot(e, e), de = dot(d, e), dr = dot(d, r), er = dot(e, r);
@@ -53,7 +54,7 @@ inline ClosestPair closest_of_segments(const dvec3& p, const dvec3& d, const dve
   return {p + s * d, q + t * e};
 }
 
-/// The closest points of a segment, p + s d, and of a triangle; the same point twice if they meet.
+/// Returns the closest points of a segment, p + s d, and a triangle; both are the same point if they intersect.
 inline ClosestPair closest_of_segment_and_triangle(const dvec3& p, const dvec3& d, const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   const dvec3 n = cross(b - a, c - a);

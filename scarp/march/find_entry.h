@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Looks up a row of a table of marches by its name.
+// Looks up a march in a table by its name.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a marching technique promises.
+// The guarantees of marching techniques.
 #pragma once
 
 #include <string_view>
 
 namespace scarp {
 
-/// The promise of a march about the surface that the field defines.
+/// What a march guarantees about the surface that the field defines.
 enum class Guarantee {
   exact,         ///< the first hit, never lost, within the rounding that doc/dev/numerics.md derives
   conservative,  ///< never passes through the surface; may stop before it or give up (exhausted)

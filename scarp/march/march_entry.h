@@ -18,9 +18,9 @@ struct MarchEntry {
   std::string_view name{};  ///< as typed: "max-mip"
   Guarantee guarantee = Guarantee::approximate;
   Sampling sampling = Sampling::none;
-  bool simd = false;               ///< answers batches in vectors
+  bool simd = false;               ///< answers batches with vector code
   bool gpu = false;                ///< runs on Vulkan devices
-  std::string_view parameters{};   ///< its settings with their defaults, for people
+  std::string_view parameters{};   ///< its settings with their defaults, in readable form
   std::string_view description{};  ///< one line
 };
 

@@ -21,7 +21,7 @@ struct NaiveSettings {
 
 /// `fixed-step`: one sample every `step`; hits at the first sample that is no longer above the ground.
 struct FixedStepSettings {
-  double step = 0.5;        ///< cells, their shorter side, > 0
+  double step = 0.5;        ///< in units of a cell's shorter side, > 0
   bool interpolate = true;  ///< whether Refinement::none means `secant` here
   int max_steps = 16384;    ///< >= 1
 
@@ -61,7 +61,7 @@ struct LipschitzLocalSettings {
   bool operator==(const LipschitzLocalSettings&) const = default;
 };
 
-/// `sphere-trace`: t += distance, closes in on the surface by bounds of segments.
+/// `sphere-trace`: t += distance, closes in on the surface by segment bounds.
 struct SphereTraceSettings {
   double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps = 1024;     ///< >= 1
@@ -85,7 +85,7 @@ Refinement find_refinement(std::string_view name);
 /// Settings that naive, fixed-step and relaxed share.
 struct SamplingSettings {
   Refinement refinement = Refinement::none;
-  int halvings = 24;  ///< of `bisect`, 1..60
+  int halvings = 24;  ///< for `bisect`, 1..60
   /// Height in metres that counts as a hit for naive and relaxed at any distance, >= 0. Naive rays that start on the
   /// surface start within it: they hit only where they are deeper below ground.
   double tolerance = 0;
@@ -93,7 +93,7 @@ struct SamplingSettings {
   bool operator==(const SamplingSettings&) const = default;
 };
 
-/// Settings that apply only to marches over terrain functions, which have neither cells nor an end.
+/// Settings that apply only to marches over terrain functions, which have neither cells nor borders.
 struct FunctionMarchSettings {
   double reach = std::numeric_limits<double>::infinity();  ///< all marches: maximum length of a ray in metres, > 0
   double step = 5;                                         ///< fixed-step: step in metres, in place of cells, > 0

@@ -22,8 +22,8 @@ constexpr std::size_t kRayNumbers = 8;
 static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(double) &&
               offsetof(Ray, t_min) == 6 * sizeof(double) && offsetof(Ray, t_max) == 7 * sizeof(double));
 
-// The numbers of ray(0) to ray(count - 1), each into a separate array. Vectors of four doubles are read for each ray
-// and turned.
+// Stores the numbers of ray(0) to ray(count - 1), each in a separate array. Reads vectors of four doubles per ray and
+// transposes them.
 template <class RayAt>
 HWY_INLINE void load_ray_numbers(const RayAt& ray, std::size_t count, double* const (&to)[kRayNumbers]) {
   const auto numbers_of = [&](std::size_t i) { return reinterpret_cast<const double*>(&ray(i)); };

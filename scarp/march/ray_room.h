@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ray::room: a distance in metres in the 16 bits that a Ray has left, the upper ones of a double.
+// Ray::room: a distance in metres in the 16 spare bits of a Ray, which are the upper bits of a double.
 #pragma once
 
 #include <bit>
@@ -11,13 +11,13 @@ namespace scarp {
 
 constexpr int kRoomShift = 48;
 
-/// The distance that Ray::room stands for; exact.
+/// Returns the distance that Ray::room encodes; exact.
 inline double room_in_metres(std::uint16_t room) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(room) << kRoomShift);
 }
 
-/// Ray::room for a distance of at least 0 metres: larger by a sixteenth at most. 0 for 0 and for distances below the
-/// smallest normal double; a room beyond all doubles is the largest one.
+/// Returns Ray::room for a distance of at least 0 metres, rounded up by at most a sixteenth. 0 for 0 and for distances
+/// below the smallest normal double; distances too large for the format become its largest value.
 inline std::uint16_t ray_room(double metres) {
   if (!(metres >= std::numeric_limits<double>::min())) return 0;
   metres = std::fmin(metres, 0x1.fp1023);

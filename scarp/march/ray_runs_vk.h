@@ -19,13 +19,13 @@
 
 namespace scarp {
 
-/// Throws Error unless a batch has as many results and costs (or none) as rays.
+/// Throws Error unless a batch has one result per ray, and one cost per ray or no costs.
 inline void require_room(std::size_t rays, std::size_t hits, std::size_t costs) {
   if (rays != hits || (costs != 0 && rays != costs))
     throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays, hits, costs));
 }
 
-/// Names of the rows of a table of device marches, separated by commas.
+/// Returns the names in a table of device marches, separated by commas.
 template <class Table>
 std::string names_of(const Table& table) {
   std::string names;
@@ -97,8 +97,8 @@ class RaySlices {
   }
 };
 
-/// Rays whose marches, if interrupted, are `under_way`: their state is returned with the answer and sent again with the
-/// ray (`go_on`).
+/// Runs of rays whose interrupted marches are `under_way`: their state is returned with the answer and sent again with
+/// the ray (`go_on`).
 template <class Kind>
 class RayRuns : public RaySlices<Kind> {
  public:

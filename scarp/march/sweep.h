@@ -39,8 +39,8 @@ std::optional<double> sweep_time(const Capsule& capsule, const dvec3& motion, co
 /// Returns the contact with a triangle that is touched at t.
 Contact contact_at(const Capsule& capsule, const dvec3& motion, const Triangle& triangle, double t);
 
-/// Returns the fraction of the motion from which the capsule may touch a box; infinity if it does not up to `last`. Not
-/// later than the first contact.
+/// Returns the fraction of the motion from which the capsule may touch a box; infinity if it does not until `last`. It
+/// is never later than the first contact.
 double sweep_bound(const Capsule& capsule, const dvec3& motion, const dvec3& low, const dvec3& high, double last);
 
 }  // namespace scarp

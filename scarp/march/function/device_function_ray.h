@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Converts rays over terrain functions and against distance fields to the form of the marches in single precision
-// (march/ray_states.glsl.h), and their results back.
+// Converts rays over terrain functions and against distance fields to the form that the single-precision marches use
+// (march/ray_states.glsl.h), and converts results back.
 //
 //   Ray, double ──▶ clipped to where the field can be hit, two floats per number ──▶ march in floats ──▶ Hit
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace scarp {
 
-/// A ray on its way to a march in single precision.
+/// A ray prepared for a single-precision march.
 struct DeviceFunctionRay {
   glsl::ScarpFunctionRay ray{};
   double begin = 0;      ///< t = begin + time * per_time
@@ -24,13 +24,13 @@ struct DeviceFunctionRay {
 DeviceFunctionRay device_function_ray(const HeightFunction& function, const SingleRounding& rounding, const Ray& ray,
                                       FunctionUse use, double reach);
 
-/// The same against a distance field: clipped to its box. `rounding` of the ray is the one at its start.
+/// The same against a distance field: clipped to its box. The ray's `rounding` is evaluated at its start.
 DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingleRounding& rounding, const Ray& ray);
-/// Growth of the error of values per metre of such a ray: of the values themselves, and of positions rounded to floats,
-/// which change values by a metre per metre.
+/// Error growth per metre along such a ray: the evaluation error plus the error from rounding positions to float
+/// (values change by at most 1 m per m).
 double shape_ray_growth(const ShapeSingleRounding& rounding);
 
-/// Rays of RayRuns (ray_runs_vk.h) whose states travel with them.
+/// Rays for RayRuns (ray_runs_vk.h) that carry their own state.
 struct FunctionRays {
   using Prepared = DeviceFunctionRay;
   using Ray = glsl::ScarpFunctionRay;
@@ -38,7 +38,7 @@ struct FunctionRays {
   static Hit none() { return glsl::scarp_function_miss(); }
   static bool under_way(const Hit& hit) { return hit.status == glsl::kScarpFunctionUnderWay; }
   static void go_on(Ray& ray, const Hit& hit) { ray.state = hit.state; }
-  /// The result of a run, with the costs of earlier runs.
+  /// Replaces `hit` by the result of a run, and adds the costs of earlier runs.
   static void add(const Hit& answer, Hit& hit) {
     const std::uint32_t bounds = hit.bounds, heights = hit.heights;
     hit = answer;

@@ -6,7 +6,7 @@
 // shares with the marches only the settings (function_node.h), the lattice's integers and the bounds of noise (noise.h)
 // and, for damped fractals, the gradient of noise at a point.
 //
-// Guarantee: a proof, including rounding. Cost: some thousand evaluations per ray. Source: R. E. Moore, "Interval
+// Guarantee: a proof, including rounding. Cost: thousands of evaluations per ray. Source: R. E. Moore, "Interval
 // analysis", 1966; for rays D. P. Mitchell, "Robust ray intersection with interval arithmetic", Graphics Interface
 // 1990.
 #pragma once
@@ -30,7 +30,7 @@ struct FunctionJudgement {
   double crossed_by;   ///< t, for a crossing; after an undecided point it may be far from clear_until
 };
 
-/// Judges a ray. It must be `free` and t_max finite; only its part within +-kMostMetres in x, y and z is judged.
+/// Judges a ray, which must be `free` with a finite t_max; only its part within +-kMostMetres in x, y and z is judged.
 FunctionJudgement judge_function(const Function& function, const Ray& ray, FunctionUse use = FunctionUse::march,
                                  int most_evaluations = 1 << 20);
 

@@ -22,7 +22,7 @@ inline Position operator+(const Position& a, const Position& b) {
 }
 inline Position operator*(const Interval& k, const Position& a) { return {k * a.base, k * a.rate, k * a.more}; }
 
-/// Finds the first place between t_enter and t_exit where `clearance`, evaluated over intervals of t, is not positive:
+/// Finds the first point between t_enter and t_exit where `clearance`, evaluated over intervals of t, is not positive:
 /// halves intervals down to 1e-9 of the whole, leftmost first.
 template <class Clearance>
 FunctionJudgement first_crossing(double t_enter, double t_exit, double t_max, int most_evaluations,

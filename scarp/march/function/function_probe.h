@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The probe of terrain functions: the interface of a ray over one to naive, fixed-step, relaxed and lipschitz. The
-// probe of height fields is height/height_probe.h. A function has no cells and no holes: Hit::cell stays empty. The ray
-// is followed within the height range of the ground and within kFunctionReach.
+// The probe of terrain functions: the interface through which naive, fixed-step, relaxed and lipschitz sample a ray
+// over one. The probe of height fields is height/height_probe.h. A function has no cells and no holes: Hit::cell stays
+// empty. The ray is followed within the height range of the ground and within kFunctionReach.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class FunctionProbe {
   struct Sample {
     static constexpr bool valid = true;
     double clearance;  ///< vertical distance of the ray above the ground, in the unit of t
-    double metres;     ///< the same
+    double metres;     ///< the same, in metres
   };
   /// t per unit of Sample::clearance.
   static constexpr double per_clearance() { return 1; }
@@ -44,16 +44,17 @@ class FunctionProbe {
   /// The first step off the surface: a fraction of the exit distance, as there are no cells. lipschitz_local.h needs
   /// none.
   double blind_step() const { return 0x1p-10 * (t_exit - t_enter); }
-  /// Minimum step of a ray below the ground; it may skip shorter stretches above it. At least what t can resolve.
+  /// Minimum step of a ray below the ground, which may skip shorter stretches above the ground. At least what t can
+  /// resolve.
   double least_step_under(double t) const { return std::max(0x1p-12 * blind_step(), 0x1p-50 * std::abs(t)); }
   /// fixed-step's step, and its minimum as a fraction of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.function.step * per_metre_; }
   double stride_share(const MarchSettings& settings) const { return settings.function.step_share; }
   static constexpr bool solid() { return false; }
 
-  // Rounding is counted.
+  // Allows for rounding.
   bool under_ground(const Sample& sample) const { return sample.metres < -ray_.rounding(); }
-  /// A step that cannot reach the surface if its slope is within what `shrink` allows.
+  /// Returns a step that cannot reach the surface if the slope is within the bound that `shrink` assumes.
   double free_time(const Sample& sample, double shrink) const {
     const double metres = under_ground(sample) ? -sample.metres : sample.metres;
     return (metres - ray_.rounding()) * shrink / ray_.metres_per_t();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays over terrain functions on a Vulkan device: queries_vk.h for functions, all marches of
-// function_marches().
+// Batches of rays over terrain functions on a Vulkan device: the counterpart of queries_vk.h for functions, with all
+// marches of function_marches().
 //
 //   rays, double ──▶ clipped, two floats per number ──▶ device, a slice at a time ──▶ answers ──▶ hits, double
 //
@@ -32,7 +32,7 @@ struct DeviceFunctionTarget {
 /// One march, ready to run over any function of a device. Not thread-safe.
 class DeviceFunctionQueries {
  public:
-  /// `march` is a row of function_marches(); of the settings only `rays_at_once` applies. Throws Error if the march
+  /// `march` is a row of function_marches(); only `rays_at_once` of the settings applies. Throws Error if the march
   /// does not run on devices, a setting is out of range, or the device lacks memory.
   explicit DeviceFunctionQueries(const Device& device,
                                  const FunctionMarchEntry& march = find_function_march("lipschitz-local"),
@@ -41,17 +41,18 @@ class DeviceFunctionQueries {
   DeviceFunctionQueries& operator=(DeviceFunctionQueries&&) noexcept;
   ~DeviceFunctionQueries();
 
-  /// Applies to later calls. Throws Error for a setting out of range.
+  /// Sets the march settings of later calls. Throws Error if a setting is out of range.
   void set_march_settings(const MarchSettings& march_settings);
 
-  /// hits[i] answers rays[i], which must be valid (queries.h); steps[i], unless empty, is its cost: bounds and heights.
-  /// Throws Error if spans differ in length, or the device is lost.
+  /// Sets hits[i] to the closest hit of rays[i], which must be valid (queries.h), and steps[i], unless `steps` is
+  /// empty, to its cost: the number of bounds and heights. Throws Error if spans differ in length, or the device is
+  /// lost.
   void closest_hits(const DeviceFunctionTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                     std::span<std::uint32_t> steps = {});
-  /// blocked[i] is 1 if closest_hits would report a hit, otherwise 0.
+  /// Sets blocked[i] to 1 if closest_hits() would return a hit, else to 0.
   void occluded(const DeviceFunctionTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked);
 
-  /// One for each slice of the last call.
+  /// Returns the times of the last call, one per slice.
   const std::vector<PassTime>& passes() const;
 
  private:
@@ -59,7 +60,7 @@ class DeviceFunctionQueries {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The shaders of these marches, as specialised for a fractal and for a function of all operations.
+/// The shaders of these marches, as specialised for a fractal and for a function with all operations.
 std::vector<ShaderProgram> function_query_shaders();
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The marches that sample (march/sampling/) over terrain functions: the closest hit that each finds within
+// The sampling marches (march/sampling/) over terrain functions. Each returns the closest hit that it finds within
 // settings.function.reach. `stats` is overwritten unless null.
 #pragma once
 
@@ -23,7 +23,8 @@ Hit march_fixed_step(const HeightFunction& function, const Ray& ray, const March
 Hit march_relaxed(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
 
-/// Includes rounding. Rays that start on the surface first step by 2^-10 of the exit distance. Uses settings.lipschitz.
+/// The guarantee includes rounding. Rays that start on the surface first step by 2^-10 of the exit distance. Uses
+/// settings.lipschitz.
 Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// noise.cpp in vectors: the same operations in the same order, so bit-identical, with one position per lane. Compiled
-// once per instruction set.
+// noise.cpp in vectors: the same operations in the same order, so results are bit-identical, with one position per
+// lane. Compiled once per instruction set.
 #if defined(SCARP_MARCH_FUNCTION_SIMD_NOISE_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_FUNCTION_SIMD_NOISE_H
 #undef SCARP_MARCH_FUNCTION_SIMD_NOISE_H
@@ -37,9 +37,9 @@ struct VNoise {
   V n, x, y, xx, xy, yy;
 };
 
-// Hashes are in the lower halves of 64 bits.
+// Hashes are in the lower halves of 64-bit lanes.
 HWY_INLINE VU low_half(VU x) { return hn::And(x, hn::Set(du, 0xffffffffu)); }
-// In 64 bits.
+// Computed in 64 bits.
 HWY_INLINE VU product(VU x, std::uint32_t k) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::Set(du, hn::GetLane(x) * k);

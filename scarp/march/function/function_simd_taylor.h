@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Terrain function instructions in vectors, a segment per lane: on plain numbers, on the Taylor models of
 // function_taylor.h, and on these with their derivative along the segment (function_jet.h). The same operations in the
-// same order, so bit-identical; where scalar code branches, lanes are blended. Rare instructions with many branches run
-// as scalar code, lane by lane. Compiled once per instruction set.
+// same order, so results are bit-identical; where scalar code branches, lanes are blended. Rare instructions with many
+// branches run as scalar code, lane by lane. Compiled once per instruction set.
 #if defined(SCARP_MARCH_FUNCTION_SIMD_TAYLOR_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_FUNCTION_SIMD_TAYLOR_H
 #undef SCARP_MARCH_FUNCTION_SIMD_TAYLOR_H
@@ -295,7 +295,7 @@ HWY_INLINE VJ reciprocal(const VJ& a) {
   return {v, multiply(combine(-1, square(v), 0, v, 0), a.d)};
 }
 
-// --- through the scalar text, lane by lane ---------------------------------------------------------------------------
+// --- by the scalar code, lane by lane --------------------------------------------------------------------------------
 
 template <class Number>
 struct Spilled;

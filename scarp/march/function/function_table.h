@@ -18,8 +18,8 @@ namespace scarp {
 using FunctionMarch = Hit (*)(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
                               MarchStats* stats, FunctionUse use);
 
-/// The same for many rays, on the calling thread; the answers are bit for bit those for single rays. `steps`, unless
-/// empty, receives the cost of each ray: its steps and cell tests. The spans have the same length.
+/// The same for many rays, on the calling thread; the answers are bit-identical to those for single rays. `steps`,
+/// unless empty, receives the cost of each ray: its steps and cell tests. The spans have the same length.
 using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
                                     const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use);
 
@@ -27,7 +27,7 @@ using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<co
 using FunctionMarchFiltered = Hit (*)(const HeightFunction& function, const HeightFunction& below, const Ray& ray,
                                       const HitFilter& accept, const MarchSettings& settings, MarchStats* stats);
 
-/// A row. Only `filtered` may be null: a technique without its own batch query gets one based on `cpu`.
+/// A row of the table. Only `filtered` may be null: a technique without its own batch query gets one based on `cpu`.
 struct FunctionMarchEntry : MarchEntry {
   FunctionMarch cpu = nullptr;         ///< scalar C++
   FunctionMarchBatch batch = nullptr;  ///< in vectors if `simd`

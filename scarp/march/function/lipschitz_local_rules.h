@@ -6,8 +6,8 @@
 //          \   `-----x----o----- \----.        march's own rule
 //           rejected ^   out      ^ next hit
 //
-// Guarantee: that of lipschitz_local.h for each part. Two hits within its tolerance may be one for the filter, or one
-// may be passed to it twice.
+// Guarantee: that of lipschitz_local.h for each part. Two hits within its tolerance may reach the filter as one, or one
+// hit may reach it twice.
 #pragma once
 
 #include "scarp/march/function/lipschitz_local.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The march of lipschitz_local.h as a walk that issues queries: for bounds along a segment, for its rate of height
-// gain, for a height. The caller answers them: lipschitz_local.cpp one ray after the other, lipschitz_local_simd.cpp
+// The march of lipschitz_local.h as a walk that issues queries: for bounds along a segment, for the rate of height gain
+// there, or for a height. The caller answers them: lipschitz_local.cpp one ray after another, lipschitz_local_simd.cpp
 // many walks at once, in vectors.
 //
 //   LocalWalk walk(ray, settings);
@@ -80,12 +80,12 @@ class LocalWalk {
     next_segment();
   }
 
-  // From the surface: until when the ray provably gains height; a hit if it loses height at once.
+  // From the surface: finds until when the ray provably gains height; a hit if it loses height at once.
   void answer_gain(dvec2 slope) {
     ++stats_.steps;
     const double least = ray().direction.z - slope.y, most = ray().direction.z - slope.x;
     if (!(least > 0) && most < 0) return end(r_.hit(t_));
-    // Neither gains nor loses: along the ground, as far as the bounds show.
+    // The ray provably neither gains nor loses height: it may run along the ground.
     if (least > 0 || length_ <= shortest_) {
       t_ += length_;
       length_ *= kLeft;
@@ -136,14 +136,14 @@ class LocalWalk {
  private:
   enum class State : std::uint8_t { rounding, leaving, beginning, walking, last, above_end, secants };
 
-  // Shortest segment, as a fraction of the ray's part over the ground, for any tolerance: a ray whose bounds do not
-  // separate it from the ground there touches it.
+  // Shortest segment, as a fraction of the ray's part over the ground, for any tolerance: a ray that the bounds over
+  // such a segment do not separate from the ground touches it.
   static constexpr double kShortest = 0x1p-40;
   // Lines are followed to slightly before they intersect the ray, by more than their rounding.
   static constexpr double kShort = 1 - 0x1p-20;
-  // Length factor of the next segment after a free one, and after one that is not. Rising rays leave the ground: their
-  // segments are at least this factor times the distance known to be free. Among the values tried (1.1 to 4, 0.15 to
-  // 0.6, 0 to 5 times) these take the fewest bounds over fBm; doubling takes a fifth more.
+  // Length factors of the next segment after a free one, and after one that is not free. Rising rays leave the ground:
+  // their segments are at least this factor times the distance known to be free. Among the values tried (1.1 to 4, 0.15
+  // to 0.6, 0 to 5 times) these take the fewest bounds over fBm; doubling takes a fifth more.
   static constexpr double kGrowth = 1.3, kShrink = 0.5;
   static constexpr double kRisingGrowth = 1.5, kRisingClear = 3;
   // The same for segments that leave the surface, and for the first one after them.
@@ -194,8 +194,8 @@ class LocalWalk {
     end_ = std::min(t_ + length_, r_.t_exit);
     ask(Question::bound, State::walking, t_, end_);
   }
-  // The crossing between t_, above the ground, and end_, on or below it: by secants that weigh the retained end less
-  // and less ("Illinois"), until the clearance is rounding error or doubles end.
+  // Finds the crossing between t_, above the ground, and end_, on or below it: by secants that weigh the retained end
+  // less and less ("Illinois"), until the clearance is within rounding error or no double is left in between.
   void next_secant() {
     const double t = t_ + (end_ - t_) * (h0_ / (h0_ - h1_));
     if (secants_ == kMostSecants || !(t > t_ && t < end_)) return end(r_.hit(end_));

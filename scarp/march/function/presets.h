@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: MIT
-// Marches of well-known terrain shaders: a technique of the table and its numbers. Only numbers; the shaders' code is
-// not included. Lengths are metres; for a shader with other units, the text states the conversion. `scarp-bench
-// functions
-// --presets` measures what each of them misses; doc/user/from-height-to-distance.md shows it.
+// SPDX-License-Identifier: MIT The marches of well-known terrain shaders, each as a technique from the table and its
+// numbers. The shaders' code is not included. Lengths are in metres; for a shader with other units, `numbers` states
+// the conversion. `scarp-bench functions --presets` measures what each preset misses;
+// doc/user/from-height-to-distance.md shows the results.
 #pragma once
 
 #include <span>
@@ -15,10 +14,10 @@ namespace scarp {
 /// A named march with its settings and source.
 struct MarchPreset {
   std::string_view name;
-  std::string_view march;     ///< of function_marches(); height_marches() has it, too
+  std::string_view march;     ///< name in function_marches() and height_marches()
   MarchSettings settings;     ///< defaults, except for the shader's own
   std::string_view numbers;   ///< the shader's numbers, one line
-  std::string_view left_out;  ///< other features of its march, one line; empty: none
+  std::string_view left_out;  ///< features of its march that are left out, one line; empty: none
   std::string_view source;    ///< author, title, year
 };
 

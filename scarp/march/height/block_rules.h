@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rules of `max-mip` over blocks: which blocks a ray passes, where it may touch ground on the way, and when any hit
-// is certain without finding it.
+// The rules of `max-mip` over blocks: which blocks a ray passes, where it may touch ground on the way, and when an
+// any-hit query is certain of a hit without finding it.
 //
 //   above the maximum: pass         below the minimum: pass, or any hit         otherwise: descend
 //
@@ -59,12 +59,12 @@ class BlockRules : public RimRules<T, Holes, Wraps, ask> {
       const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(block.row) * at.cols + block.col;
       const std::uint16_t maximum = rules_.ground_.maximum(entry);
       if (lowest_code(way) > maximum && (rules_.side_ != Side::below || rules_.risen_above(maximum, t_lowest(way)))) {
-        // There may be ground behind the line that it crossed, with a node that the ray passes.
+        // There may be ground behind the line that the ray crossed, with a node that it passes.
         if (Holes && rules_.begun_ && rules_.side_ != Side::below && !rules_.below_rim_ &&
             passes_node(way.after_x ? rules_.y_.at(way.t_in) : rules_.x_.at(way.t_in), at_node_[!way.after_x]) &&
             rules_.touches(rules_.rim(rules_.grid_ray()).node_time(way.t_in, !way.after_x, way.t_leave)))
           return Verdict::stop;
-        // With holes, the last cell may be one: the side is unknown at the next.
+        // With holes, the last cell may be a hole: the side at the next cell is then unknown.
         if (!Holes) {
           rules_.side_ = Side::above;
         } else if (!cuts_corner(way.through_x, way.t_in, way.t_leave)) {
@@ -114,8 +114,8 @@ class BlockRules : public RimRules<T, Holes, Wraps, ask> {
     }
 
    private:
-    // The ray's height is linear: lowest at one end of the block. Over a block with holes the whole way counts, so that
-    // the end of the range does not decide whether the rim behind its first line is followed.
+    // The ray's height is linear: lowest at one end of the block. Over a block with holes the whole path through it
+    // counts, so that the end of the range does not decide whether the rim behind its first line is followed.
     double t_lowest(const BlockWay& way) const { return falling_ ? Holes ? way.t_leave : way.t_out : way.t_in; }
     double lowest_code(const BlockWay& way) const { return code_z_ + code_dz_ * t_lowest(way); }
 
@@ -127,7 +127,7 @@ class BlockRules : public RimRules<T, Holes, Wraps, ask> {
 
     bool hole(int col, int row, const BlockWay& way) const {
       const bool corner = cuts_corner(way.through_x, way.t_in, way.t_line);
-      // A ray beside no ground keeps its side only if it stays above all ground.
+      // A ray that is not beside ground keeps its side only if it stays above all ground.
       const bool stays = corner && std::min(rules_.ray_height(way.t_in), rules_.ray_height(way.t_line)) > highest_;
       const auto follow = [&] {
         return rules_.follow_rim(way.t_in, way.t_line, {col - 1, col + 1, row - 1, row + 1}, stays);
@@ -181,7 +181,7 @@ class BlockRules : public RimRules<T, Holes, Wraps, ask> {
       if (!(t < t_last)) return false;
       const std::ptrdiff_t row = y_.near(y_.at(t)) >> kProbeLevel, col = x_.near(x_.at(t)) >> kProbeLevel;
       const std::uint16_t minimum = ground_.minimum(at.begin + row * at.cols + col);
-      // The position is rounded, too, and that of the next block equally valid: the bound covers it.
+      // The position is rounded, too, so the next block is equally valid: the bound covers it.
       if (code_z + code_dz * t < minimum && falls_under(minimum, t)) {
         answer_.status = HitStatus::hit;
         return true;

@@ -27,14 +27,14 @@ struct BlockWay {
   double t_line;   ///< when it crosses the first of the two far lines, which may be beyond the grid
   double t_leave;  ///< the same, or when it leaves the grid
   double t_out;    ///< the same, or when its range ends
-  bool through_x;  ///< that line is of constant column; if it crosses both at once, this one is the first
-  bool after_x;    ///< so was the line before, if any
+  bool through_x;  ///< whether that line is of constant column; if the ray crosses both at once, this one is first
+  bool after_x;    ///< whether the previous line was, too, if any
 };
 
 enum class Verdict { pass, descend, stop };
 
-/// Where a traversal starts: in a block of `level` that contains a cell, at t_in. When it ends at the seam of a wrapped
-/// grid: where.
+/// Where a traversal starts: in the block of `level` that contains a cell, at t_in. Receives where the traversal ends
+/// if that is at the seam of a wrapped grid.
 struct BlockStart {
   int level, col, row;
   double t_in;

@@ -40,7 +40,7 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
     cell_end_ = t_out;
     if (strict_) {
       // The ray is in the given start cell; by rounding, surrounding lines may be crossed before it starts, since its
-      // place is clamped and its height must not run ahead.
+      // position is clamped and its height must not run ahead.
       t_in_ = std::max(t_in_, ray_.t_min);
       t_out = std::max(t_out, ray_.t_min);
     }
@@ -50,9 +50,9 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
     return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
   }
 
-  // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
-  // crosses a rim within rounding of it touches it, for either sign: otherwise a ray through the corner of a hole,
-  // above on one side, could be below on the other.
+  // Determines the side of the ray; returns true if that is the answer. There is no previous crossing to agree with. A
+  // ray that crosses a rim within rounding of it touches it, for either sign: otherwise a ray through the corner of a
+  // hole, above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
     const int axis = through_ == Through::point ? -1 : through_ == Through::x_line ? 0 : 1;
@@ -85,7 +85,7 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
       const CellQuadratic f = quadratic(h, t_in_);
       if (!f.dips(length) || !is_hit(f.vertex_value(), t_in_)) return false;
       if (hit_in_cell(f, length)) return true;
-      // All hits: after this one it has risen only beyond rounding, like any ray from below.
+      // All hits: after this one the ray counts as above only if it is by more than rounding, like any ray from below.
       if (out <= rounding_of_clearance(t_out)) side_ = Side::below;
       return false;
     }
@@ -133,8 +133,8 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
   }
 
-  // The bilinear cell in which a ray starts on the surface: f(s) = s (a s + b) is below right after the start, or after
-  // the second root, if anywhere by more than rounding. Returns true if the answer is known.
+  // The bilinear cell in which a ray starts on the surface: f(s) = s (a s + b) is negative right after the start, or
+  // after the second root, if anywhere by more than rounding. Returns true if the answer is known.
   bool falls_from_start(const CellQuadratic& f, double length) {
     const bool dips = f.a > 0 && f.b < 0 && -f.b < 2 * f.a * length;
     const double last = length * (f.a * length + f.b), lowest = dips ? -f.b * f.b / (4 * f.a) : last;
@@ -160,7 +160,7 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
   }
 
   // Records a hit at t_in + s in the current cell, unless the ray ends before; returns true if the query is answered.
-  // `place`: its place in the cell, if not that of the ray.
+  // `place`: its position in the cell, if not that of the ray.
   bool answer(double s, bool wall = false, const dvec2* place = nullptr) {
     const double t = std::max(s > 0 ? std::min(t_in_ + s, cell_end_) : t_in_ + s, ray_.t_min);
     // From the surface, the ray is below it only after t.

@@ -6,8 +6,8 @@
 //   ___    x___           cell is split until it is as flat as two triangles (ground_search.h).
 //      \__/
 //
-// Guarantee: exact for `triangles`, to rounding. For `bilinear` the distance is too large by 2^-20 of the shorter side
-// of a cell at most. Cost: some blocks per level, and the cells around the point.
+// Guarantee: exact for `triangles`, to rounding. For `bilinear` the distance is too large by at most 2^-20 of the
+// shorter side of a cell. Cost: a few blocks per level, and the cells around the point.
 #pragma once
 
 #include <limits>

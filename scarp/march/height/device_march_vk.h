@@ -4,11 +4,11 @@
 //
 //   march.begin(commands, {ground, rays, hits, count}, query);
 //   do commands.run();
-//   while (march.go_on(commands));    rays that the first, lean pass leaves take a second one, and marches of many
+//   while (march.go_on(commands));    rays that the first, lean pass leaves open take a second pass, and long marches
 //   turns
 //                                     several runs of it (vk/loop_turns.glsl.h)
 //
-// DeviceQueries (queries_vk.h) marches rays of the host with it, whole pictures those of their shaders.
+// DeviceQueries (queries_vk.h) uses it for rays from the host, picture renderers for rays made by their shaders.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,11 @@
 
 namespace scarp {
 
-/// Rays on a device, by the addresses of buffers.
+/// Rays on a device, given by buffer addresses.
 struct DeviceRays {
   std::uint64_t ground = 0;  ///< DeviceGround::address()
-  std::uint64_t rays = 0;    ///< glsl::RayBlock, `count` rays in ray_blocks(count) of them
-  std::uint64_t hits = 0;    ///< glsl::HitBlock, room for as many; for any hit only the status is defined
+  std::uint64_t rays = 0;    ///< glsl::RayBlock, ray_blocks(count) of them for `count` rays
+  std::uint64_t hits = 0;    ///< glsl::HitBlock, as many; any-hit queries define only the status
   std::uint32_t count = 0;   ///< 1 to DeviceHeightMarch::kMostRaysAtOnce
 };
 
@@ -47,7 +47,7 @@ struct DeviceRayQuery {
   /// batch_ground_kind() of the ground gives a smaller shader; kBatchAnyGround reads the kind from the ground. With
   /// kScarpStarts among its flags, rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;
-  glsl::ScarpSampling sampling{};  ///< of all marches except max-mip
+  glsl::ScarpSampling sampling{};  ///< for all marches except max-mip
   bool exact_only = false;         ///< without the first pass, see leaves_first_pass()
 };
 
@@ -57,8 +57,8 @@ bool leaves_first_pass(const HeightField& field);
 /// Not thread-safe.
 class DeviceHeightMarch {
  public:
-  /// `turns_at_once`: of a march's loop in one run, 1 to kScarpLoopTurns. Throws Error if the march does not run on
-  /// devices, listing those that do, or if the device lacks memory.
+  /// `turns_at_once`: maximum iterations of a march's loop in one run, 1 to kScarpLoopTurns. Throws Error if the march
+  /// does not run on devices, listing those that do, or if the device lacks memory.
   DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once = glsl::kScarpLoopTurns);
   DeviceHeightMarch(const DeviceHeightMarch&) = delete;
   DeviceHeightMarch& operator=(const DeviceHeightMarch&) = delete;
@@ -66,8 +66,8 @@ class DeviceHeightMarch {
   /// Allocates room for batches of this many rays; begin() does so for a larger batch. Throws Error if the device lacks
   /// memory.
   void reserve(std::uint32_t rays);
-  /// Records the first run of a batch, one batch at a time. It sees what was written before commands.barrier(). Its
-  /// buffers must stay until go_on() returns false.
+  /// Records the first run of a batch, one batch at a time. The run sees what was written before commands.barrier().
+  /// The buffers must stay alive until go_on() returns false.
   void begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query);
   /// Call after commands.run(). Returns false if all rays of the batch are done; otherwise records the next run.
   bool go_on(Commands& commands);

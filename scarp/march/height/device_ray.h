@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Converts rays and fields to the form of the marches in single precision (march/height/ray_frame.glsl.h), and their
-// results back.
+// Converts rays and fields to the form that the single-precision marches use (march/height/ray_frame.glsl.h), and
+// converts results back.
 //
 //   Ray, double, world ──▶ clipped to the field, cell + place, two floats per number ──▶ march in floats ──▶ Hit
 //
@@ -17,7 +17,7 @@ namespace scarp {
 /// valid samples.
 glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyramid);
 
-/// A ray on its way to a march in single precision.
+/// A ray prepared for a single-precision march.
 struct DeviceRay {
   DeviceRay() {
     ray.exit = -1;
@@ -28,8 +28,8 @@ struct DeviceRay {
   double begin = 0;      ///< t = (begin + time) * per_time for a time returned by the march
   double per_time = 1;   ///< a power of two
   bool marches = false;  ///< whether there is anything to march; otherwise `known` is the result
-  /// Whether it stays beside a border or the rim of a hole too long for floats to distinguish the two sides: it is left
-  /// to the exhaustive march on the host.
+  /// Whether the ray stays beside a border or the rim of a hole too long for floats to distinguish the two sides. Such
+  /// a ray is left to the exhaustive march on the host.
   bool lingers = false;
   HitStatus known = HitStatus::miss;
 };

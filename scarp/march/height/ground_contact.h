@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Spheres, capsules and boxes against the ground: the first contact of one that moves, and overlaps.
+// Tests spheres, capsules and boxes against the ground: the first contact of a moving one, and overlap.
 //
 // Guarantee: exact to rounding for `triangles` (march/sweep.h). A bilinear surface is approximated by triangles within
 // 2^-21 of the shorter side of a cell. Both sides of the surface count; the ground below it does not, nor do walls of
-// solid ground. Cost: some blocks per level and cell on the way, found best first in the pyramid.
+// solid ground. Cost: a few blocks per level and per cell along the path, found best first in the pyramid.
 #pragma once
 
 #include <optional>

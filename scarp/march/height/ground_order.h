@@ -2,8 +2,8 @@
 // The order in which a batch of rays is traced fastest: by the ground below their origins.
 //
 //   tiles of ground in Morton order    0 1 4 5
-//                                      2 3 6 7     rays over one tile together: the samples and the entries of the
-//                                      8 9 ...     pyramid that one has fetched, the next finds in the cache
+//                                      2 3 6 7     rays over one tile are traced together, so each finds samples and
+//                                      8 9 ...     pyramid entries in the cache that earlier rays have fetched
 //
 // Source: G. M. Morton, 1966, for the order of the tiles; M. Pharr, C. Kolb, R. Gershbein, P. Hanrahan, "Rendering
 // complex scenes with memory-coherent ray tracing", SIGGRAPH 1997, for the idea. Cost: one pass over the rays and a

@@ -2,10 +2,10 @@
 // Best-first search of the ground: blocks of the pyramid, then cells, then ever smaller parts of bilinear cells until
 // two triangles approximate the part.
 //
-//   query.bound(box)          the best that the ground in a box can be: a distance, a time; infinity for nothing
-//   query.bound(part)         the same of a part, by its triangles and how far it may be off them
-//   query.best()              what was found so far: boxes that cannot be better are left out
-//   query.compare(part, flat) looks at the two triangles of a part; if it is not `flat`, its quarters follow
+//   query.bound(box)          lower bound of the result (a distance or a time) over the ground in a box, or infinity
+//   query.bound(part)         the same for a part, by its triangles and its maximum distance from them
+//   query.best()              the best result so far: boxes that cannot improve it are skipped
+//   query.compare(part, flat) compares the two triangles of a part; unless it is `flat`, its quarters follow
 #pragma once
 
 #include <algorithm>
@@ -133,7 +133,7 @@ class GroundSearch {
   const MaxPyramid& pyramid_;
   Query& query_;
   double flat_;
-  std::vector<Node> nodes_;  // a heap with the least bound on top
+  std::vector<Node> nodes_;  // a heap with the smallest bound on top
 };
 
 }  // namespace scarp

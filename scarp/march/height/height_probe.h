@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The probe of height fields: the interface of a ray over one to naive, fixed-step, relaxed and lipschitz. The probe of
-// functions is function/function_probe.h.
+// The probe of height fields: the interface through which naive, fixed-step, relaxed and lipschitz sample a ray over
+// one. The probe of functions is function/function_probe.h.
 #pragma once
 
 #include <algorithm>
@@ -98,18 +98,19 @@ class HeightProbe {
   /// fixed-step's step, and its minimum as a fraction of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.fixed_step.step * blind_step(); }
   double stride_share(const MarchSettings&) const { return 0; }
-  /// Minimum step of a ray below the ground; it may skip shorter stretches above it. At least what t can resolve.
+  /// Minimum step of a ray below the ground, which may skip shorter stretches above the ground. At least what t can
+  /// resolve.
   double least_step_under(double t) const { return std::max(0x1p-12 * blind_step(), 0x1p-50 * std::abs(t)); }
   /// Whether the ground is solid, with walls at its rims.
   bool solid() const { return field_.settings().solid; }
 
   bool under_ground(const Sample& sample) const { return sample.clearance < 0; }
-  /// A step that cannot reach the surface if its slope is within what `shrink` allows.
+  /// Returns a step that cannot reach the surface if the slope is within the bound that `shrink` assumes.
   double free_time(const Sample& sample, double shrink) const {
     return std::abs(sample.clearance) * shrink * per_metre_;
   }
-  /// The time until which that bound holds, which ends at holes: the exit from the largest hole-free block of the
-  /// pyramid around the point; over a hole, from its cell.
+  /// The time until which that bound holds, as it does not hold across holes: the exit from the largest hole-free block
+  /// of the pyramid around the point; over a hole, from its cell.
   double bounded_until(const Sample& sample, double t) const {
     if (!sample.valid) return leave_time(sample.cell, 0, t);
     if (!has_holes_) return std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The marches that sample (march/sampling/) over height fields. Each returns the closest hit that it finds, in
+// The sampling marches (march/sampling/) over height fields. Each returns the closest hit that it finds, in
 // [t_min, t_max] and inside the field; `stats` is overwritten unless null.
 #pragma once
 

@@ -16,11 +16,11 @@ namespace scarp {
 /// Returns the closest hit of a ray in world space. Overwrites `stats` unless null.
 using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings,
                             MarchStats* stats);
-/// Whether the closest hit is a hit.
+/// Returns whether the status of the closest hit is `hit`.
 using HeightOcclusion = bool (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings);
 
-/// The two above for many rays, on the calling thread; the answers are bit for bit those for single rays. The spans
-/// have the same length.
+/// The two above for many rays, on the calling thread; the answers are bit-identical to those for single rays. The
+/// spans have the same length.
 using HeightMarchBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                   const MarchSettings& settings);
 using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays,
@@ -29,7 +29,8 @@ using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<cons
 using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                                    MarchStats* stats);
 
-/// A row. Only `by_rules` may be null: a technique without its own any-hit or batch query gets one based on `cpu`.
+/// A row of the table. Only `by_rules` may be null: a technique without its own any-hit or batch query gets one based
+/// on `cpu`.
 struct HeightMarchEntry : MarchEntry {
   bool needs_pyramid = false;               ///< HeightTarget::pyramid must be given
   bool needs_slope = false;                 ///< HeightTarget::slope must be given
@@ -41,8 +42,8 @@ struct HeightMarchEntry : MarchEntry {
   HeightOcclusion occluded = nullptr;
   HeightMarchBatch batch = nullptr;  ///< in vectors if `simd`
   HeightOcclusionBatch occluded_batch = nullptr;
-  bool fans = false;  ///< batches of one origin are answered by fan_batch.h where that is faster
-  /// The closest of the hits that count; null: the march has hits from above only, and takes no filter.
+  bool fans = false;  ///< batches of rays from one origin are answered by fan_batch.h where that is faster
+  /// The closest of the hits that count; null: the march finds hits from above only, and takes no filter.
   HeightMarchByRules by_rules = nullptr;
 };
 

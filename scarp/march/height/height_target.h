@@ -21,9 +21,8 @@ struct HeightTarget {
   /// Distance in cells, >= 0, up to which the borders of fields that meet count as one: for max-mip and exhaustive. A
   /// ray that passes the border or the rim of a hole this near to the surface touches it.
   double seam = 0;
-  /// Sample units, >= 0, by which the border may be below that of a field beside it: a ray that enters through the
-  /// border at most this far below the surface touches it. For max-mip and
-  /// exhaustive.
+  /// Height in sample units, >= 0, by which the border may be below that of an adjacent field: a ray that enters
+  /// through the border at most this far below the surface touches it. For max-mip and exhaustive.
   double seam_step = 0;
 };
 

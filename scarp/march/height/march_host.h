@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // For C++ that needs only the structs of the marches' GLSL text (cell_surface.glsl.h, max_mip.glsl.h), not its
-// functions: the functions that the text requires of its host are declared, but defined nowhere.
+// functions: the functions that the text requires of its host are declared, but not defined.
 #pragma once
 
 #include "scarp/vk/glsl_cpp.h"

@@ -36,15 +36,15 @@ Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSetting
 Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                            MarchStats* stats = nullptr);
 
-/// Closest hit with the refinement of the paper instead of the closed form: where the signs at the ends of a cell
-/// differ, settings.bisect.halvings bisections of the interval. Guarantee: approximate. Misses rays that dip into a
-/// cell and leave it again; t has an error of up to the interval / 2^halvings.
+/// Closest hit with the paper's refinement instead of the closed form: where the signs at the ends of a cell differ,
+/// settings.bisect.halvings bisections of the interval. Guarantee: approximate. Misses rays that dip below the surface
+/// within a cell and emerge again; t has an error of up to the interval / 2^halvings.
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                          MarchStats* stats = nullptr);
 
 /// Any hit: march_max_mip(...).status == hit, without computing t. A ray that was above at the entry of a block without
 /// holes, and falls below the block's minimum, is occluded without further traversal. Over ground without holes and
-/// wrap vectors follow the ray first (max_mip_ahead.h).
+/// wrap, vector code follows the ray first (max_mip_ahead.h).
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray);
 
 /// All hits in the ray's range, in order of t: each time the ray goes from above to on or below the surface (at most

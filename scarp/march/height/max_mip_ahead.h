@@ -12,7 +12,7 @@
 // are not used.
 //
 // As in max_mip_simd.h, vectors decide only what a margin proves (doc/dev/numerics.md). The scalar traversal decides
-// the rest, from the time up to which the ray is above the ground: answers equal its own.
+// the rest, from the time up to which the ray is above the ground, so answers equal its own.
 //
 // Source: I. Wald, C. Benthin, S. Boulos, "Getting rid of packets: efficient SIMD single-ray traversal using
 // multi-branching BVHs", RT 2008 (the children of a node in the lanes of a vector). Cost: no memory besides the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shader text of `max-mip-easy`, compiled as C++: a class that implements the text's texture lookups with a field
-// and its pyramid, and has the text's functions as members.
+// The shader source of `max-mip-easy`, compiled as C++: a class that implements its texture lookups with a field and
+// its pyramid, and has its functions as members.
 #pragma once
 
 #include <cmath>
@@ -42,7 +42,7 @@ class Ground {
                                                   : rounded;
   }
 
-// The text defines a struct, constants and functions.
+// The shader source defines a struct, constants and functions.
 #define MAX_MIP_EASY_HOST
 #include "scarp/march/height/max_mip_easy.glsl.h"
 

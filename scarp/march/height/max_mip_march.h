@@ -48,7 +48,7 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
   const GridRay local = field.grid_from_world(ray);
   const double longest = longest_of(local.direction);
   if (!is_usual(longest)) {
-    // Finite and not zero in metres, a direction may be neither in cells.
+    // A direction that is finite and not zero in metres may be neither in cells.
     const double length = is_direction(longest) ? longest : longest_of(ray.direction);
     if (!is_direction(length)) return hit;
     const int exponent = std::ilogb(length);

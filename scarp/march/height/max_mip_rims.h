@@ -4,12 +4,12 @@
 //          ground      | allowance |   hole or outside
 //   ___________________|___________|
 //                      A     o            The ground continues as high as its rim. A ray that sinks through it at o
-//                             \           hits there, at its own t, whether it comes or goes.
+//                             \           hits there, at its own t, whether it arrives or leaves.
 //                              \.
 //
-// The allowance is that of rounding_of_line(): rounding moves the ray and the line by as much. A nearly vertical ray
-// stays within it for a long time and passes all heights; what counts is the time at which it is as high as the rim.
-// The clearance above one edge is linear, because the position is clamped to it.
+// The allowance is that of rounding_of_line(): rounding moves the ray and the line by up to that much. A nearly
+// vertical ray stays within it for a long time and passes all heights; what counts is the time at which it is as high
+// as the rim. The clearance above one edge is linear, because the position is clamped to it.
 #pragma once
 
 #include <algorithm>
@@ -72,12 +72,11 @@ struct Rim {
   double late_x() const { return x.moves() ? off(0) * std::abs(x.per_direction) : 0.0; }
   double late_y() const { return y.moves() ? off(1) * std::abs(y.per_direction) : 0.0; }
 
-  // The time until which a ray may touch the rim of the field that it leaves at t, and the time from which it may when
-  // it enters.
+  // The latest time at which a ray that leaves the field may touch its rim, and the earliest for a ray that enters.
   double last_time() const { return std::min(x.exit_time() + late_x(), y.exit_time() + late_y()); }
   double first_time() const { return std::max(x.enter_time() - late_x(), y.enter_time() - late_y()); }
 
-  // A ray parallel to an axis is over the field's strip or not; written so that NaN is not.
+  // Whether a ray that is parallel to an axis is over the field's strip; written so that NaN is not.
   bool over_strips() const {
     const auto over = [&](const Axis& axis, int number) {
       return axis.moves() || (axis.origin >= -off(number) && axis.origin <= axis.cells + off(number));
@@ -85,7 +84,7 @@ struct Rim {
     return over(x, 0) && over(y, 1);
   }
 
-  // Whether the ray is not above all ground in this time, which may be none.
+  // Whether the ray is not above all ground during this time range, which may be empty.
   bool may_touch(double begin, double end) const {
     if (!(begin <= end)) return false;
     const double above = std::min(height(begin), height(end)) - ground.highest();
@@ -109,7 +108,7 @@ struct Rim {
     return !(height(t) > ground.highest() + room) && (wall || !(height(t) < ground.lowest() - room));
   }
 
-  // Whether the height of a hit at t is not finite: walls have no lower end, but the place on them must be a number.
+  // Whether the height of a hit at t is not finite: walls have no lower end, but the position on them must be a number.
   bool overflows(double t) const { return !std::isfinite(ground.metres(height(t))); }
 
   // Whether the ray must be followed along rims, cell by cell, from this time on, wherever its range ends.
@@ -164,8 +163,8 @@ struct Rim {
     const double off = std::max(this->off(0), this->off(1));
     return off + off * (slope < kQuickRim ? slope : 0.0);
   }
-  // Time at which a ray that crosses a line of an axis at t passes the nearest line of the other axis; NaN: not between
-  // t and `last`.
+  // Time at which a ray that crosses a line of an axis at t passes the nearest line of the other axis; NaN if that is
+  // not between t and `last`.
   double node_time(double t, int axis, double last) const {
     const Axis& other = axis == 0 ? y : x;
     const double node = (std::round(other.at(t)) - other.origin) * other.per_direction;
@@ -180,8 +179,8 @@ struct Rim {
     });
   }
 
-  // Follows the ray from `begin` to `end` past the cells of `box` with ground. `at`: of the ray at `begin`, and then at
-  // `end`, where its side is unknown if no ground is beside it. `goes_in`: whether it is over the field then.
+  // Follows the ray from `begin` to `end` past the cells of `box` with ground. `at`: the ray's side at `begin`; set to
+  // that at `end`, unknown if no ground is beside the ray there. `goes_in`: whether the ray is over the field at `end`.
   // touch(stretch, t, place) records a hit and returns whether that is the answer, as does the function.
   template <class Touch>
   bool follow(double begin, double end, const RimBox& box, bool goes_in, RimSide& at, const Touch& touch) const {
@@ -224,7 +223,7 @@ struct Rim {
   }
 
  private:
-  // The time in which the ray is at most `allowance` beside a cell.
+  // Limits a time range to the part in which the ray is at most `allowance` beside a cell. Returns whether any is left.
   static bool clip_to_cell(const Axis& axis, int cell, double allowance, double& begin, double& end) {
     const auto low = static_cast<double>(axis.global_line(cell)) - allowance;
     const auto high = static_cast<double>(axis.global_line(cell + 1)) + allowance;

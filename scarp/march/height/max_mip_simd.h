@@ -38,13 +38,13 @@ struct VectorOptions {
   bool together = true;   ///< closest hit, with `beam`: rays from one place go through the same blocks together
 };
 
-/// hits[i] is march_max_mip() of rays[i], bit for bit. Runs on the calling thread; the spans have equal lengths below
-/// 2^31.
+/// Sets hits[i] to march_max_mip() of rays[i], bit for bit. Runs on the calling thread; the spans have equal lengths
+/// below 2^31.
 void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits);
 void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                const VectorOptions& options);
 
-/// blocked[i] is 1 if occluded_max_mip() of rays[i] is true, otherwise 0.
+/// Sets blocked[i] to 1 if occluded_max_mip() of rays[i] is true, else to 0.
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked);
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                            const VectorOptions& options);

@@ -11,7 +11,7 @@
 // All rays advance along both axes of their frames, so the near corner of the rectangle is that of the beam's start,
 // the far one that of its end. Source: A. Reshetov, A. Soupikov, J. Hurley, "Multi-level ray tracing algorithm", ACM
 // Transactions on Graphics 24(3), 2005 (one entry point for a beam of rays). Heights include the margin of Lanes;
-// maxima need no other. Compiled once per instruction set.
+// maxima need none. Compiled once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_BEAM_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_BEAM_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_BEAM_H
@@ -39,7 +39,7 @@ constexpr std::int32_t kLeastShortest = 1, kMostShortest = 4;
 // Level at which its rays continue.
 constexpr std::int32_t kLevelAfterBeam = 1;
 
-// Height above the cells [x0, x1] x [y0, y1], of up to four blocks.
+// Upper bound of the ground in the cells [x0, x1] x [y0, y1], from up to four blocks.
 template <class T>
 HWY_INLINE float highest_over(const VectorGround<T>& g, std::int32_t x0, std::int32_t x1, std::int32_t y0,
                               std::int32_t y1) {
@@ -104,7 +104,7 @@ class Beam {
             hn::GetLane(hn::MinOfLanes(df, low))};
   }
 
-  /// Returns whether the rays are above all ground from one place to the other.
+  /// Returns whether the rays are above all ground between the two positions.
   template <class T>
   HWY_INLINE bool is_free(const VectorGround<T>& g, const BeamPlace& from, const BeamPlace& to) const {
     // Mirrored, the far corner comes first.

@@ -79,7 +79,7 @@ struct CellRays {
     back_x = hn::Lt(dx, zero), back_y = hn::Lt(dy, zero);
   }
 
-  // Not parallel to an axis, where line times are undefined, nor almost.
+  // Whether rays are neither parallel to an axis, where line times are undefined, nor almost.
   static HWY_INLINE MD moves(VD d) { return hn::Gt(hn::Abs(d), hn::Set(dd, 0x1p-1000)); }
   HWY_INLINE MD moves_x() const { return moves(dx); }
   HWY_INLINE MD moves_y() const { return moves(dy); }
@@ -179,11 +179,11 @@ HWY_INLINE CellMeeting meet_triangles(const CellRays& r, VD t_in, VD t_out, VD o
   return {r.over_triangle(t_in, t_in).c, hn::Add(hn::Sub(begin, t_in), within), hn::Or(at_first, hn::Le(out, zero))};
 }
 
-// Rays in the cell that they start in, offset slightly from the ground like shadow rays: within the margin of floats,
-// which would leave each of them to the scalar traversal. Rays that are above the ground all the way through the cell
-// continue behind it; any hit is decided for those that certainly fall below it. Closest hit: called where floats were
-// unsure. Any hit: called at once, except for rays that are known to be above the ground (seen): floats can postpone a
-// doubt about those.
+// Handles rays in the cell that they start in, offset slightly from the ground as shadow rays are: they are within the
+// margin of floats, which would leave each of them to the scalar traversal. Rays that are above the ground all the way
+// through the cell continue behind it; any hit is decided for those that certainly fall below it. Closest hit: called
+// where floats were unsure. Any hit: called at once, except for rays that are known to be above the ground (seen):
+// floats can postpone a doubt about those.
 template <bool any, class T>
 HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
   constexpr Status kConcerned = any ? kWalking : kUnsure;
@@ -254,7 +254,7 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
 // Outcomes of rays in the cell on whose surface they start. kUndecided: the scalar traversal decides.
 enum FirstCell : std::int32_t { kUndecided, kLeaves, kNoHit, kFalls };
 
-// For rays in `r` with `on_surface` 1, their start cells in `cells`: what Walk::leave_start_cell() does, by the same
+// For rays in `r` with `on_surface` 1 and start cells in `cells`: does what Walk::leave_start_cell() does, by the same
 // operations in the same order, except within rounding of a hit and for rare paths. Rays that leave their cell get the
 // height of the surface they start on and begin behind the cell.
 HWY_NOINLINE void leave_surface(const FieldFrame& f, const Cells& cells, const double* on_surface, GridRays& r,
@@ -277,7 +277,7 @@ HWY_NOINLINE void leave_surface(const FieldFrame& f, const Cells& cells, const d
     const VD twist = hn::Sub(hn::Sub(c.h11, c.h01), hu);
     const VD surface = hn::Add(hn::Add(hn::Add(c.h00, hn::Mul(hu, u)), hn::Mul(hv, v)), hn::Mul(hn::Mul(twist, u), v));
     c.oz = hn::Sub(surface, hn::Mul(c.dz, t_in));
-    // Without the root at the start, the clearance s (a s + b) is below right after it, or after the second root.
+    // Without the root at the start, the clearance s (a s + b) is negative right after it, or after the second root.
     const auto [a, b, at_start] = c.clearance_from(t_in);
     const VD length = hn::Sub(t_line, t_in);
     const MD dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),

@@ -39,8 +39,8 @@ constexpr double kSideways = 0x1p-21, kUpright = 0.25;
 // Margin of a tilted plane: a multiple of its rise over the rounding error of a position (numerics.md).
 constexpr double kTiltMargins = 8;
 constexpr int kSlopeBits = BlockPlanes::kSlopeBits, kDepthBits = BlockPlanes::kDepthBits;
-// Half a block's side times far_slope and these: heights above its plane from which a ray rises by two levels, and
-// three.
+// Times half a block's side and far_slope, these are the heights above its plane from which a ray rises by two levels
+// and by three.
 constexpr float kHigh = 2, kHigher = 8;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
 
@@ -68,7 +68,7 @@ struct Lanes {
   std::int32_t copy_x[N], copy_y[N];  // copy of a wrapped ground
 };
 
-// The ground in the form that vectors need.
+// The ground in the form that vector code needs.
 template <class T>
 struct VectorGround {
   const std::uint32_t* blocks;  // MaxPyramid::blocks()
@@ -306,8 +306,8 @@ HWY_INLINE Clearance triangle_clearance(const CellCodes& h, VF u0, VF v0, VF u1,
   return {hn::Min(hn::Min(in, out), hn::IfThenElse(crosses, middle, in)), in, out};
 }
 
-// Cells of the lanes that have reached one. `may_put_off`: lanes that may continue although they are unsure, if they
-// have been above the ground; they are tested again if they miss.
+// Tests the cells of the lanes that have reached one. `may_put_off`: lanes that may continue although they are unsure,
+// if they have been above the ground; they are tested again if they miss.
 template <bool any, class T>
 HWY_INLINE void cell_step(const VectorGround<T>& g, MI may_put_off, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);

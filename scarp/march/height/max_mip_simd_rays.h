@@ -22,9 +22,9 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-// In cells, to the origin of a ray over a wrapped ground and to the last copy that vectors traverse. Horizontally,
-// |origin| + |path| along x and y is then at most eight times that plus twice the sides of a copy, also in the frames
-// of copies.
+// Maximum distance in cells to the origin of a ray over wrapped ground, and to the last copy that vector code
+// traverses. Horizontally, |origin| + |path| along x and y is then at most eight times that plus twice the sides of a
+// copy, also in the frames of copies.
 constexpr double kFarthestCopy = 0x1p17;
 
 // The field as needed for the preparation; heights in sample units.
@@ -40,7 +40,7 @@ struct FieldFrame {
   double width, depth;  // metres up to which positions count as inside; unlimited if the ground is wrapped
 };
 
-// `code`: of the heights that vectors compute with. `bits`: of the number of a mirrored cell.
+// `code`: the heights that vector code computes with. `bits`: the width of a mirrored cell's number.
 HWY_INLINE FieldFrame field_frame(const HeightTarget& target, const HeightCode& code, int bits, int from_outside) {
   const HeightField& field = *target.field;
   const MaxPyramid& pyramid = *target.pyramid;
@@ -170,9 +170,9 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   const auto usual =
       hn::And(hn::And(hn::Gt(longest, hn::Set(tag, 0x1p-300)), hn::Lt(longest, hn::Set(tag, 0x1p300))),
               hn::And(hn::Lt(hn::Abs(slope), hn::Set(tag, 0x1p30)), hn::Lt(t_far, hn::Set(tag, 0x1p300))));
-  // Rays with NaN are left to the scalar traversal: minima and maxima of vectors may drop it. The slack is a sum, so
-  // NaN along either axis makes it NaN. The borders are accurate to less than a position's rounding, and a sixteenth of
-  // a code. A seam widens those that the ray crosses.
+  // Rays with NaN are left to the scalar traversal: vector minima and maxima may drop NaN. The slack is a sum, so NaN
+  // along either axis makes it NaN. The borders are accurate to less than a position's rounding, and a sixteenth of a
+  // code. A seam widens the borders that the ray crosses.
   const V per_enter = hn::IfThenElse(hn::Ge(x.enter, y.enter), x.per, y.per);
   const V per_exit = hn::IfThenElse(hn::Le(x.exit, y.exit), x.per, y.per);
   const V at_seam = hn::Mul(hn::Set(tag, f.seam), hn::Max(per_enter, per_exit));

@@ -8,8 +8,8 @@
 //   +---+---+   list at cells where they are not certainly above the ground.
 //
 // Source: I. Wald, P. Slusallek, C. Benthin, M. Wagner, "Interactive rendering with coherent ray tracing", Computer
-// Graphics Forum 20(3), 2001 (packets of rays). Heights include the margin of Lanes; maxima need no other. Compiled
-// once per instruction set.
+// Graphics Forum 20(3), 2001 (packets of rays). Heights include the margin of Lanes; maxima need none. Compiled once
+// per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_TOGETHER_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_TOGETHER_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_TOGETHER_H
@@ -225,7 +225,7 @@ class Together {
       test(0, 0, all), test(1, 1, t.by_x), test(2, 1, hn::Not(t.by_x)), test(3, 2, all);
     }
   }
-  // Rays that may hit in a cell which they enter at `time`, and are above the ground up to there.
+  // Stops rays that may hit in a cell which they enter at `time`; they are above the ground up to there.
   HWY_INLINE void stop(std::size_t k, MF rays, std::int32_t x, std::int32_t y, VF time) {
     Lanes& a = lanes_[k];
     float* end = numbers_[k].end;
@@ -254,8 +254,8 @@ class Together {
   std::size_t depth_ = 0;
 };
 
-// Traces the rays of `lanes` if they begin close together and run the same way along x and along y. Returns their
-// number, or 0.
+// Traces the rays of `lanes` if they start close together and run in the same direction along x and along y. Returns
+// their number, or 0.
 template <class T>
 HWY_NOINLINE std::size_t walk_together(const VectorGround<T>& g, Lanes* lanes, std::size_t count) {
   if (std::max(g.last_col, g.last_row) > kFarthestCell) return 0;

@@ -42,7 +42,7 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
       if (!x_.moves() && !y_.moves()) return vertical();
       if (Holes && side_ == Side::unknown && !below_rim_ && ground_.is_hole(col_, row_) && touches(t_in_)) return;
     }
-    // Blocks do not have the rims of those beside them.
+    // The bounds of a block do not include the rims of adjacent blocks.
     if (Holes && !strict_ && rim(grid_ray()).slow(t_in_)) top_ = level_ = 0, slow_ = true;
     while (walk()) enter_next_copy();
     if (!Wraps) follow_border_on_exit();
@@ -94,8 +94,8 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
       side_ = Side::above;
-      // Down to the highest sample and what rounding may add to it, twice: a touch is within the bound, and its t is
-      // rounded. Not finite for a ray straight down without an end, which has one cell.
+      // Down to the highest sample plus twice the rounding error: a touch is within the bound, and its t is rounded.
+      // Not finite for an endless ray straight down, which has one cell.
       const double t_top = (highest - z_ + 2 * rounding_) / dz_;
       if (t_top > t_end_) return false;
       level_ = from_outside;
@@ -110,8 +110,8 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
     return true;
   }
 
-  // Advances to the start of the cell with a time up to which the ray is above the ground, so that a peak which it just
-  // touches is still ahead. Returns false if the ray ends before.
+  // Advances to the entry of the cell that contains t, up to which the ray is above the ground, so that a peak which it
+  // just touches is still ahead. Returns false if the ray ends before.
   bool skip_to(double t) {
     if (t > t_end_) return false;
     side_ = Side::above;
@@ -151,7 +151,7 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
     cell_end_ = t_line;
     side_ = Side::above;
     if (!x_.moves() && !y_.moves()) {
-      // Straight down is below at once; the range may be infinite.
+      // A ray straight down is below at once; its range may be infinite.
       if (dz_ < 0 && t_end_ > t_in_ && is_hit(dz_ * (t_end_ - t_in_), t_in_)) answer(0.0);
       return false;
     }
@@ -198,7 +198,7 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
 
   // Traverses one copy of the grid; returns true if the ray has left for the next.
   [[gnu::always_inline]] bool walk() {
-    // Copies, which the compiler knows not to change.
+    // Copies that the compiler knows to be constant.
     const Axis x = x_, y = y_;
     BlockStart start{level_, col_, row_, t_in_};
     const bool left =
@@ -207,7 +207,8 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
     return left;
   }
 
-  // Across the seam: as over any line, column before row. It separates blocks of all levels, so one level up.
+  // Across the seam: as over any line, column before row. It separates blocks of all levels, so the ray moves up one
+  // level.
   void enter_next_copy() {
     after_x_ = x_.exit_time() <= y_.exit_time();
     (after_x_ ? col_ : row_) = (after_x_ ? x_ : y_).enter_next_copy();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Batch queries over a height field, and validation of rays.
 //
-//   rays in   [ r0 r1 r2 r3 ... ]        hits[i] belongs to rays[i], in any order
-//   hits out  [ h0 h1 h2 h3 ... ]        the rays are traced
+//   rays in   [ r0 r1 r2 r3 ... ]        hits[i] belongs to rays[i]; the rays are
+//   hits out  [ h0 h1 h2 h3 ... ]        traced in any order
 //
 // One call traces all rays, on all threads. Large batches of unordered rays over large fields are traced in the order
 // of the ground below their origins, so that consecutive rays use nearby memory; ground_order.h defines when. Marches
-// with SIMD code (max_mip_simd.h) use it for batches, with bit-identical results. max-mip follows rays of one origin
-// that stand in rows or columns together (fan_batch.h), as a camera's or a scanner's do.
+// with SIMD code (max_mip_simd.h) use it for batches, with bit-identical results. max-mip traces rays from one origin
+// together if they are arranged in rows or columns, as those of a camera or a scanner are (fan_batch.h).
 #pragma once
 
 #include <cstdint>

@@ -33,8 +33,8 @@ class RimRules : public CellRules<T, Holes, Wraps, ask> {
     return !strict_ && side_ == Side::above && rim(grid_ray()).may_sink(t, through_ == Through::x_line ? 0 : 1);
   }
 
-  // Records a touch at t, at a given place of a cell, which need not be on the ray's way. In lists of all hits, those
-  // of neighbours that share the place count as one. Returns true if the query is answered.
+  // Records a touch at t, at a given place of a cell, which need not be on the ray's path. In lists of all hits,
+  // touches of neighbouring cells at the same position count as one. Returns true if the query is answered.
   bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;
     if (lists() && !wanted_.all->empty() &&
@@ -47,8 +47,8 @@ class RimRules : public CellRules<T, Holes, Wraps, ask> {
     return answered;
   }
 
-  // Follows the ray beside the ground, during a time in which it is over none; its side is then that at the end, unless
-  // it must stay. Returns true if the query is answered.
+  // Follows the ray beside the ground, during a time in which it is over none; side_ is then its side at the end,
+  // unless `stay` keeps it. Returns true if the query is answered.
   [[gnu::noinline]] bool follow_rim(double begin, double end, const RimBox& box, bool stay = false,
                                     bool goes_in = false) {
     RimSide at{below_rim_ ? Side::below : side_, below_rim_ || side_ == Side::unknown};
@@ -67,7 +67,8 @@ class RimRules : public CellRules<T, Holes, Wraps, ask> {
     if (begin > ray_.t_max) return false;
     return beside.may_touch(begin, end) && follow_rim(begin, end, beside.cells_under(begin, end), false, goes_in);
   }
-  // Before the ray is over the field, or all the time if it never is. A ray from the surface does not enter.
+  // Follows the border before the ray is over the field, or throughout if it never is. A ray from the surface does not
+  // enter.
   bool follow_border_on_entry() {
     const bool goes_in = t_in_ <= std::min(x_.exit_time(), y_.exit_time());  // wherever the range ends
     return follow_border(rim(grid_ray()).first_time(), goes_in ? t_in_ : rim(grid_ray()).last_time(), goes_in);

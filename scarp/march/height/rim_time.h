@@ -13,7 +13,7 @@
 namespace scarp {
 
 /// Limits a time range to the part in which the ray is between two heights, in sample units, with a margin far beyond
-/// rounding_of_clearance(), so that its side where it comes in is known. Returns whether any is left.
+/// rounding_of_clearance(), so that its side on entry is known. Returns whether any part is left.
 inline bool clip_to_heights(const HeightField& field, const GridRay& ray, double low, double high, double& begin,
                             double& end) {
   const double offset = std::abs(field.settings().offset) / field.settings().scale;

@@ -27,7 +27,7 @@ namespace scarp {
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t, double relief) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   constexpr double kRoundings = 16;  // counted above
-  // Products below 2^-1022 are rounded by half of the least number instead.
+  // Products below 2^-1022 are rounded by half of the smallest positive number instead.
   constexpr double kSubnormal = kRoundings / 2 * std::numeric_limits<double>::denorm_min();
   const double low = field.min_sample(), high = field.max_sample();
   const double sideways = std::abs(ray.origin.x) + std::abs(ray.direction.x * t) + std::abs(ray.origin.y) +
@@ -48,7 +48,8 @@ inline double rounding_of_line(const HeightField& field, const GridRay& ray, int
   return seam + HeightField::rounding_of_line(ray.origin[axis], axis == 0 ? field.cell_cols() : field.cell_rows());
 }
 
-/// The larger of the two: the maximum distance between positions that two fields, or a ray and a line, treat as one.
+/// The larger of the values for both axes: the maximum distance between positions that two fields, or a ray and a line,
+/// treat as one.
 inline double widest_rounding_of_line(const HeightField& field, const GridRay& ray, double seam) {
   return std::max(rounding_of_line(field, ray, 0, seam), rounding_of_line(field, ray, 1, seam));
 }

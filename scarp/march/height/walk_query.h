@@ -16,9 +16,9 @@ enum class Ask { closest, any, as_wanted };
 
 /// Parameters of a query besides the ray.
 struct Wanted {
-  bool bisects = false;               ///< as_wanted: the closest hit, by this many
-  int halvings = 0;                   ///< halvings
-  double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
+  bool bisects = false;               ///< as_wanted: the closest hit by bisection
+  int halvings = 0;                   ///< number of bisections
+  double t_clear = kNotClear;         ///< until when the ray is known to be above the ground by more than rounding
   std::vector<Hit>* all = nullptr;    ///< as_wanted: receives all hits, unless null
   bool from_below = false;            ///< as_wanted: hits from below, over the inverted ground
   const HitFilter* accept = nullptr;  ///< as_wanted: null: the first hit is accepted

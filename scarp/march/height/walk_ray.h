@@ -22,7 +22,7 @@ namespace {
 // How the ray got to its position: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
 
-// T: type of samples. Holes: whether the field has any. Queries as wanted alone may ask for hits from below.
+// T: type of samples. Holes: whether the field has any. Only queries as wanted may request hits from below.
 template <class T, bool Holes, bool Wraps, Ask ask>
 class WalkRay {
  public:
@@ -65,7 +65,7 @@ class WalkRay {
     return triangles_ ? plane(h, south_east(t), t).surface : quadratic(h, t).surface;
   }
 
-  // Clearance where the ray enters or leaves the current cell: at a line, of the same two nodes for both neighbours.
+  // Clearance where the ray enters or leaves the current cell: at a line, from the same two nodes for both neighbours.
   double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
     switch (through) {
       case Through::x_line: {
@@ -93,9 +93,9 @@ class WalkRay {
   // ahead.
   bool lost(double t) const { return dz_ < 0 && ray_height(t) < ground_.lowest() && !(Holes && solid_); }
 
-  // Where a sign alone is not enough: a ray from below has risen only beyond it (otherwise one that rises through a
-  // node could be above at one line and, by rounding, not above at the next: a hit from below), a ray from the surface
-  // is strictly below only beyond it, and so is a ray under a block.
+  // The bound where a sign alone is not enough. A ray from below has emerged only if it is above by more than this
+  // (otherwise a ray that rises through a node could be above at one line and, by rounding, not above at the next: a
+  // hit from below). A ray from the surface, or under a block, is strictly below only by more than this.
   double rounding_of_clearance(double t) const { return scarp::rounding_of_clearance(field_, grid_ray(), t); }
   // The bound for the whole ray, from t_in_ on.
   void bound_rounding() { rounding_ = rounding_of_clearance(std::max(std::abs(t_in_), std::abs(t_end_))); }

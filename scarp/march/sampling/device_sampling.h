@@ -14,8 +14,8 @@ static_assert(glsl::kScarpRefineNone == static_cast<glsl::uint>(Refinement::none
               glsl::kScarpRefineSecant == static_cast<glsl::uint>(Refinement::secant) &&
               glsl::kScarpRefineBisect == static_cast<glsl::uint>(Refinement::bisect));
 
-/// Returns device settings of a march, which samples. The step of fixed-step is in cells. `slope` is the slope bound
-/// for lipschitz, whose proven factor is reduced by the fraction `rounding`. A unit of clearance is `unit` metres.
+/// Returns the device settings of a sampling march. The step of fixed-step is in cells. `slope` is the slope bound for
+/// lipschitz, whose proven factor is reduced by the fraction `rounding`. A unit of clearance is `unit` metres.
 inline glsl::ScarpSampling device_sampling(Sampling march, const MarchSettings& all, double slope, double rounding,
                                            double unit) {
   const auto f = [](double value) { return static_cast<float>(value); };

@@ -8,8 +8,8 @@
 // SamplingSettings::tolerance is a height that counts as a hit at any distance. A ray from the surface starts within
 // it: its steps are no shorter than this height, and it hits only where it is deeper below ground.
 //
-// The hit is refined on request (Refinement): `secant`, of I. Quilez, "Rainforest", 2016, draws a straight line through
-// the last two clearances, and ends where it reaches the tolerance, not the ground.
+// The hit is refined on request (Refinement): `secant`, from I. Quilez, "Rainforest", 2016, draws a straight line
+// through the last two clearances, and ends where it reaches the tolerance, not the ground.
 //
 // Guarantee: approximate. The vertical distance is an overestimate: rays step over steep ground (holes in the picture),
 // and rays that graze the ground stop before it. This is the baseline of the max-mip article, in which this march took

@@ -59,7 +59,7 @@ class Underground {
       under_ = false;  // it has emerged, or descends again
     }
   }
-  /// Ends the turn of the point taken last.
+  /// Ends the iteration of the point taken last.
   void step_from(const SamplePoint& point) {
     before_ = point;
     first_ = false;
@@ -77,9 +77,9 @@ class Underground {
   bool comes_in_ = false, under_ = false, entered_below_ = false;
 };
 
-/// Returns the hit between `before`, where the test stops(t, clearance) fails, and `last`, where it holds: closer to
-/// where it starts to hold. The secant assumes a clearance of `limit` there. The hit stays at `last` if `before` or the
-/// refined point is over a hole.
+/// Returns the hit between `before`, where the test stops(t, clearance) fails, and `last`, where it holds, refined
+/// towards the point where it starts to hold. The secant assumes a clearance of `limit` there. The hit stays at `last`
+/// if `before` or the refined point is over a hole.
 template <class Probe, class Stops>
 Hit refined_hit(const Probe& probe, const SamplingSettings& settings, Refinement how, const SamplePoint& before,
                 const SamplePoint& last, const typename Probe::Sample& sample, double limit, const Stops& stops,

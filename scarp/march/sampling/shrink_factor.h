@@ -22,8 +22,8 @@ struct ShrinkFactor {
   Guarantee guarantee;  ///< conservative if the slope bound proves the factor, else approximate
 };
 
-/// Returns the factor of the settings or, if that is 0, largest_proven_shrink(slope) reduced by the share `rounding`.
-/// Throws Error if the factor is 0 and the slope is unknown (NaN).
+/// Returns the factor of the settings or, if that is 0, largest_proven_shrink(slope) reduced by the fraction
+/// `rounding`. Throws Error if the factor is 0 and the slope is unknown (NaN).
 ShrinkFactor shrink_factor(const LipschitzSettings& settings, double slope, double rounding = 0);
 
 }  // namespace scarp

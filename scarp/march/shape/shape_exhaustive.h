@@ -5,7 +5,7 @@
 // The tree of the shape is evaluated in intervals by separate code, which shares with the marches only the settings and
 // boxes of nodes (distance_node.h) and the samples of height fields.
 //
-// Guarantee: a proof, including rounding. Cost: some thousand evaluations per ray. Source: see function_exhaustive.h.
+// Guarantee: a proof, including rounding. Cost: thousands of evaluations per ray. Source: see function_exhaustive.h.
 #pragma once
 
 #include "scarp/base/ray.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays against distance fields on a Vulkan device: queries_vk.h for shapes.
+// Batches of rays against distance fields on a Vulkan device: the counterpart of queries_vk.h for shapes.
 //
-// Answers are in single precision, by balls alone (sphere_trace.glsl.h): equal to the CPU's wherever the ray misses or
-// hits the surface by more than 4 times the error of values (ShapeSingleRounding of accel/shape_words.h). Closest hit
-// and any hit always agree. Shapes may contain grounds of height fields and functions.
+// Answers are in single precision, using ball bounds only (sphere_trace.glsl.h): equal to the CPU's wherever the ray
+// misses or hits the surface by more than 4 times the error of values (ShapeSingleRounding of accel/shape_words.h).
+// Closest hit and any hit always agree. Shapes may contain grounds of height fields and functions.
 #pragma once
 
 #include <cstdint>
@@ -62,14 +62,14 @@ class DeviceShapeQueries {
   DeviceShapeQueries& operator=(DeviceShapeQueries&&) noexcept;
   ~DeviceShapeQueries();
 
-  /// Applies to later calls. Throws Error for a setting out of range.
+  /// Sets the march settings of later calls. Throws Error if a setting is out of range.
   void set_march_settings(const MarchSettings& march_settings);
 
-  /// hits[i] answers rays[i], which must be valid (queries.h); steps[i], unless empty, is its number of values. Throws
-  /// Error if spans differ in length, or the device is lost.
+  /// Sets hits[i] to the closest hit of rays[i], which must be valid (queries.h), and steps[i], unless `steps` is
+  /// empty, to its number of values. Throws Error if spans differ in length, or the device is lost.
   void closest_hits(const DeviceShapeTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                     std::span<std::uint32_t> steps = {});
-  /// blocked[i] is 1 if closest_hits would report a hit, otherwise 0.
+  /// Sets blocked[i] to 1 if closest_hits() would return a hit, else to 0.
   void occluded(const DeviceShapeTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked);
 
  private:
@@ -77,7 +77,7 @@ class DeviceShapeQueries {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The shader of this march, as specialised for a sphere, for a solid of all operations, and with grounds.
+/// The shader of this march, as specialised for a sphere, for a solid with all operations, and with grounds.
 std::vector<ShaderProgram> shape_query_shaders();
 
 }  // namespace scarp

@@ -16,14 +16,14 @@ namespace scarp {
 /// Returns the closest hit of a ray in world space. Overwrites `stats` unless null.
 using ShapeMarch = Hit (*)(const DistanceField& shape, const Ray& ray, const MarchSettings& settings,
                            MarchStats* stats);
-/// Whether the closest hit is a hit.
+/// Returns whether the status of the closest hit is `hit`.
 using ShapeOcclusion = bool (*)(const DistanceField& shape, const Ray& ray, const MarchSettings& settings);
 
-/// The closest hit that the filter accepts.
+/// Returns the closest hit that the filter accepts.
 using ShapeMarchFiltered = Hit (*)(const DistanceField& shape, const Ray& ray, const HitFilter& accept,
                                    const MarchSettings& settings, MarchStats* stats);
 
-/// A row. No function is null.
+/// A row of the table. No function is null.
 struct ShapeMarchEntry : MarchEntry {
   ShapeMarch cpu = nullptr;  ///< scalar C++
   ShapeOcclusion occluded = nullptr;

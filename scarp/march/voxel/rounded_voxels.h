@@ -19,10 +19,9 @@
 
 namespace scarp {
 
-/// Returns the first rounded voxel that counts, using a march that finds the first solid one; without `accept` all
-/// count. `from`: the voxel on whose surface
-/// the ray starts and which it leaves, or null. The face is the one nearest to the surface normal; `inside` for a ray
-/// that starts in the rounded voxel. Overwrites `stats` unless null.
+/// Returns the first rounded voxel that counts, using a march that finds the first solid one; without `accept`, all
+/// voxels count. `from`: the voxel on whose surface the ray starts and which it leaves, or null. The face is the one
+/// nearest to the surface normal; `inside` for a ray that starts in the rounded voxel. Overwrites `stats` unless null.
 VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const VoxelRay& ray,
                              const VoxelDirection& direction, const VoxelRounding& rounding, const ivec3* from,
                              MarchStats* stats, const VoxelFilter* accept = nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 4 x 4 x 4 bits of a brick or a sector, for `voxel-bricks`. bit = x + 4 y + 16 z.
+// The 4 x 4 x 4 bits of a brick or a sector, for `voxel-bricks`: bit = x + 4 y + 16 z.
 #pragma once
 
 #include <array>

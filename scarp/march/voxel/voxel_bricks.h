@@ -8,8 +8,9 @@
 //
 // In a brick only voxels ahead count: rays leave a brick at once if all its solid voxels are behind the ray's octant.
 //
-// Guarantee: exact. Requires BrickMasks, 1/64 of the grid's own. Sources: the 64-trees of dubiousconst282, "A guide to
-// fast voxel ray tracing using sparse 64-trees"; brick maps after J. van Wingerden, 2015. Cost: a step per block.
+// Guarantee: exact. Requires BrickMasks, 1/64 of the size of the grid's own masks. Sources: the 64-trees of
+// dubiousconst282, "A guide to fast voxel ray tracing using sparse 64-trees"; brick maps after J. van Wingerden, 2015.
+// Cost: a step per block.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"

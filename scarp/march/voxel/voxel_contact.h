@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Spheres, capsules and boxes against the solid voxels of a grid, in its space, where voxels have side 1: the first
-// contact of one that moves, overlaps, and closest points. Voxels are cubes, never rounded. Exact to rounding
-// (march/sweep.h): the faces between solid and empty voxels are swept as two triangles each.
+// Tests spheres, capsules and boxes against the solid voxels of a grid: the first contact of a moving one, overlap, and
+// closest points. Works in the grid's space, where voxels have side 1. Voxels are cubes, never rounded. Exact to
+// rounding (march/sweep.h): the faces between solid and empty voxels are swept as two triangles each.
 //
 // Cost: blocks of 2^n voxels along the way, nearest first; empty blocks of 4 x 4 x 4 voxels and larger are skipped.
 #pragma once

@@ -3,12 +3,13 @@
 //
 //   +---+---+---+---+---+
 //   |   |   |   |   |###|     D = 2: the nearest solid voxel is at Chebyshev distance 2; the cube of radius D - 1
-//   +---+---+---+---+---+     is empty, and the ray goes to where it leaves it
+//   +---+---+---+---+---+     is empty, and the ray advances to the cube's border
 //   |   | v | ,-|-x-|---|->
 //   +---+---+---+---+---+
 //
-// Guarantee: exact. Requires EmptyCubes. Source: cube-assisted raymarching of C. Leak, "Raymarching voxel rendering".
-// Unlike there, the ray goes to the border of the cube, not D - 1 along its length. Cost: a step per cube.
+// Guarantee: exact. Requires EmptyCubes. Source: cube-assisted raymarching as in C. Leak, "Raymarching voxel
+// rendering". Unlike there, the ray advances to the border of the cube, not D - 1 along its length. Cost: a step per
+// cube.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"

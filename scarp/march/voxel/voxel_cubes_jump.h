@@ -7,9 +7,9 @@
 //   |   | v |-,-x |   |
 //   +---+---+---+---+---+
 //
-// Guarantee: exact, unlike there, because the end of the travel is found in integers, as that of voxel-spheres is.
-// Requires EmptyCubes. Source: C. Leak, "Raymarching voxel rendering". Cost: a step per jump, a quarter to a third more
-// than voxel-cubes.
+// Guarantee: exact, unlike the original, because the end point is computed in integers, as in voxel-spheres. Requires
+// EmptyCubes. Source: C. Leak, "Raymarching voxel rendering". Cost: a step per jump, a quarter to a third more than
+// voxel-cubes.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"

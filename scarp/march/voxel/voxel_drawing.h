@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How voxels are drawn on a Vulkan device, and the rays of a picture's pixels. The current camera, for a scene on a
-// device whose voxels are drawn (VoxelDrawing::proxies):
+// How voxels are drawn on a Vulkan device, and the rays of a picture's pixels. To pass the current camera to a scene on
+// a device whose voxels are drawn (VoxelDrawing::proxies):
 //
 //   const auto sight = std::make_shared<VoxelSight>(VoxelSight{VoxelDrawing::proxies});
 //   const Scene there = scene_on(device, scene, sight);
 //   sight->picture = ...;                               // before each picture
 //
-// In batches of free rays, those of the camera are then traced by drawing boxes, all others by compute, with the same
-// results. A ray is one of the camera if it has its origin and a pixel that no other ray of the batch has.
+// In batches of free rays, the camera's rays are then traced by drawing boxes, all others by compute, with the same
+// results. A ray is the camera's if it starts there and has a pixel that no other ray of the batch has.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace scarp {
 
-/// Settings of the marches of voxels on a device.
+/// Settings of voxel marches on a device.
 struct DeviceVoxelSettings {
   std::uint32_t rays_at_once = 1 << 18;  ///< size of a slice: rays on the device at once, 1 to 4,000,000
   bool words = false;                    ///< two 32-bit words instead of 64-bit integers, for tests

@@ -38,7 +38,7 @@ using VI = hn::Vec<decltype(di)>;
 using MD = hn::Mask<decltype(dd)>;
 using MI = hn::Mask<decltype(di)>;
 
-// Integers in 64 bits whose upper halves are 0.
+// 64-bit integers whose upper halves are 0.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE VI product(VI a, VI b) { return hn::Set(di, (hn::GetLane(a) & 0xffffffff) * (hn::GetLane(b) & 0xffffffff)); }
 HWY_INLINE VI lesser(VI a, VI b) { return hn::Min(a, b); }
@@ -75,7 +75,7 @@ HWY_INLINE VI gather_ints(const std::uint32_t* ints, VI index) {
   const VI found = hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(ints), hn::ShiftLeft<2>(index));
   return hn::And(found, hn::Set(di, 0xffffffff));
 }
-// The place of an entry among the values of a table.
+// The index of an entry among the values of a table.
 template <class T>
 HWY_INLINE VI place_in(const SparseTable<T>& table, VI index) {
   if (table.flat()) return index;

@@ -36,16 +36,17 @@ class DeviceVoxelPictures {
 
   /// Sets hits[i] to the closest hit of rays[i], the ray of pixel i, row by row: within half a pixel of its middle, and
   /// with t no less than in the form of VoxelPicture. Returns the indices of rays without an answer, as
-  /// DeviceVoxelQueries does. Throws Error if spans differ in length, or the picture is too large for the device, or
-  /// its rays do not span space; or if the device is lost. details.steps are those in the objects that are hit.
+  /// DeviceVoxelQueries does. Throws Error if spans differ in length, the picture is too large for the device, its rays
+  /// do not span space, or the device is lost. details.steps are those in the objects that are hit.
   std::vector<std::size_t> draw(const DeviceVoxelObjects& objects, const VoxelPicture& picture,
                                 std::span<const Ray> rays, std::span<Hit> hits, const DeviceVoxelDetails& details = {});
 
-  /// Pixels of the last picture that compute answered, because objects may have been at the same depth.
+  /// Returns the number of pixels of the last picture that compute answered, because objects may have been at the same
+  /// depth.
   std::size_t tied() const;
   /// Returns the times of the last picture: the boxes, their hits, and the pixels that compute answered.
   const std::vector<PassTime>& passes() const;
-  /// Size on the device, of the largest picture so far.
+  /// Returns the size in device memory of the largest picture so far, in bytes.
   std::uint64_t bytes() const;
 
  private:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays against voxel grids on a Vulkan device: queries_vk.h for voxels.
+// Batches of rays against voxel grids on a Vulkan device: the counterpart of queries_vk.h for voxels.
 //
 //   rays, double ──▶ device: hierarchy over tight bounds ──▶ quantised per object ──▶ integers ──▶ hits, double
 //
 // Answers are those of the CPU, bit for bit: voxel, face, t, object, entry. The device must support 64-bit floating
 // point numbers, in which rays are quantised. Rays that it cannot trace exactly are left to the caller: those with
-// numbers beyond 2^-200 or 2^200, and those that exceed 60,000 boxes and steps.
+// numbers outside 2^-200 to 2^200 in magnitude, and those that exceed 60,000 boxes and steps.
 #pragma once
 
 #include <cstddef>
@@ -37,15 +37,15 @@ struct DeviceBoxes {
 /// Placed grids on a device. The grids must outlive them.
 class DeviceVoxelObjects {
  public:
-  /// Throws Error naming the object if its numbers are beyond 2^-200 or 2^200, or if the device lacks memory or 64-bit
-  /// floating point numbers.
+  /// Throws Error naming the object if its numbers are outside 2^-200 to 2^200 in magnitude, or if the device lacks
+  /// memory or 64-bit floating point numbers.
   DeviceVoxelObjects(const Device& device, const DeviceVoxels& grids, std::span<const glsl::ScarpVoxelObject> objects,
                      std::span<const glsl::ScarpVoxelTurn> turns, const DeviceBoxes& boxes);
   /// One grid at the origin, as part 0.
   DeviceVoxelObjects(const Device& device, const DeviceVoxels& grids, std::uint32_t grid);
 
   std::uint64_t address() const { return header_.address(); }
-  /// The march of all grids, or kScarpVoxelMarches if they have several.
+  /// Returns the march that all grids use, or kScarpVoxelMarches if they use several.
   std::uint32_t march() const { return march_; }
   /// Returns the levels of the hierarchy.
   std::uint32_t levels() const { return levels_; }
@@ -62,7 +62,7 @@ class DeviceVoxelObjects {
 
 /// More results per ray; empty spans are not filled.
 struct DeviceVoxelDetails {
-  std::span<std::uint32_t> steps{};    ///< of its marches
+  std::span<std::uint32_t> steps{};    ///< of the ray's marches
   std::span<std::uint32_t> entries{};  ///< VoxelGrid::entry() of hits
 };
 

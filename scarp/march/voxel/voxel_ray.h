@@ -11,9 +11,9 @@
 // offset, and every march visits the same voxels on all machines.
 //
 // The quantised ray stays within 2^-21 + 2^-29 * 16384 < 2^-14 voxel (2^-17 in boxes of 2,048) of the ray along every
-// axis; within 2^-20 + 2^-14 along an axis of which it crosses one plane at most.
+// axis; within 2^-20 + 2^-14 along an axis on which it crosses at most one plane.
 //
-// Ties are decided in the directions of the world, so that touching grids agree in any orientation (VoxelTies):
+// Ties are decided by directions in the world, so that touching grids agree in any orientation (VoxelTies):
 //
 //   planes crossed at the same s   in the order x, y, z. Steps go through faces, so a ray through an edge or a corner
 //                                  visits the voxels between, with zero length: solid voxels that touch at an edge let
@@ -46,8 +46,8 @@ struct VoxelRay {
   /// The ray's voxel at t_min, if known more exactly than by its coordinates: a shadow ray starts in the empty
   /// neighbour of the voxel that was hit, and cannot hit that voxel again.
   std::optional<ivec3> start_voxel{};
-  /// Bound of the rounding in `origin` and in the grid's placement, in voxels. A ray along a plane counts as on it
-  /// within this distance, within twice as much at the side of the box to which rays along it belong, and a slow ray
+  /// Bound on the rounding error of `origin` and of the grid's placement, in voxels. A ray along a plane counts as on
+  /// it within this distance, within twice as much at the side of the box to which rays along it belong, and a slow ray
   /// (kSlow) enters the box this much earlier.
   double room = 0.0;
 };
@@ -80,7 +80,7 @@ struct VoxelTies {
 
   VoxelTies() = default;
   explicit VoxelTies(const glm::dmat3& grid_from_world) : VoxelTies(grid_from_world, VoxelTies()) {}
-  /// `frame`: the ties of the space that the matrix maps from, where that is turned, too (Ray::frame).
+  /// `frame`: the ties of the space that the matrix maps from, if that is rotated, too (Ray::frame).
   VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame);
 
   /// 1 or -1: the upper side of planes across this axis.
@@ -99,7 +99,7 @@ struct VoxelTies {
 constexpr std::int64_t kSlow = std::int64_t{1} << (kDirectionBits - 14);
 
 /// Rays may be displaced where they leave one box and enter the next. Planes that a ray has passed by less than this
-/// where it enters a box count as not crossed yet, so it touches the voxels at an edge there: no edge at which two
+/// where it enters a box count as not crossed yet, so the ray touches the voxels at an edge there: no edge at which two
 /// objects touch lets it pass. In 2^-20 voxel, for boxes of 2,048: 2^-20 + 2^-28 2048 of slow components, and rounding.
 constexpr std::int64_t kTouch = 10;
 

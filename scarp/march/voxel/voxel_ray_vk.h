@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: rays and hits in the form of devices.
+// Private to the station: rays and hits in the form that devices use.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// The name of a march by the number that shaders have for it.
+/// Returns the name of a march by its number in shaders.
 constexpr std::string_view voxel_march_name(std::uint32_t march) {
   constexpr std::array<std::string_view, glsl::kScarpVoxelMarches> kNames = {
       "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants", "voxel-bricks"};
@@ -20,9 +20,9 @@ constexpr std::string_view voxel_march_name(std::uint32_t march) {
 }
 
 // Drivers may flush subnormal doubles to zero. The numbers of quantised rays are products of a few of these, and of
-// differences 2^-53 as large.
+// differences that may be 2^-53 as large.
 inline bool is_number_of_devices(double x) { return x == 0 || (std::abs(x) > 0x1p-200 && std::abs(x) < 0x1p200); }
-// The end of a range is compared alone.
+// The end of a range is only compared.
 inline bool is_end_of_devices(double t) { return t >= 0x1p200 || is_number_of_devices(t); }
 // Directions whose lengths also fit in floats, for the hierarchy.
 inline bool is_length_of_devices(double longest) { return longest > 0x1p-60 && longest < 0x1p60; }

@@ -7,9 +7,9 @@
 //   | .-|-x-|-.-|---|->
 //   +---+---+---+---+
 //
-// Guarantee: exact. Requires EmptySpheres. Source: sphere-assisted raymarching of C. Leak, "Raymarching voxel
-// rendering". Unlike there, r is rounded down instead of up, and the end of the travel is found in integers. Cost: a
-// step per sphere.
+// Guarantee: exact. Requires EmptySpheres. Source: sphere-assisted raymarching as in C. Leak, "Raymarching voxel
+// rendering". Unlike there, r is rounded down instead of up, and the end point is computed in integers. Cost: a step
+// per sphere.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"
