@@ -6,7 +6,7 @@
 
 namespace scarp {
 
-/// What a march guarantees about the surface that the field defines.
+/// The guarantee that a march gives about the surface that the field defines.
 enum class Guarantee {
   exact,         ///< the first hit, never lost, within the rounding that doc/dev/numerics.md derives
   conservative,  ///< never passes through the surface; may stop before it or give up (exhausted)

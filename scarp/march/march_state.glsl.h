@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Statuses of answers and state of interrupted marches in single precision, for all kinds of field.
+// Result statuses and the state of interrupted single-precision marches, for all kinds of field.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_MARCH_STATE_GLSL_H
 #define SCARP_MARCH_MARCH_STATE_GLSL_H
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Rays for the marches in single precision over terrain functions and distance fields, and their results. The host
+// Rays for the single-precision marches over terrain functions and distance fields, and their results. The host
 // prepares rays in double (device_function_ray.h): clipped to the part that can hit the field, every number as two
 // floats, with times counting from there.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_RAY_STATES_GLSL_H
 #define SCARP_MARCH_RAY_STATES_GLSL_H
 

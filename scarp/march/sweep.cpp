@@ -16,9 +16,9 @@ constexpr double kUnit = 0x1p-53;
 
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// When a point that starts outside, q from the centre, enters a ball or, with q and m square to its axis, a cylinder.
-// Computed at the point of closest approach: the difference of squares of a long path and a small radius would lose all
-// digits.
+// Returns when a point that starts outside, at q from the centre, enters a ball or, with q and m perpendicular to its
+// axis, a cylinder. Computed at the point of closest approach: the difference of squares of a long path and a small
+// radius would lose all digits.
 // Source: E. Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems (2019).
 double enter_round(const dvec3& q, const dvec3& m, double radius) {
   const double square = dot(m, m), closest = -dot(q, m) / square;
@@ -28,7 +28,8 @@ double enter_round(const dvec3& q, const dvec3& m, double radius) {
   return std::max(0.0, closest - std::sqrt((radius - height) * (radius + height) / square));
 }
 
-// A point that moves from p by m, against the parts of the surface of a dilated body, each of which is part of it.
+// Tests a point that moves from p by m against parts of the surface of a dilated body, each of which belongs to the
+// body.
 class MovingPoint {
  public:
   MovingPoint(const dvec3& p, const dvec3& m, double radius) : p_(p), m_(m), radius_(radius) {}

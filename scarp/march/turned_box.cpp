@@ -20,7 +20,7 @@ void validate(const TurnedBox& box) {
 }
 
 bool overlaps(const TurnedBox& box, const Triangle& triangle) {
-  // In the box's own space, where it is upright.
+  // In the box's own space, where it is axis-aligned.
   Triangle t;
   for (std::size_t i = 0; i < 3; ++i) t[i] = (triangle[i] - box.centre) * box.turn;
   const auto separates = [&](const dvec3& axis) {

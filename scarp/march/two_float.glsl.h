@@ -4,7 +4,7 @@
 //
 //   value = high + low,  |low| <= half a unit in the last place of high: 48 bits
 //
-// Text of C++ and of GLSL (scarp/vk/glsl_cpp.h), GLSL ES 3.0 included. Source: T. J. Dekker, "A floating-point
+// Compiles as C++ and GLSL (scarp/vk/glsl_cpp.h), including GLSL ES 3.0. Source: T. J. Dekker, "A floating-point
 // technique for extending the available precision", Numerische Mathematik 18, 1971; D. E. Knuth, TAOCP 2, 4.2.2. No
 // fused multiply-add is needed. A compiler that reassociates floating-point sums (some of GLSL ES 3.0, which has no
 // `precise`) turns low into zero: the result is then that of plain floats.
@@ -64,7 +64,7 @@ SCARP_FN ScarpTwoFloat scarp_two_line(float whole, float start, float start_low,
   return scarp_two_sum(all.high, low);
 }
 
-/// A float as one.
+/// Converts a float.
 SCARP_FN ScarpTwoFloat scarp_two(float a) {
   ScarpTwoFloat result;
   result.high = a;

@@ -18,7 +18,7 @@ void split(const dvec3& value, glsl::vec3& high, glsl::vec3& low) {
   for (int axis = 0; axis < 3; ++axis) scarp::split(value[axis], high[axis], low[axis]);
 }
 
-// The part of a ray from t_enter to t_exit, times counting in lengths of 1 to 2 metres.
+// Packs the part of a ray from t_enter to t_exit, with times in units of 1 to 2 metres.
 void pack(DeviceFunctionRay& result, const Ray& ray, double t_enter, double t_exit) {
   const double speed = length(ray.direction);
   const int exponent = std::ilogb(speed);
@@ -48,7 +48,7 @@ DeviceFunctionRay device_function_ray(const HeightFunction& function, const Sing
   pack(result, ray, part.t_enter, part.t_exit);
   const dvec3 begin = ray.at(part.t_enter), end = ray.at(part.t_exit);
   const double farthest = std::max({std::abs(begin.x), std::abs(begin.y), std::abs(end.x), std::abs(end.y)});
-  // Rounding of the height, and of the ray itself.
+  // The rounding of the height and of the ray itself.
   result.ray.rounding = static_cast<float>(
       (rounding.at(farthest) + kPair * (std::abs(begin.z) + std::abs(end.z - begin.z))) * (1 + 0x1p-20));
   return result;

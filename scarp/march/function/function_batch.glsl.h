@@ -16,8 +16,8 @@
 
 SCARP_GLSL_BEGIN
 
-// A march is interrupted after run_steps steps and continues in the next run; see loop_turns.glsl.h. The interpreter's
-// iterations count, which kScarpMostInstructions limits.
+// A march is interrupted after run_steps steps and continues in the next run; see loop_turns.glsl.h. The iterations of
+// the interpreter count, too; kScarpMostInstructions limits them.
 //
 // Specialisation constants: threads per workgroup; the march (function_marches.comp), or any hit
 // (lipschitz_local.comp); contents of the program (scarp_uses), so that a shader contains only what it needs: some

@@ -79,7 +79,7 @@ Interval noise_over(NoiseKind kind, std::uint32_t seed, const Interval& x, const
   return kind == NoiseKind::simplex ? simplex_noise(seed, x, y) : square_noise(kind, seed, x, y);
 }
 
-// Only damping needs the gradient: that at the middle, widened by the curvature bound.
+// Only damping needs the gradient: the gradient at the middle, widened by the curvature bound.
 struct NoiseSlope {
   Interval x, y;
 };

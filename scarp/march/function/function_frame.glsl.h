@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A ray over a terrain function in single precision, and its height above the ground.
 //
-// The host clips the ray to the range of the ground's heights, in double (device_function_ray.h). From there times
-// count from 0 in units of the direction, whose length is 1 to 2 metres: the ray's own scaled by a power of two. Every
-// number is two floats, 48 bits; a time is one float and exact: the point follows from the ray's own numbers.
+// The host clips the ray to the range of the ground's heights, in double (device_function_ray.h). From there, times
+// count from 0 in units of the direction, whose length is 1 to 2 metres: it is the ray's own, scaled by a power of two.
+// Every number is two floats, 48 bits; a time is one float and exact: the point follows from the ray's own numbers.
 //
 // Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define scarp_instruction(), see
 // function_heights.glsl.h.

@@ -8,9 +8,8 @@
 // Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define
 //
 //   ScarpInstruction scarp_instruction(uint i);      the i-th of the program
-//   bool scarp_uses(uint part);                      whether an instruction, or kScarpNoiseBit + kind, is in it; true
-//   is
-//                                                    always valid, constants let the compiler drop the rest
+//   bool scarp_uses(uint part);                      whether the program contains an instruction, or kScarpNoiseBit +
+//                                                    kind; true is always valid, constants let compilers drop the rest
 #ifndef SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 #define SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `naive`, `fixed-step`, `relaxed` and `lipschitz` over a terrain function, for shaders: the turns of naive.glsl.h and
-// so on, fed by the probe of function_frame.glsl.h.
+// so on, driven by the probe of function_frame.glsl.h.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. The including file must define scarp_instruction(), see
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define scarp_instruction(), see
 // function_heights.glsl.h.
 #ifndef SCARP_MARCH_FUNCTION_MARCHES_GLSL_H
 #define SCARP_MARCH_FUNCTION_MARCHES_GLSL_H

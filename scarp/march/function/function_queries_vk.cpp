@@ -32,8 +32,8 @@ struct DeviceMarch {
   Sampling sampling;
   std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
-  std::uint32_t choice;  // the shader's
-  bool has_any;          // whether it supports any hit, as the next choice
+  std::uint32_t choice;  // value of the shader's constant
+  bool has_any;          // whether it supports any hit, with choice + 1
   int evaluations;       // maximum evaluations of the program per step
 };
 

@@ -13,7 +13,7 @@
 namespace scarp {
 namespace {
 
-// A row whose batch query traces one ray after the other.
+// A row whose batch query traces one ray after another.
 template <FunctionMarch march>
 constexpr FunctionMarchEntry function_march(const MarchEntry& common) {
   FunctionMarchEntry entry{common};

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz-local` for shaders: lipschitz_local.h in single precision, the same steps by bounds in floats
+// `lipschitz-local` for shaders: lipschitz_local.h in single precision, with the same steps from bounds in floats
 // (function_bounds.glsl.h).
 //
 // Guarantee: conservative, including rounding: it misses no crossing. A hit is a crossing, or a touch: a point where
-// bounds of a segment of 2^-22 of the time, or 4 times the rounding of clearances, do not separate the ray from the
+// the bounds of a segment of 2^-22 of the time, or 4 times the rounding of clearances, do not separate the ray from the
 // ground. A ray from the surface starts at the height computed there, and may be below the ground by 4 times the width
 // of the bounds of a point, until it is proven to be above: it needs no bound of the ground's slope, unlike the other
-// realisations.
+// implementations.
 //
 // Compiles as C++ and GLSL, including GLSL ES 3.0, which lacks `precise`. The including file must define
 // scarp_instruction(), see function_heights.glsl.h.
@@ -62,7 +62,7 @@ SCARP_FN ScarpBound scarp_coordinate(ScarpTwoFloat mid, float origin, float dire
   return t;
 }
 
-/// For the ray, or one that is `lift` metres higher.
+/// Returns the proof for the ray, or for one that is `lift` metres higher.
 SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, float lift, float s0, float s1) {
   float middle = 0.5f * (s0 + s1);
   // Longer by the rounding of the middle and the half.
@@ -96,7 +96,7 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
     proof.end = max(end, over);
     return proof;
   }
-  // Where a line from s0 to s1, as long as 2 half_, is 0, minus the rounding of the time.
+  // Where a line from s0 to s1, of length 2 half_, is 0, minus the rounding of the time.
   float times = 2.0f * half_;
   float rounded = 2.384185791015625e-7f * s1;
   if (begin <= 0.0f)
@@ -111,9 +111,10 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
   return proof;
 }
 
-/// The crossing between s0, above the ground, and s1, where the clearance is h1 <= 0, by secants that weigh the
-/// retained end less and less ("Illinois"), until floats end; s0 if the computed clearance there is not positive.
-/// Neighbouring clearances share most of their rounding error, so they are useful even below ray.rounding.
+/// Returns the crossing between s0, above the ground, and s1, where the clearance is h1 <= 0, by secants that weigh the
+/// retained end less and less ("Illinois"), until no float is left in between; s0 if the computed clearance there is
+/// not positive. Neighbouring clearances share most of their rounding error, so they are useful even below
+/// ray.rounding.
 SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float s1, float h1,
                               SCARP_INOUT(ScarpFunctionHit) hit) {
   float from = s0;

@@ -32,7 +32,7 @@ Hit march_lipschitz_local_filtered(const HeightFunction& function, const HeightF
   Hit hit = march(function, ray);
   Ray rest = ray;
   rest.start = RayStart::on_surface;
-  // The reach counts from where the ray starts.
+  // The reach is measured from the start of the ray.
   const dvec3& d = ray.direction;
   rest.t_max = std::min(ray.t_max, ray.t_min + settings.function.reach / std::hypot(d.x, d.y, d.z));
   while (hit && !accept(hit)) {

@@ -9,7 +9,7 @@
 #include "scarp/march/function/lipschitz_local_walk.h"
 #include "scarp/march/usual_ray.h"
 
-// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
+// Compiled once per instruction set. Vectors whose length is unknown at compile time cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/function/lipschitz_local_simd.cpp"
@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kWalks = 6 * N;  // in progress at once
 
-// Queries of a vector: N walks; the last ones may be repeated.
+// The queries of one vector, from N walks; the last ones may be repeated.
 struct Asked {
   alignas(64) double ox[N], oy[N], dx[N], dy[N], t0[N], t1[N];
 
@@ -36,7 +36,7 @@ struct Asked {
   }
 };
 
-// As coordinate() of height_function.cpp.
+// As coordinate() in height_function.cpp.
 HWY_INLINE VT coordinate(V origin, V direction, V t0, V t1) {
   VT t;
   const V middle = scaled(0.5, hn::Add(t0, t1)), half = scaled(0.5, hn::Sub(t1, t0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Noise in the plane for shaders: field/noise.h in single precision, on the same lattice to the bit.
+// Noise in the plane for shaders: field/noise.h in single precision, on a bit-identical lattice.
 //
 //   position, two floats ──▶ lattice point, an integer modulo 2^32, exact ──▶ hash, identical on all machines
 //                       └──▶ position in the cell, 0 to 1, a float ──▶ noise and its derivatives

@@ -34,8 +34,8 @@ class Search {
     return std::max(0.0, nearest - part.off);
   }
 
-  // Returns whether the quarters of the part have nothing better. Both the point that is found and the closest one are
-  // within GroundPart::off of the triangles.
+  // Returns whether the quarters of the part contain nothing better. Both the point found so far and the closest one
+  // are within GroundPart::off of the triangles.
   bool compare(const GroundPart& part, bool flat) {
     const HeightFieldSettings& settings = field_.settings();
     double nearest = std::numeric_limits<double>::infinity();

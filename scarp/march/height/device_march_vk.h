@@ -4,9 +4,8 @@
 //
 //   march.begin(commands, {ground, rays, hits, count}, query);
 //   do commands.run();
-//   while (march.go_on(commands));    rays that the first, lean pass leaves open take a second pass, and long marches
-//   turns
-//                                     several runs of it (vk/loop_turns.glsl.h)
+//   while (march.go_on(commands));    rays that the first, lean pass leaves open take a second pass,
+//                                     and long marches several runs of it (vk/loop_turns.glsl.h)
 //
 // DeviceQueries (queries_vk.h) uses it for rays from the host, picture renderers for rays made by their shaders.
 #pragma once

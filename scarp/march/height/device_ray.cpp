@@ -17,7 +17,7 @@ namespace {
 // A ray that moves by less than this, in cells, over its whole length counts as not moving: far below the resolution of
 // floats in a cell.
 constexpr double kStandstill = 0x1p-40;
-// Samples per cell beyond which a ray counts as vertical: floats cannot represent more.
+// Slope, in sample units per cell, beyond which a ray counts as vertical: floats cannot represent more.
 constexpr double kSteepest = 0x1p80;
 constexpr double kUnit = 0x1p-53;
 // Positions up to which doubles resolve neighbouring cells well enough.
@@ -33,8 +33,8 @@ TwoFloats two_floats(double x) {
   return sum;
 }
 
-// The part of a ray that counts as over the field along one axis: with the allowance of the border, within which a
-// nearly vertical ray may come down to it.
+// The part of a ray that counts as over the field along one axis: including the allowance of the border, within which a
+// nearly vertical ray may descend to it.
 template <bool Wraps>
 struct AxisTimes {
   double enter, exit;
@@ -46,7 +46,7 @@ struct AxisTimes {
   }
 };
 
-// A ray as two floats per number. Times beyond kScarpNever are stored as kScarpNever.
+// Packs a ray, with two floats per number. Times beyond kScarpNever are stored as kScarpNever.
 void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
   // A ray that does not move along an axis stays in its cell.
   constexpr double kInCell = 1 - 0x1p-24;
@@ -233,7 +233,7 @@ DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip
   if (clip_at_top && !(local.direction.z < 0)) {
     const double rise = field.max_sample() - (local.origin.z + local.direction.z * begin);
     if (rise < 0) return result;
-    // No earlier by rounding.
+    // Rounding must not make it earlier.
     if (local.direction.z > 0) last = std::min(end, begin + rise / local.direction.z * (1 + 4 * kUnit));
   }
   int cell[2];

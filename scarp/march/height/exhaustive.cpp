@@ -20,8 +20,8 @@ struct Span {
 
 Span common(Span a, Span b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
-// When o + d t is in [low, low + size]. Adjacent strips compute their common border alike, so their spans meet exactly,
-// and a ray along it belongs to both.
+// When o + d t is in [low, low + size]. Adjacent strips compute their common border in the same way, so their spans
+// meet exactly, and a ray along it belongs to both.
 Span strip(double o, double d, double low, double size) {
   if (d == 0) return o >= low && o <= low + size ? Span{} : Span{kInfinity, -kInfinity};
   const double a = (low - o) / d, b = (low + size - o) / d;
@@ -76,7 +76,7 @@ class Ground {
     ox_ = ray.origin.x / to.cell_x;
     oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
     oz_ = up_ * (ray.origin.z / to.exaggeration - to.offset) / to.scale;
-    // Times of lines are finite along axes with movement only.
+    // Times of lines are finite only along axes with movement.
     const auto movement = [](double d) { return std::isinf(1 / d) ? 0.0 : d; };
     dx_ = movement(ray.direction.x / to.cell_x);
     dy_ = movement(-ray.direction.y / to.cell_y);
@@ -294,7 +294,7 @@ class Ground {
     return found;
   }
 
-  // A time behind the rims on which the ray is at t: over a field without wrap, the end of its way.
+  // A time after the ray has left the rims on which it is at t: over a field without wrap, the end of its path.
   double beyond(double t) const {
     const double speed = std::max(std::abs(dx_), std::abs(dy_));
     if (!field_.wraps() || speed == 0) return field_.wraps() ? t : kInfinity;
@@ -388,7 +388,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     side = Side::above;
   }
   auto pieces = ground.pieces({ray.t_min, ray.t_max}, on_surface ? &ray.start_cell : nullptr);
-  // Whether the ray comes from a rim to the ground does not depend on where the range ends.
+  // Whether the ray reaches the ground from a rim does not depend on where the range ends.
   const auto cut = [&](const Piece& p) { return p.rim && p.span.end >= ray.t_max; };
   if (std::any_of(pieces.begin(), pieces.end(), cut))
     pieces = ground.pieces({ray.t_min, ground.beyond(ray.t_max)}, nullptr);
@@ -431,7 +431,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
     const double rounding = ground.rounding(p.span.begin);
-    // Where its height overflows, the ray is far from all ground.
+    // Where the height overflows, the ray is far from all ground.
     if (!std::isfinite(p.c)) continue;
     const auto meet_wall = [&] {
       Hit hit = ground.hit(p, 0);
@@ -445,7 +445,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchSt
     if (side == Side::unknown) {
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
-      // A ray from this close that has risen to the rim where it reaches the ground touches it there.
+      // A ray that starts this close and has risen to the rim by the time it reaches the ground touches the rim there.
       const double bound = p.rim ? ground.rounding_at_rim(p.span.begin) : 0.0;
       rises_to_rim = p.c < 0 && p.c >= -bound && p.last >= 0;
       const double touched = ground.meets() ? -bound : 0.0;
@@ -492,7 +492,7 @@ class OfUsualLength {
     if (std::abs(exponent_) < 128) exponent_ = 0;
     for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(d[axis], -exponent_);
     ray_.t_min = std::max(std::ldexp(ray.t_min, exponent_), std::numeric_limits<double>::lowest());
-    // The range ends where the t of the ray are no longer finite.
+    // The range ends where the ray's t is no longer finite.
     ray_.t_max =
         exponent_ == 0 ? ray.t_max : std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent_);
   }

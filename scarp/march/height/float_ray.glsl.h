@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Rays for hosts without doubles: shaders that generate their own rays.
 //
-// They have float precision: the start of the ray has an error of one unit roundoff of its coordinates, so cameras
-// should be placed in columns and rows near the field or, if it wraps, near the point they look at. The march of that
-// ray is as exact as any other; the bound of doc/dev/numerics.md includes 1 / direction by a division accurate to 2.5
+// They have float precision: the start of the ray has an error of one unit roundoff of its coordinates, so the columns
+// and rows of cameras should be near the field or, if it wraps, near the point that they look at. The march of that ray
+// is as exact as any other; the bound of doc/dev/numerics.md includes 1 / direction by a division accurate to 2.5
 // units, as in Vulkan.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_FLOAT_RAY_GLSL_H
 #define SCARP_MARCH_FLOAT_RAY_GLSL_H
 
@@ -17,8 +17,7 @@ SCARP_GLSL_BEGIN
 
 /// A ray from a position over the field. `direction` is in columns, rows and sample units per time and is not zero; the
 /// ray's time is in lengths of it divided by the larger of abs x, abs y (upright: abs z), and `end` is the last such
-/// time. `flags` may be kScarpOnSurface, then z is not read, or, from a higher place than the highest sample,
-/// kScarpAbove.
+/// time. `flags` may be kScarpOnSurface, then z is not read, or, for a start above the highest sample, kScarpAbove.
 SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, float end, uint flags) {
   float speed = max(abs(direction.x), abs(direction.y));
   ScarpRay ray;
@@ -51,7 +50,7 @@ SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, flo
 
 /// A ray from anywhere: `origin` in columns, rows and sample units from sample (0, 0). It is clipped to the border
 /// (unless the field wraps round) and to the highest sample; `travelled` is the time up to there, in the unit of `end`.
-/// Returns false if the field is not on its way; the ray is then undefined. An upright ray needs an end.
+/// Returns false if the ray does not reach the field; the ray is then undefined. An upright ray needs an end.
 SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, float end, SCARP_OUT(ScarpRay) ray) {
   ray = scarp_ray(ivec2(0, 0), vec2(0.0f, 0.0f), origin.z, direction, end, 0u);
   float border = -kScarpNever;  // where the ray enters the field

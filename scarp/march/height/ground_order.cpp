@@ -42,14 +42,14 @@ class Tiles {
  private:
   int index(double position, double per_cell, int cells) const {
     if (field_.wraps()) position -= std::floor(position / cells) * cells;
-    // NaN goes to 0.
+    // NaN becomes 0.
     return static_cast<int>(std::min(std::max(0.0, position * per_cell), kTilesPerSide - 1.0));
   }
   const HeightField& field_;
   double per_col_, per_row_;
 };
 
-// The bits of a number of 8 bits, a zero between each and the next.
+// The bits of an 8-bit number, with a zero between each bit and the next.
 std::uint32_t spread(int n) {
   auto bits = static_cast<std::uint32_t>(n);
   bits = (bits | (bits << 4)) & 0x0f0fu;
@@ -81,7 +81,7 @@ std::vector<std::uint32_t> ground_order(const HeightField& field, std::span<cons
       keys[i] = morton(tiles.tile(rays[i]));
     }
   });
-  // A counting sort; rays of one tile stay in their order.
+  // A counting sort; rays of one tile keep their order.
   std::vector<std::uint32_t> next(kTilesPerSide * kTilesPerSide + 1), order(rays.size());
   for (const std::uint16_t key : keys) ++next[key + 1u];
   for (std::size_t k = 1; k < next.size(); ++k) next[k] += next[k - 1];

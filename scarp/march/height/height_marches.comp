@@ -29,8 +29,8 @@ void main() {
   ScarpHit hit = scarp_no_hit();
   ScarpStretch at = scarp_stretch_begin(field, known_ray(i), settings);
   for (;;) {
-    // The ray is read again for each stretch, to free registers for the turns. The term added to i is 0, which
-    // compilers cannot know; otherwise they would keep the ray.
+    // The ray is read again for each stretch, to free registers for the loop. The term added to i is 0, which compilers
+    // cannot know; otherwise they would keep the ray.
     ScarpRay ray = known_ray(i + (uint(at.stretches) >> 30));
     if (!scarp_stretch_on(field, ray, settings, batch_any, at, hit)) continue;
     // In the loop, for lavapipe: vk/loop_turns.glsl.h.

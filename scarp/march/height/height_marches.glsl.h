@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // `naive`, `fixed-step`, `relaxed` and `lipschitz` over height fields, for shaders: the turns of naive.glsl.h and so
-// on, fed by the probe of height_probe.glsl.h.
+// on, driven by the probe of height_probe.glsl.h.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. The including file must define the functions that cell_surface.glsl.h
-// requires, and scarp_minimum of max_mip.glsl.h, which only `lipschitz` over fields with holes calls.
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define the functions that
+// cell_surface.glsl.h requires, and scarp_minimum of max_mip.glsl.h, which only `lipschitz` over fields with holes
+// calls.
 #ifndef SCARP_MARCH_HEIGHT_MARCHES_GLSL_H
 #define SCARP_MARCH_HEIGHT_MARCHES_GLSL_H
 

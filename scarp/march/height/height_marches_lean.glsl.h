@@ -5,7 +5,7 @@
 //   stretch: the ray restarts at time s0; up to kScarpStretch later its points are plain floats
 //     turn:  o + d t ──▶ four samples ──▶ clearance ──▶ a hit, or the t of the next point
 //
-// Left to the second pass (height_marches.glsl.h), by the status kScarpDoubtful: rays that start or enter below the
+// Left to the second pass (height_marches.glsl.h), with the status kScarpDoubtful: rays that start or enter below the
 // ground, and rays with very many points. Everything constant in a turn is computed once per stretch, because drivers
 // do not move it out of loops.
 //
@@ -82,8 +82,8 @@ struct ScarpStretchAxis {
   float o, d;
 };
 
-/// The axis from the ray's position at the frame's start, up to local time `last`. In between it is within the field
-/// unless that wraps: at borders o and d are corrected for rounding beyond them.
+/// The axis from the ray's position at the frame's start, up to local time `last`. In between, the ray is within the
+/// field unless the field wraps: at borders o and d are corrected for rounding beyond them.
 SCARP_FN ScarpStretchAxis scarp_stretch_axis(ScarpLeanAxis begin, float direction, float last, int cells, bool wraps) {
   ScarpStretchAxis axis;
   axis.cell = begin.cell;

@@ -5,8 +5,8 @@
 // A point at time s is computed from the ray's own numbers in twice float precision: only s is rounded from one point
 // to the next.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. The including file must define what cell_surface.glsl.h requires, and
-// scarp_minimum of max_mip.glsl.h.
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define what cell_surface.glsl.h requires,
+// and scarp_minimum of max_mip.glsl.h.
 #ifndef SCARP_MARCH_HEIGHT_PROBE_GLSL_H
 #define SCARP_MARCH_HEIGHT_PROBE_GLSL_H
 

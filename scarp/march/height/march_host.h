@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// For C++ that needs only the structs of the marches' GLSL text (cell_surface.glsl.h, max_mip.glsl.h), not its
-// functions: the functions that the text requires of its host are declared, but not defined.
+// For C++ that needs only the structs in the marches' GLSL code (cell_surface.glsl.h, max_mip.glsl.h), not its
+// functions: the functions that this code requires of its host are declared, but not defined.
 #pragma once
 
 #include "scarp/vk/glsl_cpp.h"

@@ -10,7 +10,7 @@
 // left. A hit is a sign change between two crossings, each computed once; the next cell inherits the sign. Thus a ray
 // cannot slip through a node, an edge or a diagonal.
 //
-// Guarantee: exact up to rounding: decisions are those of a surface and a ray displaced by at most the bound delta of
+// Guarantee: exact up to rounding: decisions are those for a surface and a ray displaced by at most the bound delta of
 // doc/dev/numerics.md ("Single precision"), about 2^-10 of a cell at a tile's far side. Any hit and closest hit always
 // agree. Source: see max_mip.h.
 //
@@ -66,8 +66,8 @@ SCARP_FN bool scarp_lost(ScarpField field, ScarpFrame frame, ScarpRay ray, float
 }
 
 /// Determines the side at the start of a cell where it is unknown: after the start of the ray, a border or a hole,
-/// where no previous crossing has to agree. Within rounding of the rim a free ray touches it. Returns true if the
-/// answer is known.
+/// where there is no previous crossing to agree with. Within rounding of the rim a free ray touches it. Returns true if
+/// the answer is known.
 SCARP_FN bool scarp_find_side(ScarpField field, ScarpRay ray, ScarpCell cell, float rounding,
                               SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float in_above = scarp_clearance(field, walk.frame, ray, cell, walk.col, walk.row, walk.through, false, walk.t_in);
@@ -187,7 +187,7 @@ SCARP_FN bool scarp_test_start(ScarpField field, ScarpRay ray, ScarpCell cell, i
   float rounding = scarp_rounding(walk.frame, ray, t_out, high, walk.relief);
   walk.side = kScarpAboveGround;
   if ((ray.flags & kScarpUpright) != 0u) {
-    // Straight down is below at once.
+    // A ray straight down is below at once.
     if (ray.direction.z < 0.0f && ray.direction.z * walk.frame.t_end < -rounding) {
       scarp_tell(ray, walk, 0.0f, kScarpHit, hit);
     }
@@ -364,8 +364,8 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
       bool skips = ray_lowest - maximum > rounding;
       hit.fetches += 1u;
       if (skips && walk.side != kScarpBelowGround) {
-        // With holes, the last cell may be one: the side is unknown at the next. Passing a block's corner does not
-        // leave the ground.
+        // With holes, the last cell may be a hole: the side at the next cell is then unknown. Passing a block's corner
+        // does not leave the ground.
         if (!holes)
           walk.side = kScarpAboveGround;
         else if (t_out > walk.t_in)

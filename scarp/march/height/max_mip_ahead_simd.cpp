@@ -38,7 +38,7 @@ using VF4 = hn::Vec<decltype(df4)>;
 using MF = hn::Mask<decltype(df)>;
 
 constexpr std::size_t kRows = N / 4;                 // rows of children in one vector
-constexpr int kParts = 4 / static_cast<int>(kRows);  // vectors of all 16 children
+constexpr int kParts = 4 / static_cast<int>(kRows);  // vectors per 16 children
 
 HWY_INLINE std::uint32_t lane_bits(MF mask) { return static_cast<std::uint32_t>(bits_of(hn::RebindMask(di, mask))); }
 
@@ -143,7 +143,7 @@ class AheadWalk {
 
   // The ray's path through the children of a vector.
   struct Ways {
-    VF x, y;  // their first lines, from the ray's start
+    VF x, y;  // the near grid lines of the children, relative to the ray's start
     VF in, out, low;
     MF crossed;
   };
@@ -155,7 +155,7 @@ class AheadWalk {
     };
     Ways w;
     w.x = lines(f.lane_x, 4 * nx * cells - a_.x[0]), w.y = lines(f.lane_y, row * cells - a_.y[0]);
-    // One time for each line, in all blocks. At its end the ray leaves the field, not through a line.
+    // One time for each line, in all blocks. The ray leaves the field at its end time, not through a line.
     const auto times = [&](VF line, VF last, VF start, VF per)
                            HWY_ATTR { return hn::IfThenElse(hn::Gt(line, last), never, hn::MulAdd(line, per, start)); };
     const VF in_x = times(w.x, f.last_x, f.start_x, f.per_x), in_y = times(w.y, f.last_y, f.start_y, f.per_y);
@@ -168,7 +168,7 @@ class AheadWalk {
     return w;
   }
 
-  // Whether the ray ends in a block: children behind it are crossed later, by the same times.
+  // Whether the ray ends within a block; children beyond it are crossed later, according to the same times.
   HWY_INLINE bool leaves_at_end(int level, std::int32_t nx, std::int32_t ny) const {
     const std::int32_t x = (nx + 1) << level, y = (ny + 1) << level;
     const float tx = x > a_.last_x[0] ? kNever : std::fma(static_cast<float>(x - a_.x[0]), a_.per_x[0], start_x_);

@@ -10,7 +10,7 @@
 namespace scarp {
 namespace {
 
-// The part of a ray over the field, in grid units, as a host with doubles passes it to the text.
+// The part of a ray over the field, in grid units, as a host with doubles passes it to the shader source.
 struct Part {
   GridRay ray;
   double begin = 0, end = 0;  // times; the longest component of ray.direction is 1 to 2

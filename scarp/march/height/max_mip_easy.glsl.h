@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy: the hit of a ray with a height field. One text to paste into a shader: WebGL 2 (GLSL ES 3.00),
+// max-mip-easy: the hit of a ray with a height field. One file to paste into a shader: WebGL 2 (GLSL ES 3.00),
 // GLSL 3.30 and later, Shadertoy. No extensions, no buffers, no doubles.
 //
 //   level 2:  [        ]   lowest ray height over the block > its maximum: on to the next block
 //   level 1:  [   ][   ]   otherwise: down one level
 //   level 0:  [ ][ ][ ][ ] a cell: intersect the bilinear surface between its four heights
 //
-// Give it two 32-bit float textures with the filter NEAREST (maxima: NEAREST_MIPMAP_NEAREST as minification filter):
+// Provide two 32-bit float textures with the filter NEAREST (maxima: NEAREST_MIPMAP_NEAREST as minification filter):
 //   easy_heights   texel (col, row): the height of a node of the grid
 //   easy_maxima    mip level l, texel (col, row): the maximum height of block (col, row) of 2^l x 2^l cells. A cell is
 //                  the square between four nodes, and level 0 holds the maximum of these four. Both sides are powers of
@@ -48,7 +48,7 @@ int easy_top_level() {
 }
 // The height of a node.
 float easy_height(ivec2 node) { return texelFetch(easy_heights, node, 0).x; }
-// The maximum height of a block, at least; level 0: of a cell.
+// The maximum height of a block, or an upper bound of it; level 0: of a cell.
 float easy_maximum(ivec2 block, int level) { return texelFetch(easy_maxima, block, level).x; }
 #endif
 
@@ -76,7 +76,7 @@ vec4 easy_corners(ivec2 node, ivec2 onward) {
               easy_height(node + onward));
 }
 
-// Height of the bilinear surface above the first corner of a cell, at a place in it.
+// Height of the bilinear surface above the first corner of a cell, at a position in it.
 float easy_rise(vec4 corners, vec2 place) {
   float along_x = corners.y - corners.x;
   float twist = (corners.w - corners.z) - along_x;
@@ -109,7 +109,7 @@ EasyHit max_mip_easy(vec3 origin, vec3 direction, float t_max, bool any_hit) {
   vec2 size = vec2(cells);
   int top = easy_top_level();
 
-  // Mirrored, so that the ray goes to +x and +y. -1: this axis is mirrored, and cell c is counted as ~c.
+  // Mirrored, so that the ray advances towards +x and +y. -1: this axis is mirrored, and cell c is counted as ~c.
   ivec2 mirror = ivec2(direction.x < 0.0f ? -1 : 0, direction.y < 0.0f ? -1 : 0);
   vec2 start = vec2(mirror.x < 0 ? size.x - origin.x : origin.x, mirror.y < 0 ? size.y - origin.y : origin.y);
   vec2 speed = vec2(abs(direction.x), abs(direction.y));
@@ -130,7 +130,7 @@ EasyHit max_mip_easy(vec3 origin, vec3 direction, float t_max, bool any_hit) {
   }
   if (!(t_in <= t_out)) return hit;
 
-  // From here on times count from t_in, and places from the first cell.
+  // From here on, times count from t_in, and positions from the first cell.
   vec2 at = clamp(start + speed * t_in, vec2(0.0f), size);
   ivec2 first = min(ivec2(at), cells - 1);
   vec2 place = clamp(at - vec2(first), vec2(0.0f), vec2(kEasyBelowOne));

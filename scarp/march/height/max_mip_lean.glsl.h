@@ -11,10 +11,10 @@
 //
 // A frame starts at a point that two floats represent exactly, and in its first cells floats are exact to 2^-18 of a
 // cell. A hit is decided and located there, for any length of the ray, and the margin only costs a new frame for rays
-// that graze the ground. A ray that starts below the surface, or enters it from a hole, is left to the exact text
-// (max_mip.glsl.h) in a second pass: the status is then kScarpDoubtful.
+// that graze the ground. A ray that starts below the surface, or enters it from a hole, is left to the exact
+// implementation (max_mip.glsl.h) in a second pass: the status is then kScarpDoubtful.
 //
-// Guarantee: decisions are those of a surface and a ray displaced by at most the bound that doc/dev/numerics.md
+// Guarantee: decisions are those for a surface and a ray displaced by at most the bound that doc/dev/numerics.md
 // derives ("The lean pass"); closest and any hit agree. For fields of fewer than 2^17 cells a side whose heights differ
 // by less than 2^100. Source: see max_mip.h.
 //
@@ -37,7 +37,7 @@ SCARP_GLSL_BEGIN
 const float kScarpFreshTime = 4.0f;
 /// Blocks and cells after which a ray is left to the second pass, which can be interrupted.
 const int kScarpLeanTurns = 16384;
-/// Height of a block's code that floats may be off, in codes (numerics.md counts 0.27).
+/// Maximum error of a block's height in floats, in codes (numerics.md counts 0.27).
 const float kScarpCodeRounding = 0.5f;
 
 /// The status of a ray that continues in a new frame.

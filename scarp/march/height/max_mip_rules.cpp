@@ -43,7 +43,7 @@ Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const Hit
     accept = &leaves_start;
   }
   Hit below = march<Ask::as_wanted>(target, ray, {.from_below = true, .accept = accept}, stats);
-  // The ray was above the ground, which adds nothing.
+  // The ray was above the ground, so below the inverted ground: a miss.
   if (below.status == HitStatus::below) below.status = HitStatus::miss;
   if (rules.sides == Sides::below) return below;
   MarchStats of_above;

@@ -18,7 +18,7 @@
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
 
-// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
+// Compiled once per instruction set. Vectors whose length is unknown at compile time cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/height/max_mip_simd.cpp"
@@ -46,7 +46,7 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
   }
 }
 
-// A ray that has to cross a copy of a wrapped ground.
+// A ray that has yet to cross a copy of a wrapped ground.
 struct CopyRay {
   std::size_t ray;
   std::int32_t x, y;
@@ -107,7 +107,7 @@ class VectorWalk {
     add_to(stats);
   }
 
-  // Hits of rays whose cells are known.
+  // Computes the hits of rays whose cells are known.
   void answer_seen(std::span<const FanSight> sights, VectorStats& stats) {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       if (!(sights[i].clear >= 0 && sights[i].clear < std::numeric_limits<float>::infinity())) continue;
@@ -202,7 +202,7 @@ class VectorWalk {
     }
   }
 
-  // Coherent rays: through the pyramid together, or as a beam to where its rays diverge.
+  // Follows coherent rays through the pyramid together, or as a beam up to where its rays diverge.
   void go_together() {
     const std::size_t rays = options_.together ? walk_together(g_, fresh_, kFresh) : 0;
     const std::size_t beam_rays = rays > 0 ? 0 : follow_beam(g_, fresh_, kFresh, beam_length_);
@@ -212,8 +212,8 @@ class VectorWalk {
     for (std::size_t k = 0; k < kFresh; ++k) find_hits_in_place(k);
   }
 
-  // First cells are left here, when all lanes are busy. Any-hit rays usually start next to the ground: doubles are used
-  // at once where floats would be unsure of most.
+  // Rays leave their first cells here, when all lanes are busy. Any-hit rays usually start next to the ground: doubles
+  // are used at once where floats would be unsure of most.
   void take_rays(Lanes& fresh, GridRays& r) {
     if (field_.wraps()) {
       take_endless(fresh, r);
@@ -317,8 +317,8 @@ class VectorWalk {
     return false;
   }
 
-  // The scalar traversal trusts the start cell, the vectors trust positions: vectors continue where both agree and the
-  // cell is not left before the ray starts.
+  // The scalar traversal trusts the start cell, vector code trusts positions: vector code continues where both agree
+  // and the cell is not left before the ray starts.
   HWY_NOINLINE SurfaceStart begin_on_surface(const Ray& ray, const GridRay& local) const {
     const auto is_in = [&](double o, double d, int cell) {
       return std::abs(o + d * ray.t_min - cell - 0.5) < 0.5 + kNearCell;
@@ -366,7 +366,7 @@ class VectorWalk {
         !max_mip::countable(local, ray)) {
       return answer_alone(index);
     }
-    // As the scalar traversal: down to the highest sample at once, across any number of copies.
+    // As in the scalar traversal, moves down to the highest sample at once, across any number of copies.
     double t = ray.t_min;
     if (local.direction.z < 0 && local.origin.z + local.direction.z * t > f_.highest) {
       const double quotient = (f_.highest - local.origin.z) / local.direction.z;
@@ -463,7 +463,7 @@ class VectorWalk {
     }
   }
 
-  // The hits of rays traced together, most of which are at cells: without gathering them first.
+  // Finds the hits of rays traced together, without gathering them first, because most are at cells.
   HWY_INLINE void find_hits_in_place(std::size_t k) {
     Lanes& a = fresh_[k];
     const MI taken = hn::Gt(hn::LoadU(di, a.ray), hn::Set(di, -1));
@@ -482,7 +482,7 @@ class VectorWalk {
     find_hits(c, r_[k]);
   }
 
-  // The hits of candidates_.
+  // Finds the hits of candidates_.
   HWY_NOINLINE void find_hits() {
     Candidates& c = candidates_;
     // Fills the vector with copies whose results are discarded.
@@ -493,7 +493,7 @@ class VectorWalk {
     c.count = 0;
   }
 
-  // Hits in the cells of the candidates as march_max_mip() computes them, bit for bit: the same operations in the same
+  // Finds hits in the cells of the candidates as march_max_mip() does, bit for bit: the same operations in the same
   // order, for the common path through a cell. Other paths, and cells without a hit, fall back to march_max_mip().
   HWY_NOINLINE void find_hits(const Candidates& c, const GridRays& rays) {
     Cells cells;
@@ -522,7 +522,7 @@ class VectorWalk {
       const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, c.t_clear + h)), zero);
       const VD steepest =
           hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
-      // Where it comes in, it may have touched the rim before, within the allowance.
+      // Where a ray enters, it may have touched the rim before, within the allowance.
       const VD cols = hn::Set(dd, f_.cols), rows = hn::Set(dd, f_.rows);
       const VD enter_x = CellRays::line(hn::IfThenElse(r.back_x, hn::Add(first_x, cols), first_x), r.ox, r.per_x);
       const VD enter_y = CellRays::line(hn::IfThenElse(r.back_y, hn::Add(first_y, rows), first_y), r.oy, r.per_y);
@@ -533,7 +533,7 @@ class VectorWalk {
       const VD before = hn::IfThenElseZero(hn::Ge(hn::Max(enter_x, enter_y), t_in),
                                            hn::Max(late(cols, r.ox, r.dx, r.per_x), late(rows, r.oy, r.dy, r.per_y)));
       const auto above = hn::Gt(m.in, hn::Add(hn::Mul(hn::Add(gap, before), steepest), doubt));
-      // march_max_mip() starts where the ray comes down to the highest sample, not before.
+      // march_max_mip() starts where the ray descends to the highest sample, not before.
       const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
       const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
       const auto begun = hn::Or(hn::Ge(r.dz, zero), hn::Ge(t_line, t_top));

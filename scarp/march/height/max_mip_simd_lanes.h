@@ -142,7 +142,7 @@ struct Packet {
     e.to_x = hn::Sub(hn::ConvertTo(df, hn::Sub(e.x, begin_x)), ox);
     e.to_y = hn::Sub(hn::ConvertTo(df, hn::Sub(e.y, begin_y)), oy);
     e.tx = hn::Mul(e.to_x, per_x), e.ty = hn::Mul(e.to_y, per_y);
-    // At its end it leaves the field, not through a line.
+    // The ray leaves the field at its end time, not through a line.
     e.tx = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.x, last_x)), never, e.tx);
     e.ty = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.y, last_y)), never, e.ty);
     // In floats, a line next to the start may have been crossed before it; both are then equal within rounding.

@@ -52,7 +52,7 @@ void for_each_piece(const HeightField& field, std::span<const Ray> rays, std::in
   }
 }
 
-// Ray by ray, by answer(i).
+// Answers ray by ray, using answer(i).
 template <class Answer>
 void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Answer& answer) {
   for_each_piece(field, rays, kRaysPerScalarPiece,
@@ -65,10 +65,10 @@ void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Ans
                  });
 }
 
-// Many rays at once, by answer(rays, answers).
+// Answers many rays at once, using answer(rays, answers).
 template <class Result, class Answer>
 void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<Result> results, const Answer& answer) {
-  // A thousand rays are also worth several threads.
+  // Even a thousand rays are worth several threads.
   const auto some = static_cast<std::int64_t>(rays.size() / 8);
   const std::int64_t piece = std::clamp(some, kRaysPerScalarPiece, kRaysPerVectorPiece);
   for_each_piece(field, rays, piece, [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {

@@ -33,12 +33,12 @@ class HeightRuns : public RaySlices<HeightRays> {
         rays_(device, glsl::ray_blocks(slice_) * sizeof(glsl::RayBlock), "rays"),
         answers_(device, glsl::ray_blocks(slice_) * sizeof(glsl::HitBlock), "hits") {}
 
-  // begin(commands, rays, hits, count) records the first run of a march on buffers of these addresses,
+  // begin(commands, rays, hits, count) records the first run of a march on buffers at these addresses,
   // go_on(commands) the next one, or returns false if there is none.
   template <class Begin, class GoOn, class Prepare, class Answer>
   void ask(const Begin& begin, const GoOn& go_on, std::size_t count, const Prepare& prepare, const Answer& answer) {
     ask_in_slices(count, prepare, answer, [&] {
-      // Each ray keeps its place. Those that do not march end at once.
+      // Each ray keeps its index. Those that do not march end at once.
       const std::size_t blocks = glsl::ray_blocks(prepared_.size());
       packed_.resize(blocks);
       for_each_ray([&](std::size_t block, std::uint32_t i, std::size_t ray) {
@@ -86,7 +86,7 @@ glsl::ScarpSampling sampling_of(Sampling march, const MarchSettings& settings, c
   return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
 }
 
-// For rays that DeviceRay::lingers keeps from the device.
+// Answers rays that DeviceRay::lingers keeps off the device.
 Hit on_host(const DeviceTarget& target, const Ray& ray) {
   return march_exhaustive({.field = target.field, .seam = target.seam}, ray);
 }

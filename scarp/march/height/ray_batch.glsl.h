@@ -46,7 +46,7 @@ struct RayBatch {
   Address rays;
   Address hits;
   uint count;
-  ScarpSampling settings;  ///< of all but max-mip
+  ScarpSampling settings;  ///< for all marches except max-mip
   int turns;               ///< of a march's loop in one run
   uint resume;             ///< kBatchBegin and so on
   Address states;
@@ -91,7 +91,7 @@ ScarpField batch_field(ScarpRay ray) {
   return field;
 }
 
-// Marks that some march has not finished.
+// Marks that at least one march has not finished.
 void batch_mark() { BatchWord(batch.under_way).word = 1u; }
 // Marks that the march of ray i has not finished.
 void batch_interrupt(uint i) {

@@ -7,7 +7,7 @@
 // The invocations of a subgroup read the same component of successive rays at once: in this order these are adjacent
 // words, a single memory transaction. Stored ray by ray, 92 bytes apart, they would be one transaction each.
 //
-// Text of C++ and GLSL.
+// Compiles as C++ and GLSL.
 #ifndef SCARP_MARCH_RAY_BLOCKS_GLSL_H
 #define SCARP_MARCH_RAY_BLOCKS_GLSL_H
 
@@ -87,7 +87,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Ra
 layout(buffer_reference, scalar, buffer_reference_align = 16) writeonly buffer RayBlockTo { RayBlock is; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer HitBlockAt { HitBlock is; };
 
-// The block of ray i, by 32 bits: batches have less than 2^32 bytes.
+// The block of ray i, with 32-bit offsets: batches have less than 2^32 bytes.
 Address ray_block_address(Address begin, uint i, uint block_bytes) {
   uint low = begin.x + (i / kRayBlock) * block_bytes;
   return Address(low, begin.y + (low < begin.x ? 1u : 0u));

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A ray over a height field in single precision: the field and the ray in the form of shaders, and the frame of
+// A ray over a height field in single precision: the field and the ray in the form that shaders use, and the frame of
 // reference in which floats are exact enough.
 //
-//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray restarts:
-//   at |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o comes
-//   from |        __-+-          |     the ray's own numbers in twice a float's precision, never from the frame before,
-//   so |    _--    |           |     nothing accumulates; and s0 is a float, whatever it was computed from: it has no
-//   error.
-//   +-----------+-----------+
+//   +-----------+-----------+     A frame is a tile of the grid, at most 1,024 cells wide. The ray restarts in it: at
+//   |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o is
+//   |        __-+-          |     computed from the ray's own numbers in twice a float's precision, never from the
+//   |    _--    |           |     previous frame, so nothing accumulates. s0 has no error: it is a float, whatever it
+//   +-----------+-----------+     was computed from.
 //
 // Units: x in columns, y in rows (southwards), z in sample units. Time s counts from the ray's start, in lengths of its
 // direction, whose longer horizontal component is 1 to 2 cells. Derivation of the rounding errors: doc/dev/numerics.md.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_RAY_FRAME_GLSL_H
 #define SCARP_MARCH_RAY_FRAME_GLSL_H
 

@@ -5,16 +5,16 @@
 //   scarp_heights   32-bit float, one channel: texel (col, row) is the sample there
 //   scarp_bounds    32-bit float, two channels, with mip levels: texel (col, row) of mip level l - 1 holds the maximum
 //                   and the minimum code of block (col, row) of level l, as accel/max_pyramid.h makes them. Its sides
-//                   are powers of two no less than those of level 1, so that every level has room; texels beyond
-//                   means nothing
+//                   are powers of two, at least as large as those of level 1, so that every level fits; texels
+//                   beyond are unused
 //
 // Both use NEAREST filters, except for the minification of scarp_bounds: NEAREST_MIPMAP_NEAREST, because without a
 // mipmap filter texelFetch reads only the first level. Hosts that cannot fill mip levels (Shadertoy) place them side by
 // side in one level, and implement scarp_maximum and scarp_minimum themselves.
 //
-// GLSL, including GLSL ES 3.0. The including file must declare before:
+// GLSL, including GLSL ES 3.0. Before including this file, declare:
 //   uniform highp sampler2D scarp_heights, scarp_bounds;
-//   uniform highp float scarp_nodata;                      value of a hole; NaN is one anyway
+//   uniform highp float scarp_nodata;                      value of a hole; NaN always marks a hole
 #ifndef SCARP_MARCH_TEXTURES_GLSL_H
 #define SCARP_MARCH_TEXTURES_GLSL_H
 

@@ -7,7 +7,7 @@
 // Times are a quotient plus one correction by its remainder, accurate to 2^-44 of the line's coordinates relative to
 // sample (0, 0). Positions thus agree with those of a ray in doubles to 2^-24 of a cell at 2^20 cells.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_TWO_FLOAT_RAY_GLSL_H
 #define SCARP_MARCH_TWO_FLOAT_RAY_GLSL_H
 
@@ -26,7 +26,7 @@ struct ScarpLine {
 
 /// A ray of a march, and the mapping of its times to the line: t = begin + time * per_time.
 struct ScarpSent {
-  int marches;          ///< 0: the field is not on its way
+  int marches;          ///< 0: the ray does not reach the field
   ScarpRay ray;         ///< defined if it marches
   ScarpTwoFloat begin;  ///< on the line
   float per_time;       ///< a power of two
@@ -77,7 +77,7 @@ SCARP_FN ScarpTwoFloat scarp_two_earlier(ScarpTwoFloat a, ScarpTwoFloat b) {
 struct ScarpSpan {
   ScarpTwoFloat begin, end;
 };
-/// Along one axis, given the line's numbers along it; `cells` is its last line.
+/// The span along one axis, given the line's numbers along it; `cells` is the last grid line.
 SCARP_FN ScarpSpan scarp_span(float origin, float origin_low, float direction, float direction_low, float cells) {
   ScarpSpan span;
   if (direction == 0.0f) {
@@ -147,7 +147,7 @@ const uint kScarpSendSampled = 1u;      ///< by a sampling march: not clipped to
 const uint kScarpSendFromSurface = 2u;  ///< from the surface of the given cell; z is read by sampling marches
 
 /// Returns the ray of a line from time `begin`, which is 0 from the surface, to `end`, which may be kScarpNever unless
-/// the field wraps. `cell` and `place` are read from the surface only.
+/// the field wraps. `cell` and `place` are read only for rays from the surface.
 SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat begin, ScarpTwoFloat end, uint how,
                               ivec2 cell, vec2 place) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
@@ -279,7 +279,7 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
   return sent;
 }
 
-/// Time on the line of a march's result.
+/// Returns the time on the line of a march's result.
 SCARP_FN ScarpTwoFloat scarp_sent_time(ScarpSent sent, ScarpHit hit) {
   ScarpTwoFloat time = scarp_two_sum(hit.time * sent.per_time, hit.time_low * sent.per_time);
   return scarp_two_add(sent.begin, time);

@@ -2,7 +2,7 @@
 // `fixed-step` for shaders: the march of fixed_step.h in single precision. Guarantee: approximate, as there. Its points
 // are those of the march in double.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_SAMPLING_FIXED_STEP_GLSL_H
 #define SCARP_MARCH_SAMPLING_FIXED_STEP_GLSL_H
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `lipschitz` for shaders: the march of lipschitz.h in single precision. Guarantee: conservative, as there, except for
-// rounding (doc/dev/numerics.md, "Single precision"); over functions rounding is counted. Without
+// rounding (doc/dev/numerics.md, "Single precision"); over functions rounding is included. Without
 // ScarpSampling::proven: approximate.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_SAMPLING_LIPSCHITZ_GLSL_H
 #define SCARP_MARCH_SAMPLING_LIPSCHITZ_GLSL_H
 

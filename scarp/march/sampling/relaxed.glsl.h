@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `relaxed` for shaders: the march of relaxed.h in single precision. Guarantee: approximate, as there.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_SAMPLING_RELAXED_GLSL_H
 #define SCARP_MARCH_SAMPLING_RELAXED_GLSL_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Settings and ray of naive, fixed-step, relaxed and lipschitz in shaders.
+// Settings and rays of naive, fixed-step, relaxed and lipschitz in shaders.
 //
 // Each march is a *turn* (naive.glsl.h and so on): given the clearance at time state.s, it returns a hit or sets
 // state.s to the next time. The loops are in height/height_marches.glsl.h and function/function_marches.glsl.h.
@@ -9,7 +9,7 @@
 // Functions called in each turn return only at their end: an early return becomes a loop of one turn, and some drivers
 // limit the iterations of all loops (vk/loop_turns.glsl.h).
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_SAMPLING_SAMPLING_GLSL_H
 #define SCARP_MARCH_SAMPLING_SAMPLING_GLSL_H
 
@@ -18,7 +18,7 @@
 
 SCARP_GLSL_BEGIN
 
-// The march.
+// Values of ScarpSampling::march.
 const uint kScarpNaive = 0u;
 const uint kScarpFixedStep = 1u;
 const uint kScarpRelaxed = 2u;
@@ -59,7 +59,8 @@ SCARP_FN ScarpSampling scarp_sampling(uint march, float factor, float least, flo
   return settings;
 }
 
-/// A ray in the form of the marches; all members are times, except as noted. Clearances are in the field's own unit.
+/// A ray in the form that the marches use; all members are times, except as noted. Clearances are in the field's own
+/// unit.
 struct ScarpWay {
   float exit;           ///< when it leaves the field or its range ends: naive's minimum step is a fraction of it
   float last;           ///< of the last point, inclusive: exit, or earlier if nothing more can be hit
@@ -92,8 +93,8 @@ SCARP_FN float scarp_hit_limit(ScarpWay way, ScarpSampling settings, float s) {
   return margin > 0.0f ? share - margin : max(settings.height * way.per_clearance, share);
 }
 
-/// Returns whether the ray enters below the ground at the point at state.s, through the border or from a hole. That is
-/// not a hit: the ray continues, and hits where it later crosses the ground from above.
+/// Returns whether the ray enters below the ground at the point at state.s, through the border or from a hole. Entering
+/// there is not a hit: the ray continues, and hits where it later crosses the ground from above.
 SCARP_FN bool scarp_comes_in_under(ScarpWay way, bool valid, float clearance, ScarpMarchState state) {
   bool unseen_before = (state.phase & kScarpKnown) == 0u && (state.steps > 0 || way.from_outside);
   return valid && clearance < -way.rounding && unseen_before;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Calls naive, fixed-step, relaxed or lipschitz by ScarpSampling::march. If that is a constant, compilers leave out the
+// Calls naive, fixed-step, relaxed or lipschitz by ScarpSampling::march. If that is a constant, compilers omit the
 // others.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included.
+// Compiles as C++ and GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_SAMPLING_SAMPLING_MARCHES_GLSL_H
 #define SCARP_MARCH_SAMPLING_SAMPLING_MARCHES_GLSL_H
 

@@ -46,11 +46,12 @@ SCARP_FN float scarp_corner3(float x, float y, float z) {
   return scarp_length3(max(x, 0.0f), max(y, 0.0f), max(z, 0.0f)) + min(max(max(x, y), z), 0.0f);
 }
 
-/// Returns the distance to a cone, upright about the origin: its radii at the lower and the upper end, half its height.
+/// Returns the distance to a cone, upright about the origin, given its radii at the lower and the upper end and half
+/// its height.
 SCARP_FN float scarp_cone(vec3 q, float below, float above, float half_) {
   float r = scarp_length2(q.x, q.y);
   float beyond = abs(q.z) - half_;
-  // To the nearer disc, and to the side, `along` of the way down from its upper end.
+  // To the nearer disc, and to the side, at the fraction `along` of its length from the upper end.
   float disc = scarp_length2(max(r - (q.z < 0.0f ? below : above), 0.0f), beyond);
   float dr = below - above;
   float dz = -2.0f * half_;

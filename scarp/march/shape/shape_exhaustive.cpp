@@ -116,7 +116,7 @@ class Evaluation {
     if (g.holes) value = max(value, over_hole(*g.holes, x, y));
     return clamped(value, node, p);
   }
-  // To the rim of the nearest hole, positive over holes, capped at the length of a cell.
+  // Distance to the rim of the nearest hole, positive over holes, capped at the length of a cell.
   static Interval over_hole(const HeightField& field, const Interval& x, const Interval& y) {
     const HeightFieldSettings& s = field.settings();
     const double far = std::min(s.cell_x, s.cell_y);
@@ -130,7 +130,7 @@ class Evaluation {
       const auto wrapped = [](double at, int count) { return static_cast<int>(at - std::floor(at / count) * count); };
       return !field.cell_heights({wrapped(c, cols), wrapped(r, rows)});
     };
-    // Between a position along an axis and a cell on side `d` of cell `c`, in cells.
+    // Distance between a position along an axis and a cell on side `d` of cell `c`, in cells.
     const auto away = [](const Interval& place, double c, int d) {
       return d == 0 ? Interval(0.0) : d > 0 ? positive(c + 1.0 - place) : positive(place - c);
     };

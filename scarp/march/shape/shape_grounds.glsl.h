@@ -4,7 +4,7 @@
 //
 // Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define
 //
-//   float scarp_field_sample(int col, int row);      a sample of the field, in sample units; there are no holes
+//   float scarp_field_sample(int col, int row);      a sample of the field, in sample units; never a hole
 //   bool scarp_field_hole(int col, int row);         whether a cell is a hole
 #ifndef SCARP_MARCH_SHAPE_GROUNDS_GLSL_H
 #define SCARP_MARCH_SHAPE_GROUNDS_GLSL_H

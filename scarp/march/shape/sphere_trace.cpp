@@ -23,7 +23,7 @@ constexpr double kGrowth = 2, kShrink = 0.4;
 constexpr double kCertainAhead = 4;
 // Balls that grow by less, along a face for example, do not advance quickly enough.
 constexpr double kGrowing = 1.125;
-// Number of those before a segment, whose bound costs as much as about 8 values.
+// Number of such balls before a segment, whose bound costs as much as about 8 values.
 constexpr int kPatience = 6;
 
 // First segment of a ray from the surface, as a fraction of all: short enough to skip most of a shape.
@@ -66,7 +66,7 @@ class Trace {
     return first_outside(t, hit) ? closest_from_outside(t) : hit;
   }
 
-  // The closest hit behind the one that was returned last.
+  // Returns the closest hit behind the one returned last.
   Hit next() {
     Hit hit;
     double t = behind_;
@@ -127,7 +127,7 @@ class Trace {
     return hit;
   }
 
-  // Moves t to where the ray is outside for the first time. Returns false if it is decided before, in `hit`.
+  // Moves t to where the ray is outside for the first time. Returns false if the answer is known before, in `hit`.
   bool first_outside(double& t, Hit& hit) {
     if (!crosses()) return false;
     if (ray_.start == RayStart::on_surface) return leave(t, hit);
@@ -141,7 +141,7 @@ class Trace {
     return emerge(t, hit);
   }
 
-  // From inside: moves t to where the ray is outside. Returns false if it is not before it ends, in `hit`.
+  // From inside: moves t to where the ray is outside. Returns false if the ray ends before, with the answer in `hit`.
   bool emerge(double& t, Hit& hit) {
     for (;;) {
       hit = Hit{};
@@ -192,7 +192,7 @@ class Trace {
     return false;
   }
 
-  // Along one side of the surface to its crossing: by balls while they grow, otherwise by segments.
+  // Follows the ray along one side of the surface to its crossing: by balls while they grow, otherwise by segments.
   WalkEnd follow(double t, Medium side) {
     const double sign = side == Medium::outside ? 1 : -1;
     double length = 0;  // of the next segment
@@ -238,7 +238,7 @@ class Trace {
     return t;
   }
 
-  // Until when a segment is proven to be on this side, and from when on not to be, if finite.
+  // The time until which a segment is proven to be on this side, and that from which it is proven not to be, if finite.
   struct Proof {
     double until, sunk;
   };
@@ -256,8 +256,8 @@ class Trace {
     return proof;
   }
 
-  // The crossing between t0, outside, and t1, by secants that weigh the retained end less and less ("Illinois"), until
-  // the value is rounding error or doubles end.
+  // Finds the crossing between t0, outside, and t1: by secants that weigh the retained end less and less ("Illinois"),
+  // until the value is within rounding error or no double is left in between.
   double crossing(double t0, double t1) {
     double f0 = value(t0), f1 = value(t1);
     if (f0 <= rounding(t0)) return t0;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `sphere-trace` for shaders: balls alone, in floats, whereas sphere_trace.h also uses bounds of segments. r is the
+// `sphere-trace` for shaders: ball bounds only, in floats, whereas sphere_trace.h also uses segment bounds. r is the
 // error of values: ScarpFunctionRay::rounding at the ray's start, growing with the distance.
 //
 //   outside   the next step is the value minus r; a hit if that is at most r or the tolerance, followed by a few steps
-//   by
-//             the whole value, to the surface as floats resolve it
+//             by the whole value, to the surface as floats resolve it
 //   inside    the same with opposite sign, and across the surface by a step of 2 r
 //   from the surface: a step of r; then the solid counts as 4 r thinner, until the ray is 4 r away from it
 //

@@ -81,7 +81,7 @@ class RoundedShape {
 
 dvec3 from_inner_box(const InnerBox& box, const dvec3& p) { return p - glm::clamp(p, box.low, box.high); }
 
-// The first t of [begin, end], in the voxel's cube, at which the ray is within the radius of the inner box.
+// Returns the first t in [begin, end], within the voxel's cube, at which the ray is within the radius of the inner box.
 std::optional<double> enter(const RoundedShape& shape, const VoxelRay& ray, double begin, double end) {
   const double square = shape.radius() * shape.radius();
   // Between the planes of the inner boxes and of the middle the ray is in one eighth, and outside along the same axes.

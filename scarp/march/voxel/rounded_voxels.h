@@ -3,13 +3,12 @@
 //
 //   +-----------+      the cube of a voxel, inset by the radius on each face that has no solid voxel behind it, then
 //   |  .-----.  |      dilated by the radius, clipped to the cube: a ball rolled along its edges.
-//   | |       | |      Faces between two solid voxels stay: walls are flat, steps meet, no gaps open between
-//   neighbours,
-//   +-----------+      and edges that touch another voxel's stay sharp, so that rays blocked by cubes are blocked.
-//                      `each`: every voxel is rounded on all sides, like a heap of dice
+//   | |       | |      Faces between two solid voxels stay: walls are flat, steps meet, and no gaps open
+//   +-----------+      between neighbours. Edges that touch an edge of another voxel stay sharp, so that rays that
+//                      cubes block are blocked. `each`: every voxel is rounded on all sides, like a heap of dice
 //
 // Guarantee: the traversal from voxel to voxel is that of the march, exact. In a voxel the squared distance to the
-// inner box is a parabola between the planes of that box, and its first root is taken: t is accurate to some roundings
+// inner box is a parabola between the planes of that box, and its first root is taken: t is accurate to a few roundings
 // of double, and a ray that grazes an edge by less may pass or hit. A ray that passes a voxel's edge continues in the
 // neighbour behind the face by which it leaves (decided in double; ties in the order x, y, z), quantised again from the
 // original ray: nothing accumulates. Source: rounded boxes as in I. Quilez, "Distance functions".

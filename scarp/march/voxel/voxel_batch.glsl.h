@@ -15,7 +15,7 @@
 SCARP_GLSL_BEGIN
 
 // Specialisation constants: threads per workgroup; any hit or closest hit; the march, or kScarpVoxelMarches if grids
-// have several; levels of the hierarchy; whether 64-bit integers are two words; whether hits have their entry.
+// use several; levels of the hierarchy; whether 64-bit integers are two words; whether hits have their entry.
 
 /// Numbers of a ray that stay in memory during marches.
 struct ScarpVoxelScratch {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays through the hierarchy over voxel objects, which is that of BoxTree, in single precision: boxes are padded by
-// more than the rounding errors. GLSL with float64, which is used to clip the ray to the outer box.
+// Rays through the hierarchy over voxel objects, that of BoxTree, in single precision: boxes are padded by more than
+// the rounding errors. GLSL with float64, which is used to clip the ray to the outer box.
 //
 // The stack holds one word per level, a node and a mask of its remaining children, instead of all children yet to
 // visit. The nearest of them is found again on the way back.
@@ -9,7 +9,7 @@
 
 #include "scarp/march/voxel/voxel_batch.glsl.h"
 
-// The largest inverse of a direction, and the factor of BoxTree, doubled: quotients of devices have errors of 2.5 units
+// The largest inverse of a direction, and the factor of BoxTree, doubled: device quotients have errors of 2.5 units
 // instead of one half.
 const float kSteepest = 1152921504606846976.0;
 const float kRounding = 1.0 + 1.0 / 524288.0;
@@ -61,7 +61,7 @@ bool enter_boxes(uint i, VoxelObjects scene, out float end) {
   return true;
 }
 
-// No child is as large.
+// Larger than any child.
 const uint kScarpNoChild = 0xffffffffu;
 
 // Returns the child of a node to visit next: the nearest of those in `rest` that the ray hits before `end`, or

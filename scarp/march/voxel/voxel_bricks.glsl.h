@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `voxel-bricks` in shaders (voxel_bricks.h). Text of C++ and of GLSL. The host defines scarp_voxel_mask() and
+// `voxel-bricks` in shaders (voxel_bricks.h). Compiles as C++ and GLSL. The host defines scarp_voxel_mask() and
 // scarp_voxel_sector().
 #ifndef SCARP_MARCH_VOXEL_BRICKS_GLSL_H
 #define SCARP_MARCH_VOXEL_BRICKS_GLSL_H

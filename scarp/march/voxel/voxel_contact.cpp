@@ -27,7 +27,7 @@ void search(const VoxelGrid& grid, const Bound& bound, const Solid& solid, const
   int side = VoxelGrid::kBrick;
   while (side < std::max({grid.size().x, grid.size().y, grid.size().z})) side *= 2;
   const auto later = [](const Block& a, const Block& b) { return a.bound > b.bound; };
-  std::vector<Block> blocks{{0, ivec3(0), side}};  // a heap, the least bound on top
+  std::vector<Block> blocks{{0, ivec3(0), side}};  // a heap, the smallest bound on top
   while (!blocks.empty()) {
     std::pop_heap(blocks.begin(), blocks.end(), later);
     const Block block = blocks.back();

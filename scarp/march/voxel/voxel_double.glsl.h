@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Rays through voxels in double, with the results of the CPU: quotients, and voxel_quantise.glsl.h. Text of C++ and of
-// GLSL with float64.
+// Rays through voxels in double, with the results of the CPU: quotients, and voxel_quantise.glsl.h. Compiles as C++
+// and GLSL with float64.
 //
-// Drivers divide doubles with errors of some units. A quotient is corrected until its remainder, an exact integer, is
+// Drivers divide doubles with errors of a few units. A quotient is corrected until its remainder, an exact integer, is
 // less than half the divisor. (A quotient of two integers below 2^53, or of 1 and a double, never lies halfway between
 // two doubles.)
 #ifndef SCARP_MARCH_VOXEL_DOUBLE_GLSL_H
@@ -106,7 +106,7 @@ SCARP_FN double scarp_turned(dvec3 row, dvec3 v) {
   return sum;
 }
 
-/// VoxelRay::room of a ray with Ray::room, in a grid with so many voxels per metre.
+/// VoxelRay::room of a ray with Ray::room, in a grid with this many voxels per metre.
 SCARP_FN double scarp_voxel_room(double own, double per_metre, uint room) {
   SCARP_PRECISE double placed = packDouble2x32(uvec2(0u, room << 16)) * per_metre;
   return own < placed ? placed : own;

@@ -8,7 +8,7 @@
 // quantised in single precision, which displaces it by at most 2^-20 (1 + |origin| + |path|) voxel along each axis; the
 // march of the quantised ray is exact (voxel_walk.glsl.h).
 //
-// Text of GLSL, GLSL ES 3.0 included.
+// GLSL, including GLSL ES 3.0.
 #ifndef SCARP_MARCH_VOXEL_FLOAT_RAY_GLSL_H
 #define SCARP_MARCH_VOXEL_FLOAT_RAY_GLSL_H
 
@@ -44,7 +44,7 @@ SCARP_FN bool scarp_voxel_ray(ivec3 low, ivec3 high, vec3 origin, vec3 direction
                               bool has_start, ivec3 start, SCARP_OUT(ScarpVoxelWalk) walk,
                               SCARP_OUT(ScarpVoxelEntry) entry) {
   float longest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
-  // Quotients of devices have errors of 2.5 units; no component may appear longer than the longest one. No
+  // Device quotients have errors of 2.5 units; no component may appear longer than the longest one. No
   // path is exact here.
   float per_longest = (1.0f - 1.0f / 2097152.0f) / longest;
   ScarpVoxelClip clip = ScarpVoxelClip(t_min, t_max, -1, false);

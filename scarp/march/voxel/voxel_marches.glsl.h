@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loop of all voxel marches in shaders. Text of C++ and of GLSL, GLSL ES 3.0 included. The host defines the
+// The loop of all voxel marches in shaders. Compiles as C++ and GLSL, including GLSL ES 3.0. The host defines the
 // functions that the marches require (voxel_planes.glsl.h, voxel_cubes.glsl.h, voxel_bricks.glsl.h).
 #ifndef SCARP_MARCH_VOXEL_MARCHES_GLSL_H
 #define SCARP_MARCH_VOXEL_MARCHES_GLSL_H

@@ -15,7 +15,7 @@
 #include "scarp/march/voxel/voxel_double.glsl.h"
 #include "scarp/march/voxel/voxel_marches.glsl.h"
 
-// A ray on its way.
+// A ray during its traversal.
 struct VoxelQuery {
   uint ray;
   uint turn;  // of its direction in memory
@@ -24,7 +24,7 @@ struct VoxelQuery {
   int turns;  // left
 };
 
-// VoxelDirection of a ray, into memory.
+// Writes the VoxelDirection of a ray to memory.
 void scarp_turn_ray(uint ray, uint turn, VoxelTurns turns) {
   VoxelScratch scratch = VoxelScratch(batch.scratch);
   double per_longest = 0.0lf;
@@ -94,7 +94,7 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
   return met;
 }
 
-// Looks for a hit in an object that is better than the current one. If there is one, writes it and returns true.
+// Searches an object for a hit better than the current one. If there is one, writes it and returns true.
 bool scarp_ask_object(VoxelObjects scene, uint index, inout VoxelQuery query) {
   VoxelObjectList objects = VoxelObjectList(scene.is.objects);
   VoxelTurns turns = VoxelTurns(scene.is.turns);

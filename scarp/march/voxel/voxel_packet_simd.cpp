@@ -7,7 +7,7 @@
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_packet.h"
 
-// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
+// Compiled once per instruction set. Vectors whose length is unknown at compile time cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/voxel/voxel_packet_simd.cpp"
@@ -74,9 +74,9 @@ struct LaneWalk {
   alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
   // crossed: the axis of the last plane crossed; before the first step, kEntered and the axis of entry.
   alignas(64) Numbers crossed, ray;
-  // For looks that descend: bits of the voxel that the last step changed, on any axis; at first all.
+  // For lookups that descend: bits of the voxel that the last step changed, on any axis; at first all.
   alignas(64) Numbers moved;
-  // 1 / speed, or for looks that travel: in [0], the travel per voxel, see voxel_travel.h.
+  // 1 / speed or, for lookups that travel, the travel per voxel in [0], see voxel_travel.h.
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   VoxelTies ties;                      // of the grid
   std::size_t lanes = 0;               // in use
@@ -119,7 +119,7 @@ HWY_INLINE VD slowness_of(VI speed) {
   return hn::PromoteTo(dd, hn::Div(hn::Set(df_part, 1.0f), single));
 }
 
-// The same operations as in voxel_travel.h.
+// Uses the same operations as voxel_travel.h.
 HWY_INLINE VD travel_per_voxel(const VI (&speed)[3]) {
   VD square = hn::Zero(dd);
   for (int i = 0; i < 3; ++i) square = hn::Add(square, hn::Mul(as_double(speed[i]), as_double(speed[i])));
@@ -170,7 +170,7 @@ HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPac
     const VD step = hn::IfThenElse(down[i], one, hn::Neg(one));
     voxel[i] = hn::Add(voxel[i], hn::IfThenElseZero(hn::RebindMask(dd, back), step));
     next[i] = hn::IfThenZeroElse(back, next[i]);
-    // It crosses this plane at once, and never another one.
+    // The ray crosses this plane at once, and never another one.
     speed[i] = hn::IfThenElse(hn::And(back, hn::Eq(speed[i], hn::Zero(di))), hn::Set(di, 1), speed[i]);
     // A plane by which a ray leaves the box at once comes after others at the same place.
     const VD last = hn::IfThenElse(down[i], hn::Set(dd, box.low[i]), hn::Set(dd, box.high[i] - 1.0));
@@ -532,7 +532,7 @@ bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
   return true;
 }
 
-// VoxelDirection of each ray, the same operations.
+// Computes the VoxelDirection of each ray, with the same operations.
 void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties) {
   const VD whole = hn::Set(dd, static_cast<double>(1 << kDirectionBits)), half = hn::Set(dd, 0.5);
   packet.slow = false;

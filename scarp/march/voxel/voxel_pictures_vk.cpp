@@ -36,7 +36,7 @@ constexpr std::uint32_t kHitsWords[] = {
 };
 
 constexpr std::uint32_t kPictureThreads = 64;  // of a workgroup
-constexpr std::uint32_t kRowOfGroups = 1024;   // a dispatch has at most 65,535 along one side
+constexpr std::uint32_t kRowOfGroups = 1024;   // a dispatch has at most 65,535 workgroups along one side
 constexpr std::uint32_t kCorners = 36;         // vertices of a box
 constexpr std::int64_t kPixelsPerPiece = 4096;
 constexpr double kRoomOfVoxel = 0x1p-14;  // as in voxel_proxies.vert

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `voxel-planes` in shaders (voxel_planes.h). Text of C++ and of GLSL, GLSL ES 3.0 included. The host defines
+// `voxel-planes` in shaders (voxel_planes.h). Compiles as C++ and GLSL, including GLSL ES 3.0. The host defines
 // scarp_voxel_mask().
 #ifndef SCARP_MARCH_VOXEL_PLANES_GLSL_H
 #define SCARP_MARCH_VOXEL_PLANES_GLSL_H

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Converts the pixels of a picture of boxes to hits, one invocation per pixel, and detects whether another object may
-// be as near as the visible one: searches other boxes along the part of the ray at the visible depth, within 2^-23 of
-// t.
+// be as near as the visible one: searches for other boxes along the part of the ray at the visible depth, within 2^-23
+// of t.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -35,7 +35,7 @@ bool tied(VoxelObjects scene, uint pixel, uint object, double t) {
   dvec3 origin = VoxelRays(push.rays).rays[pixel].origin, direction = VoxelRays(push.rays).rays[pixel].direction;
   vec3 near = vec3(origin + scarp_least_of_depth(t) * direction - scene.is.middle);
   vec3 far = vec3(origin + scarp_largest_of_depth(t) * direction - scene.is.middle);
-  // Both are rounded to float, to within 2^-24 of themselves.
+  // Both are rounded to float, with a relative error of at most 2^-24.
   vec3 away = max(abs(near), abs(far));
   float room = push.room + max(away.x, max(away.y, away.z)) / 1048576.0;
   vec3 low = min(near, far) - room, high = max(near, far) + room;

@@ -2,7 +2,7 @@
 // Voxel objects drawn as boxes, whose fragments march: shared by voxel_proxies.vert, .frag and .comp and the C++ code
 // that draws with them (voxel_pictures_vk.h).
 //
-//   .vert   a box per object, a little larger; its depth is one that all hits in it are behind
+//   .vert   a box per object, a little larger, with a depth in front of all hits in it
 //   .frag   the ray of the pixel through the object ──▶ depth, object, t, voxel, face
 //   .comp   the winner of each pixel ──▶ ScarpVoxelHit; kScarpVoxelTied where another object may be as near
 //
@@ -43,7 +43,7 @@ struct VoxelProxies {
   uint width;
   uint count;  ///< pixels
   int turns;   ///< steps of a ray in an object
-  float room;  ///< hits are no farther from their object's box, in metres
+  float room;  ///< maximum distance of hits from their object's box, in metres
 };
 
 // Binades of t with distinct depths; nearer and farther t share one.
@@ -51,7 +51,7 @@ const int kScarpLeastBinade = -63;
 const uint kScarpBinades = 126u;
 const uint kScarpDepthsPerBinade = 1u << 23;
 
-/// Bits of a depth, larger ones nearer: normal numbers below 1, with as many values per binade as floats have.
+/// Bits of a depth, larger for nearer ones: normal numbers below 1, with as many values per binade as floats have.
 SCARP_FN uint scarp_depth_bits(double t) {
   uvec2 words = unpackDouble2x32(t);
   int binade = int(words.y >> 20 & 0x7ffu) - 1023 - kScarpLeastBinade;
@@ -68,7 +68,7 @@ SCARP_FN bool scarp_depth_is_coarse(double t) {
   uint distance = 0x3f7fffffu - scarp_depth_bits(t);
   return distance == 0u || distance == kScarpBinades * kScarpDepthsPerBinade - 1u;
 }
-/// The least and the largest t of the same depth, unless that is coarse.
+/// The smallest and the largest t of the same depth, unless that is coarse.
 SCARP_FN double scarp_least_of_depth(double t) {
   uvec2 words = unpackDouble2x32(t);
   return packDouble2x32(uvec2(words.x & 0xe0000000u, words.y));

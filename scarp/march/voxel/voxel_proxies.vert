@@ -2,13 +2,13 @@
 // The box of a voxel object: an instance of 36 vertices, six faces of two triangles. Faces towards the eye are drawn,
 // or all six if the eye is inside; the others collapse to a point.
 //
-// Rays of pixels through the box must find a fragment. Rasterisers move corners by up to 2^-5 pixel, corners are
-// rounded to float, and the ray of a pixel may be up to half a pixel beside its middle. Boxes are therefore enlarged by
-// `margin` at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of that end:
-// clip coordinates have errors of a few units of 2^-24 of it.
+// The ray of each pixel through the box must produce a fragment. Rasterisers move corners by up to 2^-5 pixel, corners
+// are rounded to float, and the ray of a pixel may be up to half a pixel beside its middle. Boxes are therefore
+// enlarged by `margin` at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of
+// that end: clip coordinates have errors of a few units of 2^-24 of it.
 //
-// All corners of an object have one depth, which is in front of all hits in it: depths are thus correct no matter how
-// close the eye is, and nothing near it is clipped.
+// All corners of an object have the same depth, which is in front of all hits in it: depths are thus correct no matter
+// how close the eye is, and nothing near it is clipped.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -24,7 +24,7 @@ const double kRoomPerDistance = 1.0lf / 262144.0lf;
 // Fraction of a voxel: the displacement of a quantised ray (voxel_ray.h) for 2^12 voxels a side, plus the rounding of
 // the matrix.
 const double kRoomOfVoxel = 1.0lf / 16384.0lf;
-// Rasterisers may round the depth by some units of 2^-24.
+// Rasterisers may round the depth by a few units of 2^-24.
 const double kNearer = 1.0lf - 1.0lf / 1024.0lf;
 
 // A box with this centre and half size along the axes.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Quantises a ray where it enters a box of voxels: voxel_ray.cpp in shaders, with the same operations in the same
-// order, one axis at a time. Text of C++ and of GLSL. `scarp_real` is double, as on the CPU (voxel_double.glsl.h), or
-// float where a shader has no float64 (voxel_float_ray.glsl.h); these include this text.
+// order, one axis at a time. Compiles as C++ and GLSL. `scarp_real` is double, as on the CPU (voxel_double.glsl.h), or
+// float where a shader has no float64 (voxel_float_ray.glsl.h); these files include this one.
 //
 // Hosts keep a ray's numbers of each axis in memory and call these functions for x, y and z in turn: doubles take two
 // registers each, and a shader has few.
@@ -71,8 +71,8 @@ SCARP_FN scarp_real scarp_voxel_level(int axis, scarp_real origin, scarp_real ro
   return scarp_magnitude(away) <= near ? plane : origin;
 }
 
-/// Returns false if the ray misses the box. `room`: VoxelRay::room. `back` is
-/// that of the walk; `start` is the place of the voxel where it starts, if `has_start`.
+/// Returns false if the ray misses the box. `room`: VoxelRay::room. `back` is that of the walk; `start` is the position
+/// of the start voxel, if `has_start`.
 SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, scarp_real inverse, scarp_real room,
                                uint speed, uint back, int low, int high, bool has_start, int start,
                                SCARP_INOUT(ScarpVoxelClip) clip) {
@@ -103,7 +103,7 @@ SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, sc
   return met;
 }
 
-/// The face through which it enters.
+/// The face through which the ray enters.
 SCARP_FN uint scarp_voxel_entered(ScarpVoxelClip clip, uint back) {
   return clip.entered < 0 ? 6u : 2u * uint(clip.entered) + (back >> uint(clip.entered) & 1u);
 }
@@ -152,7 +152,7 @@ SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, u
       at.voxel != (up ? low : high - 1)) {
     at.voxel -= up ? 1 : -1;
     at.next = 0u;
-    // It crosses this plane at once, and never another one.
+    // The ray crosses this plane at once, and never another one.
     at.speed = speed > 0u ? speed : 1u;
   }
   // A plane by which it leaves the box at once comes after others at the same place.

@@ -15,7 +15,7 @@ int voxel_at(double place, int step) {
   return step < 0 && voxel == place ? voxel - 1 : voxel;
 }
 
-// Library functions would be calls, around which the loops of quantise() would save all their numbers.
+// Calls to library functions would make the loops of quantise() save all their numbers around them.
 
 std::int64_t rounded_up(double units) {
   const auto down = static_cast<std::int64_t>(units);
@@ -67,7 +67,7 @@ VoxelDirection::VoxelDirection(const dvec3& direction, VoxelTies ties) : given(d
            static_cast<std::uint8_t>(z_x | z_y << 1)};
   exact = true;
   for (int axis = 0; axis < 3; ++axis) {
-    // For a direction that is too short it is not finite.
+    // Not finite for a direction that is too short.
     const double share = std::abs(direction[axis]) * per_longest;
     const double units = share <= 1 ? share * (1 << kDirectionBits) : 0;
     speed[axis] = static_cast<std::int64_t>(units < kSlow ? units : units + 0.5);
@@ -103,7 +103,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
   const bool has_start = !kPlain && ray.start_voxel;
   const VoxelTies ties = direction.ties;
   const double late = std::max(ray.room, kTouch * 0x1p-20);
-  // Clip to the box. If planes are crossed at the same t, the last one is the entry face.
+  // Clips to the box. If planes are crossed at the same t, the last one is the entry face.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
   dvec3 from = ray.origin;
@@ -139,7 +139,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
   quantised.face = entered >= 0 ? face_of(entered, direction.step[entered]) : VoxelFace::inside;
   quantised.t = t;
   quantised.t_max = ray.t_max;
-  const bool comes_in = t > ray.t_min;  // along its way, not where it starts
+  const bool comes_in = t > ray.t_min;  // on its path, not where it starts
   for (int axis = 0; axis < 3; ++axis) {
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     // Not beyond the box, where only rounding could place it.
@@ -167,7 +167,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
       voxel -= step;
       next = 0;
       if (never) {
-        // It crosses this plane at once, and never another one.
+        // The ray crosses this plane at once, and never another one.
         quantised.direction.speed[axis] = 1;
         quantised.direction.slowness[axis] = 1;
         never = false;

@@ -23,7 +23,7 @@ const uint kScarpNoPart = 0xffffffffu;
 
 const uint kScarpVoxelMiss = 0u;
 const uint kScarpVoxelHit = 1u;
-const uint kScarpVoxelUnfinished = 2u;  ///< it exceeded the limit of turns
+const uint kScarpVoxelUnfinished = 2u;  ///< it exceeded the iteration limit
 const uint kScarpVoxelTied = 3u;        ///< only when drawn (voxel_proxies.glsl.h): another object may be as near
 
 /// The result; for misses only status and steps are defined.

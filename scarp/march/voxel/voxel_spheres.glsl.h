@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `voxel-spheres` in shaders (voxel_spheres.h). Text of C++ and of GLSL. The host's bytes are as for cubes.
+// `voxel-spheres` in shaders (voxel_spheres.h). Compiles as C++ and GLSL. The host's bytes are as for cubes.
 #ifndef SCARP_MARCH_VOXEL_SPHERES_GLSL_H
 #define SCARP_MARCH_VOXEL_SPHERES_GLSL_H
 

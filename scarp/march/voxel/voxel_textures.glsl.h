@@ -4,9 +4,8 @@
 //
 //   scarp_masks    RG32UI: texel (x, y, z) is the mask of brick (x, y, z), which is 4 x 4 x 4 voxels: bit
 //                  x + 4 y + 16 z, the low word first. For voxel-planes and voxel-bricks
-//   scarp_sectors  RG32UI: the same of sectors, which are 4 x 4 x 4 bricks; a bit says whether a brick has solid
-//   voxels.
-//                  For voxel-bricks
+//   scarp_sectors  RG32UI: the same for sectors, which are 4 x 4 x 4 bricks; a bit is set if its brick has solid
+//                  voxels. For voxel-bricks
 //   scarp_bytes    R8UI: the byte of each voxel, of EmptyCubes (accel/empty_cubes.h) for voxel-cubes, of EmptySpheres
 //                  for voxel-spheres
 //   scarp_octants  RG32UI: the eight bytes of each voxel, of OctantCubes; that of octant 0 is the lowest of the first
@@ -14,7 +13,7 @@
 //
 // All with the filter NEAREST and one mip level. Textures of unused marches need not be bound.
 //
-// Text of GLSL, GLSL ES 3.0 included. Its host has declared before
+// GLSL, including GLSL ES 3.0. The host must first declare
 //   uniform highp usampler3D scarp_masks, scarp_sectors, scarp_bytes, scarp_octants;
 //   uniform bool scarp_has_octants;    whether voxels have eight bytes
 #ifndef SCARP_MARCH_VOXEL_TEXTURES_GLSL_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The path of a quantised ray from voxel to voxel in shaders: voxel_walk.h with the same integers, which gives the same
-// voxels. Text of C++ and of GLSL, GLSL ES 3.0 included.
+// voxels. Compiles as C++ and GLSL, including GLSL ES 3.0.
 //
 // Instead of comparing voxels with the box, it counts how many planes of each axis are left until the ray leaves it.
 //
@@ -16,10 +16,10 @@ SCARP_GLSL_BEGIN
 struct ScarpVoxelWalk {
   ivec3 voxel;
   ivec3 left;  ///< planes to cross until it leaves the box, the last one included; 0 or less outside
-  uvec3 next;  ///< distance to the next plane in 2^-20 voxel, from where distances began; any if speed is 0
+  uvec3 next;  ///< distance to the next plane in 2^-20 voxel, from the last rebase; arbitrary if speed is 0
   uvec3 speed;
   /// Bits 0 to 2: axes along which it steps in the negative direction; 3 to 5: those of VoxelTies (voxel_ray.h), 0 for
-  /// the order x, y, z; 6: its path is inexact; above: how often rebased.
+  /// the order x, y, z; 6: its path is inexact; higher bits: number of rebases.
   uint back;
   int axis;  ///< crossed last; -1: none
 };
@@ -48,8 +48,8 @@ SCARP_FN void scarp_voxel_advance(SCARP_INOUT(ScarpVoxelWalk) walk, int axis, ui
   walk.left[axis] -= int(planes);
 }
 
-/// Measures distances from a later point of the ray, where it has gone 2^28 units along its longest axis and, exactly,
-/// speed[i] units along each: the order of planes is the same from there. A turn brings the next plane at most as far.
+/// Rebases distances, if possible, to the point 2^28 units further along the longest axis, exactly speed[i] units along
+/// each axis: the order of planes is unchanged. One step moves the next plane at most that far.
 SCARP_FN void scarp_voxel_rebase(SCARP_INOUT(ScarpVoxelWalk) walk) {
   if (walk.next.x >= walk.speed.x && walk.next.y >= walk.speed.y && walk.next.z >= walk.speed.z) {
     walk.next -= walk.speed;
@@ -66,8 +66,8 @@ SCARP_FN bool scarp_voxel_cross(SCARP_INOUT(ScarpVoxelWalk) walk) {
   return walk.left[walk.axis] > 0;
 }
 
-/// Crosses planes until one axis has crossed as many as `part` has for it: those out of a box around the voxel. Returns
-/// false if that leaves the box of the walk; `part` may extend beyond it.
+/// Crosses planes until part[axis] of them have been crossed along one axis, which leaves a box around the voxel.
+/// Returns false if that leaves the box of the walk; `part` may extend beyond it.
 SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
   SCARP_COUNT(skip);
   uvec3 out_at;
@@ -122,7 +122,7 @@ SCARP_FN uvec2 scarp_voxel_distance(ScarpVoxelWalk walk) {
   return scarp_words_minus(scarp_words_plus(rebased, walk.next[walk.axis]), uvec2(kScarpVoxelPlaces, 0u));
 }
 
-/// The face by which the current voxel was entered, given that by which the box was.
+/// The face by which the current voxel was entered, given the face by which the box was entered.
 SCARP_FN uint scarp_voxel_face(ScarpVoxelWalk walk, uint entered) {
   return walk.axis < 0 ? entered : 2u * uint(walk.axis) + (walk.back >> uint(walk.axis) & 1u);
 }

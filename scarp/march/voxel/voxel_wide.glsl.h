@@ -6,7 +6,7 @@
 //
 //   bool scarp_voxel_words();   // whether to use words; constant, so that compilers drop the other form
 //
-// and shaders with 64-bit integers define SCARP_INT64. Text of C++ and of GLSL, GLSL ES 3.0 included.
+// and shaders with 64-bit integers define SCARP_INT64. Compiles as C++ and GLSL, including GLSL ES 3.0.
 //
 // Distances are at most 2^31 and speeds at most 2^28, so products are below 2^60.
 #ifndef SCARP_MARCH_VOXEL_WIDE_GLSL_H
