@@ -14,7 +14,7 @@ SCARP_GLSL_BEGIN
 
 const uint kScarpFromSurface = 1u;  ///< ScarpFunctionRay::flags: starts on the surface, above it by definition
 
-/// A ray, metres.
+/// A ray, in metres.
 struct ScarpFunctionRay {
   vec3 origin;
   vec3 origin_low;

@@ -89,7 +89,7 @@ SCARP_FN ScarpTwoFloat scarp_two_add(ScarpTwoFloat a, ScarpTwoFloat b) {
   SCARP_PRECISE float low = sum.low + (a.low + b.low);
   return scarp_two_sum(sum.high, low);
 }
-/// a * b to 2^-45 of itself.
+/// a * b with a relative error of at most 2^-45.
 SCARP_FN ScarpTwoFloat scarp_two_multiply(ScarpTwoFloat a, ScarpTwoFloat b) {
   ScarpTwoFloat product = scarp_two_product(a.high, b.high);
   SCARP_PRECISE float low = product.low + (a.high * b.low + a.low * b.high);

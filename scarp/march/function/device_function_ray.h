@@ -24,7 +24,7 @@ struct DeviceFunctionRay {
 DeviceFunctionRay device_function_ray(const HeightFunction& function, const SingleRounding& rounding, const Ray& ray,
                                       FunctionUse use, double reach);
 
-/// The same against a distance field: clipped to its box. The ray's `rounding` is evaluated at its start.
+/// Prepares a ray against a distance field, clipped to the field's box. The ray's `rounding` is evaluated at its start.
 DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingleRounding& rounding, const Ray& ray);
 /// Error growth per metre along such a ray: the evaluation error plus the error from rounding positions to float
 /// (values change by at most 1 m per m).

@@ -49,7 +49,7 @@ SCARP_FN ScarpBound scarp_settled(ScarpBound t) {
   }
   return out_;
 }
-/// A bound that knows only a range.
+/// A bound given only by a range.
 SCARP_FN ScarpBound scarp_range(float low, float high) {
   ScarpBound t;
   t.low = low;
@@ -296,7 +296,7 @@ SCARP_FN ScarpNoiseOver scarp_noise_over(ScarpInstruction at, ScarpBound a, Scar
   return over;
 }
 
-/// Bounds of the function over the segment where its position is (x, y), metres.
+/// Bounds of the function over the segment whose position is (x, y), in metres.
 SCARP_FN ScarpBound scarp_bound(ScarpProgram program, ScarpBound x, ScarpBound y) {
   ScarpBound r[kScarpRegisters];
   r[0] = x;

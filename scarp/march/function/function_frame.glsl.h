@@ -16,20 +16,21 @@
 
 SCARP_GLSL_BEGIN
 
-/// Returns x of the ray's point at time s, metres.
+/// Returns x of the ray's point at time s, in metres.
 SCARP_FN ScarpTwoFloat scarp_ray_x(ScarpFunctionRay ray, float s) {
   return scarp_two_line(0.0f, ray.origin.x, ray.origin_low.x, ray.direction.x, ray.direction_low.x, s);
 }
-/// Returns y of the ray's point at time s, metres.
+/// Returns y of the ray's point at time s, in metres.
 SCARP_FN ScarpTwoFloat scarp_ray_y(ScarpFunctionRay ray, float s) {
   return scarp_two_line(0.0f, ray.origin.y, ray.origin_low.y, ray.direction.y, ray.direction_low.y, s);
 }
-/// Returns the height of the ray's point at time s, metres.
+/// Returns the height of the ray's point at time s, in metres.
 SCARP_FN ScarpTwoFloat scarp_ray_z(ScarpFunctionRay ray, float s) {
   return scarp_two_line(0.0f, ray.origin.z, ray.origin_low.z, ray.direction.z, ray.direction_low.z, s);
 }
 
-/// Returns the height of the ray above the ground at time s, metres, accurate to ray.rounding and a unit of itself.
+/// Returns the height of the ray above the ground at time s, in metres, accurate to ray.rounding plus one unit
+/// roundoff.
 SCARP_FN float scarp_clearance(ScarpProgram program, ScarpFunctionRay ray, float s) {
   ScarpTwoFloat ground = scarp_height(program, scarp_ray_x(ray, s), scarp_ray_y(ray, s));
   return scarp_two_add(scarp_ray_z(ray, s), scarp_two_negate(ground)).high;

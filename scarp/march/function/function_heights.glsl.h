@@ -110,7 +110,7 @@ SCARP_FN ScarpNoise scarp_program_noise(ScarpInstruction at, ScarpTwoFloat x, Sc
   return scarp_value_noise(at.seed, scarp_lattice(x), scarp_lattice(y));
 }
 
-/// Returns the height at (x, y), metres.
+/// Returns the height at (x, y), in metres.
 SCARP_FN ScarpTwoFloat scarp_height(ScarpProgram program, ScarpTwoFloat x, ScarpTwoFloat y) {
   ScarpTwoFloat r[kScarpRegisters];
   r[0] = x;

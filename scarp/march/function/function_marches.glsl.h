@@ -21,7 +21,7 @@ SCARP_FN ScarpWay scarp_way(ScarpFunctionRay ray, ScarpSampling settings) {
   way.travelled = ray.travelled;
   way.per_clearance = 1.0f / ray.speed;
   way.rounding = ray.rounding;
-  way.blind = 9.765625e-4f * ray.exit;  // for lack of cells
+  way.blind = 9.765625e-4f * ray.exit;  // as there are no cells
   way.stride = settings.factor / ray.speed;
   way.from_surface = (ray.flags & kScarpFromSurface) != 0u;
   way.from_outside = ray.travelled > 0.0f;

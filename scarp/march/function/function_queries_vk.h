@@ -32,7 +32,7 @@ struct DeviceFunctionTarget {
 /// One march, ready to run over any function of a device. Not thread-safe.
 class DeviceFunctionQueries {
  public:
-  /// `march` is a row of function_marches(); only `rays_at_once` of the settings applies. Throws Error if the march
+  /// `march` is a row of function_marches(); `rays_at_once` is the only setting that applies. Throws Error if the march
   /// does not run on devices, a setting is out of range, or the device lacks memory.
   explicit DeviceFunctionQueries(const Device& device,
                                  const FunctionMarchEntry& march = find_function_march("lipschitz-local"),

@@ -18,7 +18,7 @@ class FunctionRay {
   struct Unrounded {};
 
   FunctionRay() = default;
-  /// `reach` is the maximum distance along the ray, metres.
+  /// `reach` is the maximum distance along the ray, in metres.
   FunctionRay(const HeightFunction& function, const Ray& ray, FunctionUse use,
               double reach = std::numeric_limits<double>::infinity())
       : FunctionRay(function, ray, use, reach, Unrounded{}) {

@@ -32,7 +32,7 @@ struct ScarpProof {
   float sunk;    ///< kScarpNeverSunk: unknown
   float middle;  ///< the bounds are over times middle - half_ to middle + half_, slightly longer than requested
   float half_;
-  float begin;  ///< minimum and maximum height above the ground at their start, metres
+  float begin;  ///< minimum and maximum height above the ground at their start, in metres
   float begin_most;
   float end;  ///< the same at their end
   float end_most;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `lipschitz-local` with a filter: behind a rejected hit the ray continues below the ground until it emerges.
 //
-//        \        rejected     __              under the ground the march runs over the same ground upside down, where
-//   ______\____      ^     ___/  \___          coming out is a hit from above; each part starts on the surface by the
+//        \        rejected     __              below the ground the march runs over the ground upside down, where
+//   ______\____      ^     ___/  \___          emerging is a hit from above; each part starts on the surface by the
 //          \   `-----x----o----- \----.        march's own rule
 //           rejected ^   out      ^ next hit
 //

@@ -154,7 +154,7 @@ class LocalWalk {
   // Proven facts about a segment: the ray is above the ground until `free`, and below it at `sunk`, if finite.
   struct Proof {
     double free, sunk;
-    double clear = 0;  // minimum height above the ground at t1, metres
+    double clear = 0;  // minimum height above the ground at t1, in metres
   };
 
   Proof proof_of(const SegmentBound& b, double t0, double t1) const {

@@ -122,7 +122,8 @@ SCARP_FN float scarp_fade_curvature(float t) { return 60.0f * t * (t * 2.0f - 1.
 /// Linear interpolation: a at t = 0, b at t = 1.
 SCARP_FN float scarp_lerp(float a, float b, float t) { return a + t * (b - a); }
 
-/// Faded numbers at the corners, with derivatives per lattice cell; errors within scarp_noise_bound().
+/// Value noise: numbers at the corners, blended by the fade, with derivatives per lattice cell; errors within
+/// scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_value_noise(uint seed, ScarpLattice x, ScarpLattice y) {
   uint west = scarp_mix(seed + x.cell);
   uint east_side = scarp_mix(seed + (x.cell + 1u));
@@ -146,7 +147,8 @@ SCARP_FN ScarpNoise scarp_value_noise(uint seed, ScarpLattice x, ScarpLattice y)
   return noise;
 }
 
-/// Faded slopes at the corners, with derivatives per lattice cell; errors within scarp_noise_bound().
+/// Perlin noise: slopes at the corners, blended by the fade, with derivatives per lattice cell; errors within
+/// scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_perlin_noise(uint seed, ScarpLattice x, ScarpLattice y) {
   const float kScale = 1.41421356f;
   uint west = scarp_mix(seed + x.cell);
@@ -180,7 +182,7 @@ SCARP_FN ScarpNoise scarp_perlin_noise(uint seed, ScarpLattice x, ScarpLattice y
   return noise;
 }
 
-/// Adds the contribution of a triangle corner at (dx, dy) from it.
+/// Adds the contribution of a triangle corner to a point at (dx, dy) from it.
 SCARP_FN void scarp_simplex_corner(uint hash, float dx, float dy, SCARP_INOUT(ScarpNoise) noise) {
   float m = 0.5f - dx * dx - dy * dy;
   if (m <= 0.0f) return;
@@ -198,8 +200,8 @@ SCARP_FN void scarp_simplex_corner(uint hash, float dx, float dy, SCARP_INOUT(Sc
   noise.xy += 48.0f * m2 * dx * dy * plane - k * (dx * gy + dy * gx);
 }
 
-/// Slopes at the corners of triangles; x and y in units of the noise, as in field/noise.h. Errors within
-/// scarp_noise_bound().
+/// Simplex noise: slopes at the corners of triangles, with x and y in units of the noise, as in field/noise.h. Errors
+/// within scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_simplex_noise(uint seed, ScarpTwoFloat x, ScarpTwoFloat y) {
   ScarpTwoFloat skew;  // (sqrt(3) - 1) / 2
   skew.high = 0.3660254180431365966796875f;

@@ -35,7 +35,7 @@ namespace scarp {
 struct DeviceRays {
   std::uint64_t ground = 0;  ///< DeviceGround::address()
   std::uint64_t rays = 0;    ///< glsl::RayBlock, ray_blocks(count) of them for `count` rays
-  std::uint64_t hits = 0;    ///< glsl::HitBlock, as many; any-hit queries define only the status
+  std::uint64_t hits = 0;    ///< glsl::HitBlock, the same number; any-hit queries define only the status
   std::uint32_t count = 0;   ///< 1 to DeviceHeightMarch::kMostRaysAtOnce
 };
 
@@ -47,7 +47,7 @@ struct DeviceRayQuery {
   /// kScarpStarts among its flags, rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;
   glsl::ScarpSampling sampling{};  ///< for all marches except max-mip
-  bool exact_only = false;         ///< without the first pass, see leaves_first_pass()
+  bool exact_only = false;         ///< skips the first pass, see leaves_first_pass()
 };
 
 /// Whether a field exceeds the limits of first passes (max_mip_lean.glsl.h).

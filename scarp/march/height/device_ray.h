@@ -34,10 +34,10 @@ struct DeviceRay {
   HitStatus known = HitStatus::miss;
 };
 
-/// For max-mip, clipped to the highest sample, too. `ray` must be valid (validate() of march/height/queries.h). `seam`
-/// is HeightTarget::seam.
+/// Prepares a ray for max-mip, also clipped to the highest sample. `ray` must be valid (validate() of
+/// march/height/queries.h). `seam` is HeightTarget::seam.
 DeviceRay device_ray(const HeightField& field, const Ray& ray, double seam = 0);
-/// For the marches that sample along the ray: it starts where they do, at the border or where its range starts.
+/// Prepares a ray for the sampling marches: it starts where they do, at the border or where its range starts.
 /// `clip_at_top`: it ends where it rises above the highest sample, which changes no other point.
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top = false);
 

@@ -18,11 +18,11 @@ namespace scarp {
 Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                      MarchStats* stats = nullptr);
 
-/// Closest of the hits that count, as by march_max_mip_by_rules.
+/// Closest of the hits that count, as for march_max_mip_by_rules().
 Hit march_exhaustive_by_rules(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                               MarchStats* stats = nullptr);
 
-/// All hits in the ray's range, in order of t, as by all_hits_max_mip. Returns hit, or the reason for none.
+/// All hits in the ray's range, in order of t, as for all_hits_max_mip(). Returns `hit`, or why there is none.
 HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
 /// The same for hits from below.
 HitStatus all_hits_from_below_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);

@@ -23,7 +23,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Longest stretch, as a time: at most twice as many cells.
+/// Longest stretch, as a time, in which the ray crosses at most twice as many cells.
 const float kScarpStretch = 512.0f;
 /// A stretch starts this long before its first point, because `relaxed` also steps back.
 const float kScarpStretchRoom = 16.0f;

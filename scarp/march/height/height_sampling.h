@@ -8,7 +8,7 @@
 
 namespace scarp {
 
-/// `height` of the hit is that of the ray's point. A ray that starts below the ground hits at its start. A ray that
+/// The hit's `height` is that of the ray's point. A ray that starts below the ground hits at its start. A ray that
 /// starts on the surface takes its first step without a test. Uses settings.naive and settings.sampling; no pyramid.
 Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                 MarchStats* stats = nullptr);

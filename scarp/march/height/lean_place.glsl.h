@@ -16,7 +16,8 @@ SCARP_GLSL_BEGIN
 /// Bits of a frame's time, except over fields that wrap: the high 16. Times are below 2^17, so the remainder is less
 /// than 2.
 const uint kScarpFrameBits = 0xffffff00u;
-/// a * s0 as two floats, to 2^-31 of itself: s0 has 16 bits, so its product with the high 8 bits of `a` is exact.
+/// a * s0 as two floats, with a relative error of 2^-31: s0 has 16 bits, so its product with the high 8 bits of `a` is
+/// exact.
 SCARP_FN ScarpTwoFloat scarp_lean_product(float a, float s0, bool wraps) {
   if (wraps) return scarp_two_product(a, s0);
   float high = uintBitsToFloat(floatBitsToUint(a) & 0xffff0000u);

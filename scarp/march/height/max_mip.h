@@ -49,7 +49,7 @@ bool occluded_max_mip(const HeightTarget& target, const Ray& ray);
 
 /// All hits in the ray's range, in order of t: each time the ray goes from above to on or below the surface (at most
 /// once per cell), and through walls into solid ground. Overwrites `hits`; the first is that of march_max_mip. Returns
-/// hit, or the reason for none.
+/// `hit`, or why there is none.
 HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
 
 }  // namespace scarp

@@ -39,7 +39,7 @@
 
 #ifndef MAX_MIP_EASY_HOST
 uniform highp sampler2D easy_heights, easy_maxima;
-// Columns and rows of cells: one less than of heights.
+// Columns and rows of cells: one less than those of heights.
 ivec2 easy_cells() { return textureSize(easy_heights, 0) - 1; }
 // The last level, which has one block.
 int easy_top_level() {
@@ -52,7 +52,7 @@ float easy_height(ivec2 node) { return texelFetch(easy_heights, node, 0).x; }
 float easy_maximum(ivec2 block, int level) { return texelFetch(easy_maxima, block, level).x; }
 #endif
 
-// The answer. Without a hit, and for any_hit, only `hit` and `steps` have a meaning.
+// The answer. Without a hit, and for any_hit, only `hit` and `steps` are defined.
 struct EasyHit {
   bool hit;
   bool below;     // the ray starts below the ground, or enters it through the border: the hit is there
@@ -67,7 +67,7 @@ const float kEasyUnit = 5.9604645e-8f;   // rounding unit of floats, 2^-24
 const float kEasyLeast = 1.0e-30f;       // above ground at height 0
 const float kEasyFarthest = 1.0e12f;     // no time is later
 const float kEasySlowest = 1.0e-25f;     // a ray slower than this along an axis does not move on it
-const float kEasyBelowOne = 0.9999999f;  // place of nodes on the last line in the last cell ...
+const float kEasyBelowOne = 0.9999999f;  // position in the last cell of nodes on the last line ...
 const float kEasyAboveOne = 1.0000001f;  // ... from which a ray along that line is in the field
 
 // Heights of the corners of a cell: (0, 0), (1, 0), (0, 1), (1, 1), counted from a corner `node` in steps of +-1.

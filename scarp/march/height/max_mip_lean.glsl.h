@@ -3,7 +3,7 @@
 //
 //   frame: the ray restarts at time s0, mirrored so that it goes towards +x and +y
 //     walk, a block per turn:  one load: the maxima of its 2 x 2 children (GroundQuads)
-//       the ray is above every child on its way by more than the margin   leave the block, go up a level
+//       the ray is above every child on its path by more than the margin   leave the block, go up a level
 //       else                                                              on to the first child that it may meet
 //     in a cell:  above by more than the margin                           leave the cell
 //                 else, more than a few cells from the frame's begin      a new frame that begins here
@@ -33,7 +33,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Local time up to which signs decide. At most twice as many cells.
+/// Local time up to which signs decide. The ray crosses at most twice as many cells in it.
 const float kScarpFreshTime = 4.0f;
 /// Blocks and cells after which a ray is left to the second pass, which can be interrupted.
 const int kScarpLeanTurns = 16384;

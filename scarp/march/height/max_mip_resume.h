@@ -13,7 +13,7 @@ namespace max_mip {
 /// No part of the ray is known to be clear.
 constexpr double kNotClear = -std::numeric_limits<double>::infinity();
 
-/// For a wrapped field: whether the whole ray is where cells can be counted.
+/// Whether the whole ray is where cells of a wrapped field can be counted.
 bool countable(const GridRay& local, const Ray& ray);
 }  // namespace max_mip
 

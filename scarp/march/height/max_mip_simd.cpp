@@ -358,7 +358,7 @@ class VectorWalk {
 
   // Wrapped ground is traversed copy by copy, each as a separate ground with the ray in the copy's frame. The rounding
   // of heights is within the margin, see kFarthestCopy. Nothing may be in doubt in the first copy, so rays that start
-  // next to a border are left to the scalar traversal, which has more ways to start and counts farther.
+  // next to a border are left to the scalar traversal, which supports more kinds of start and counts farther.
   void begin_endless(std::size_t j, std::size_t index, Lanes& fresh, GridRays& r) {
     const Ray& ray = rays_[index];
     const GridRay local = field_.grid_from_world(ray);
@@ -392,7 +392,7 @@ class VectorWalk {
     fresh.ray[j] = static_cast<std::int32_t>(copy.ray);
     fresh.copy_x[j] = copy.x, fresh.copy_y[j] = copy.y;
   }
-  // A ray without a hit in its copy continues in the next, if it goes that far. If borders of both axes are crossed
+  // A ray without a hit in its copy continues in the next, if it extends that far. If borders of both axes are crossed
   // almost at once, either may come first.
   HWY_NOINLINE void leave_copy(const Lanes& a, std::size_t j) {
     CopyRay copy{static_cast<std::size_t>(a.ray[j]), a.copy_x[j], a.copy_y[j], a.seen[j] != 0};

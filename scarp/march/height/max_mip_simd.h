@@ -6,7 +6,7 @@
 //   cells    . r1 .  ... r14      lanes at a cell wait until enough of them do, then four samples are loaded
 //   done     r0 .  r2 ... .       finished lanes also wait until enough of them are, then get the next rays
 //
-// Camera rays from above start together, deep in the field: max_mip_simd_beam.h. Rays from one place over the field
+// Camera rays from above start together, deep in the field: max_mip_simd_beam.h. Rays from one point over the field
 // share their blocks: max_mip_simd_together.h.
 //
 // Vector results are proven, with a margin for single precision (for double in first cells; doc/dev/numerics.md): that
@@ -35,7 +35,7 @@ struct VectorOptions {
   bool put_off = true;    ///< any hit: decides a doubtful cell only if nothing behind it stops the ray
   bool find_hits = true;  ///< closest hit: computed for many rays at once
   bool beam = true;       ///< closest hit: 64 consecutive rays from above start together
-  bool together = true;   ///< closest hit, with `beam`: rays from one place go through the same blocks together
+  bool together = true;   ///< closest hit, with `beam`: rays from one point traverse the same blocks together
 };
 
 /// Sets hits[i] to march_max_mip() of rays[i], bit for bit. Runs on the calling thread; the spans have equal lengths

@@ -143,7 +143,7 @@ struct CellRays {
   }
 };
 
-// Where a ray that enters its cell at t_in hits the surface before it leaves it at t_out, with the clearance `out`.
+// Where a ray that enters its cell at t_in hits the surface before it leaves it at t_out, with clearance `out` there.
 struct CellMeeting {
   VD in;  // clearance at t_in
   VD s;   // t - t_in, if it hits

@@ -243,7 +243,7 @@ HWY_INLINE CellCodes cell_codes(const VectorGround<T>& g, VI col, VI row, MI cel
   alignas(64) std::int32_t cols[N], rows[N];
   alignas(64) float h00[N] = {}, h10[N] = {}, h01[N] = {}, h11[N] = {};
   hn::Store(col, di, cols), hn::Store(row, di, rows);
-  // Loads lane by lane: a gather takes as long for few lanes as for all.
+  // Loads lane by lane, because a gather takes as long for few lanes as for all.
   const auto load = [&](auto to_east, auto to_south) HWY_ATTR {
     for (std::uint64_t bits = bits_of(cells); bits != 0; bits &= bits - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(bits));

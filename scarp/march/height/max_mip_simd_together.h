@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Coherent rays from one place through the pyramid together: one list of blocks for all.
+// Traces coherent rays from one point through the pyramid together, with one list of blocks for all.
 //
 //   +---+---+   All rays advance along both axes of their frames. In each block they cross first the near
 //   | Y | F |   child, then one of the two sides, then the far one, so one order suits all. The times
@@ -39,7 +39,8 @@ class Together {
   HWY_INLINE Together(const VectorGround<T>& g, Lanes* lanes, std::size_t count)
       : g_(g), lanes_(lanes), count_(count) {}
 
-  /// Returns the number of rays. Each then ends without a hit, or is undecided in a cell, up to which it is above.
+  /// Returns the number of rays. Each ray then ends without a hit, or is undecided in a cell and above the ground up to
+  /// there.
   HWY_INLINE std::size_t walk() {
     VI x0 = hn::Set(di, kMostCells), y0 = x0;
     std::size_t rays = 0;
@@ -92,7 +93,7 @@ class Together {
   struct Numbers {
     alignas(64) float begin_x[N], begin_y[N], o_per_x[N], o_per_y[N], end[N];
   };
-  // From the top down to the start of the rays, past blocks that are behind all of them.
+  // Descends from the top to the start of the rays, past blocks that are behind all of them.
   HWY_INLINE void descend() {
     Block b{0, 0, g_.top, live_};
     while (b.level > kFirstLevel) {

@@ -30,7 +30,7 @@ const uint kScarpStarts = 16u;    ///< some rays may start on the surface (max_m
 /// Properties of a height field, besides its samples and bounds, that a march needs. All in sample units.
 struct ScarpField {
   ivec2 cells;          ///< columns and rows of cells, at least 1
-  ivec2 samples;        ///< columns and rows of samples; as many as cells if the last is followed by the first
+  ivec2 samples;        ///< columns and rows of samples; equal to `cells` if the last is followed by the first
   int top_level;        ///< of the pyramid, at least 1; 0: no pyramid
   uint flags;           ///< kScarpTriangles and so on
   float code_base;      ///< height of a pyramid entry: code_base + code_base_low + code_step * code

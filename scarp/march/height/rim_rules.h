@@ -33,7 +33,7 @@ class RimRules : public CellRules<T, Holes, Wraps, ask> {
     return !strict_ && side_ == Side::above && rim(grid_ray()).may_sink(t, through_ == Through::x_line ? 0 : 1);
   }
 
-  // Records a touch at t, at a given place of a cell, which need not be on the ray's path. In lists of all hits,
+  // Records a touch at t, at a given position in a cell, which need not be on the ray's path. In lists of all hits,
   // touches of neighbouring cells at the same position count as one. Returns true if the query is answered.
   bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Slopes of a height field for shading, in single precision: HeightField::gradient() and shading_normal() for shaders.
-// In sample units per column (x) and per row (y). Compiles as C++ and GLSL, including GLSL ES 3.0. The including file
-// must define what cell_surface.glsl.h requires.
+// Units are sample units per column (x) and per row (y). Compiles as C++ and GLSL, including GLSL ES 3.0. The including
+// file must define what cell_surface.glsl.h requires.
 #ifndef SCARP_MARCH_SURFACE_NORMAL_GLSL_H
 #define SCARP_MARCH_SURFACE_NORMAL_GLSL_H
 

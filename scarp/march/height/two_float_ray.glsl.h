@@ -93,11 +93,11 @@ SCARP_FN ScarpSpan scarp_span(float origin, float origin_low, float direction, f
   span.end = scarp_two_later(first, last);
   return span;
 }
-/// Over the columns.
+/// The span over the columns.
 SCARP_FN ScarpSpan scarp_span_x(ScarpField field, ScarpLine line) {
   return scarp_span(line.origin.x, line.origin_low.x, line.direction.x, line.direction_low.x, float(field.cells.x));
 }
-/// Over the rows.
+/// The span over the rows.
 SCARP_FN ScarpSpan scarp_span_y(ScarpField field, ScarpLine line) {
   return scarp_span(line.origin.y, line.origin_low.y, line.direction.y, line.direction_low.y, float(field.cells.y));
 }
@@ -135,7 +135,7 @@ SCARP_FN ScarpAxisPlace scarp_axis_place(ScarpTwoFloat at, int cells, bool wraps
   return found;
 }
 
-/// The power of two no larger than a float, and its inverse; 2^-125 <= |a| < 2^126.
+/// The largest power of two that is at most |a|; 2^-125 <= |a| < 2^126.
 SCARP_FN float scarp_power_below(float a) { return uintBitsToFloat(floatBitsToUint(a) & 0x7f800000u); }
 /// 1 / scarp_power_below(a), exact.
 SCARP_FN float scarp_per_power_below(float a) {

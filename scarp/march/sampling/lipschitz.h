@@ -18,10 +18,10 @@
 // ground from a hole is exhausted, because it may have touched the rim.
 //
 // With a shrink factor above 1 / sqrt(1 + c^2), steps may pass through the ground, as in shaders whose factor was found
-// by trial. The guarantee is then approximate: the first sample below the ground is the hit, and pictures show holes
-// and halos. Source: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996; the factor for height functions as in
-// the founding text on Lipschitz bounds. Cost: up to 1024 heights per ray, most on steep fields, where c is that of the
-// steepest cell.
+// by trial and error. The guarantee is then approximate: the first sample below the ground is the hit, and pictures
+// show holes and halos. Source: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996; the factor for height
+// functions as in the founding text on Lipschitz bounds. Cost: up to 1024 heights per ray, most on steep fields, where
+// c is that of the steepest cell.
 #pragma once
 
 #include <algorithm>

@@ -54,7 +54,7 @@ Hit naive_over(const Probe& probe, const MarchSettings& all, MarchStats& stats) 
                          stats);
     }
     ground.step_from(point);
-    // Over a hole there is no height to go by.
+    // Over a hole no height is known.
     t += std::max(point.known ? settings.step_factor * std::abs(point.h) : 0.0, least);
   }
   return ground.missed();

@@ -25,7 +25,7 @@ bool scarp_shape_uses(uint op);
 float scarp_shape_function(uint index, float x, float y);
 float scarp_shape_field(uint index, vec3 q, float shrink);
 
-/// Maximum coordinate of terrain functions, metres from their origin in x and y; the ground continues constant beyond.
+/// Maximum coordinate of terrain functions, in metres from their origin in x and y; beyond it the ground is constant.
 const float kScarpFunctionReach = 1073741824.0f;
 
 /// Returns the length of a 2D vector.

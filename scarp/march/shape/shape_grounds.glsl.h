@@ -21,7 +21,7 @@ bool scarp_field_hole(int col, int row);
 /// Properties of the field besides its samples.
 struct ScarpSolidField {
   ivec2 cells;    ///< columns and rows
-  ivec2 samples;  ///< as many as cells if the last is followed by the first
+  ivec2 samples;  ///< equal to `cells` if the last is followed by the first
   float cell_x;   ///< metres
   float cell_y;
   float metres_per_sample;

@@ -3,7 +3,7 @@
 // closest points. Works in the grid's space, where voxels have side 1. Voxels are cubes, never rounded. Exact to
 // rounding (march/sweep.h): the faces between solid and empty voxels are swept as two triangles each.
 //
-// Cost: blocks of 2^n voxels along the way, nearest first; empty blocks of 4 x 4 x 4 voxels and larger are skipped.
+// Cost: blocks of 2^n voxels along the path, nearest first; empty blocks of 4 x 4 x 4 voxels and larger are skipped.
 #pragma once
 
 #include <limits>

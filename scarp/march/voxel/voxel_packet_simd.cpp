@@ -172,7 +172,7 @@ HWY_INLINE void touch_behind(const VoxelBox& box, VoxelTies ties, const VoxelPac
     next[i] = hn::IfThenZeroElse(back, next[i]);
     // The ray crosses this plane at once, and never another one.
     speed[i] = hn::IfThenElse(hn::And(back, hn::Eq(speed[i], hn::Zero(di))), hn::Set(di, 1), speed[i]);
-    // A plane by which a ray leaves the box at once comes after others at the same place.
+    // A plane by which a ray leaves the box at once is crossed after others at the same position.
     const VD last = hn::IfThenElse(down[i], hn::Set(dd, box.low[i]), hn::Set(dd, box.high[i] - 1.0));
     MI leaves = hn::And(comes_in, hn::And(hn::Eq(next[i], hn::Zero(di)), hn::RebindMask(di, hn::Eq(voxel[i], last))));
     leaves = hn::AndNot(hn::Or(exact, hn::Lt(speed[i], hn::Set(di, kSlow))), leaves);

@@ -52,7 +52,7 @@ glsl::ScarpVoxelView view_of(const VoxelPicture& picture) {
   if (!std::isfinite(volume) || volume == 0 ||
       (parallel && (picture.right != dvec3(0.0) || picture.down != dvec3(0.0))))
     throw Error("voxels: a picture whose rays do not span space");
-  // Pixels, and t of the form with rays that are not normalised.
+  // Maps positions to pixels and to t in the form of VoxelPicture, whose rays are not normalised.
   const glm::dmat3 pixels = inverse(world);
   const dvec3 t = row_of(pixels, 2), w = parallel ? dvec3(0.0) : t;
   glsl::ScarpVoxelView view{};

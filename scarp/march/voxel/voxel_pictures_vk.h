@@ -7,7 +7,7 @@
 //
 // Both return the hits of the CPU, bit for bit. Proxies are exact because:
 //
-//   the ray of a pixel is the one of compute, not an interpolated one   voxel_proxies_march.glsl.h
+//   the ray of a pixel is that of compute, not an interpolated one   voxel_proxies_march.glsl.h
 //   boxes are drawn a little larger; a camera in a box draws all sides of it   voxel_proxies.vert
 //   the depth of the hit is written, not that of the box; as the hit is behind the nearest corner of the box, fragments
 //   behind what is there already need not march (depth_less)

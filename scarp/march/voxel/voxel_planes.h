@@ -17,7 +17,7 @@
 namespace scarp {
 
 VoxelHit march_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats = nullptr);
-/// The same for voxels that count.
+/// The same, with a filter that decides which voxels count.
 VoxelHit march_voxel_planes_accepted(const VoxelTarget& target, const QuantisedRay& ray, const VoxelFilter& accept,
                                      MarchStats* stats = nullptr);
 bool occluded_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray);

@@ -155,7 +155,7 @@ SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, u
     // The ray crosses this plane at once, and never another one.
     at.speed = speed > 0u ? speed : 1u;
   }
-  // A plane by which it leaves the box at once comes after others at the same place.
+  // A plane by which the ray leaves the box at once is crossed after others at the same position.
   if (at.next == 0u && clip.comes_in && speed >= kScarpVoxelSlow && at.voxel == (up ? high - 1 : low) &&
       (back & kScarpInexact) != 0u)
     at.next = 1u;

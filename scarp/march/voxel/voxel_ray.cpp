@@ -173,7 +173,7 @@ bool quantise_as(const VoxelRay& ray, const VoxelDirection& ray_direction, const
         never = false;
       }
     }
-    // A plane by which it leaves the box at once comes after others at the same place.
+    // A plane by which the ray leaves the box at once is crossed after others at the same position.
     if (next == 0 && comes_in && !slow && voxel == (step > 0 ? high - 1 : low) && !is_exact(ray, ray_direction))
       next = 1;
     // On the border and leaving.

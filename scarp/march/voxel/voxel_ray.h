@@ -151,7 +151,7 @@ struct QuantisedRay {
 /// Returns false if the ray misses the box within its range; `quantised` is then undefined. The box's sides are at most
 /// 16,384.
 bool quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box, QuantisedRay& quantised);
-/// The same with nullopt for a miss, which takes longer: compilers clear an empty optional.
+/// The same, but returns nullopt for a miss. Slower, because compilers clear an empty optional.
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box);
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelBox& box);
 

@@ -68,7 +68,7 @@ SCARP_FN bool scarp_plane_before(uint distance_a, uint speed_a, uint distance_b,
 }
 
 /// Returns the number of planes next / other, (next + 2^20) / other, ... that come no later than distance / speed; if
-/// `after` is 1, those at the same place come later. `slowness` is 1 / speed. There are less than 2^9.
+/// `after` is 1, those at the same position come later. `slowness` is 1 / speed. There are fewer than 2^9.
 SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint next, uint other, uint after) {
   // (distance other - next speed - after) / 2^20, rounded down: below 2^40.
   uint low = 0u, high = 0u;
@@ -101,7 +101,7 @@ SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint
 SCARP_FN uint scarp_travelled(uint distance, uint speed, float slowness) {
   if (speed == 1u << 28) return distance;
   uint travelled = uint(float(distance) * slowness * 268435456.0f);
-  // That is off by less than 2^32 * 2^-21. One correction leaves an error of 1.
+  // The product is off by less than 2^32 * 2^-21. One correction leaves an error of 1.
   uvec2 rest = scarp_words_minus(uvec2(distance << 28, distance >> 4), scarp_words_product(travelled, speed));
   int more = int(floor((float(int(rest.y)) * 4294967296.0f + float(rest.x)) * slowness));
   travelled += uint(more);
