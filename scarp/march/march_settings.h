@@ -11,7 +11,7 @@ namespace scarp {
 /// `naive`: t += max(step_factor * |h|, min_step * t_exit), stops where h < tolerance * t; both t counted
 /// from t_min.
 struct NaiveSettings {
-  double step_factor = 0.7;     ///< of the vertical distance h, > 0
+  double step_factor = 0.7;     ///< step as a fraction of the vertical distance h, > 0
   double min_step = 1.0 / 512;  ///< minimum step as a fraction of the ray's length to the field's border, > 0
   double tolerance = 0.001;     ///< height above ground that counts as a hit, per unit of distance, >= 0
   int max_steps = 1024;         ///< >= 1
@@ -30,7 +30,7 @@ struct FixedStepSettings {
 
 /// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t; t counted from t_min.
 struct RelaxedSettings {
-  double step_factor = 0.4;   ///< of the vertical distance h, > 0
+  double step_factor = 0.4;   ///< step as a fraction of the vertical distance h, > 0
   double tolerance = 0.0015;  ///< height off the ground that counts as a hit, per unit of distance, > 0
   int max_steps = 300;        ///< >= 1
 
@@ -39,7 +39,7 @@ struct RelaxedSettings {
 
 /// `lipschitz`: t += shrink * h, stops where shrink * h <= tolerance * t; t counted from t_min.
 struct LipschitzSettings {
-  double shrink = 0;  ///< of the vertical distance h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
+  double shrink = 0;  ///< step as a fraction of h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
   double tolerance = 0.0005;  ///< distance to the ground that counts as a hit, per unit of distance travelled, >= 0
   int max_steps = 1024;       ///< >= 1
 

@@ -6,8 +6,8 @@
 //
 // Compiles as C++ and GLSL (scarp/vk/glsl_cpp.h), including GLSL ES 3.0. Source: T. J. Dekker, "A floating-point
 // technique for extending the available precision", Numerische Mathematik 18, 1971; D. E. Knuth, TAOCP 2, 4.2.2. No
-// fused multiply-add is needed. A compiler that reassociates floating-point sums (some of GLSL ES 3.0, which has no
-// `precise`) turns low into zero: the result is then that of plain floats.
+// fused multiply-add is needed. A compiler that reassociates floating-point sums (as some do for GLSL ES 3.0, which has
+// no `precise`) turns low into zero: the result is then that of plain floats.
 #ifndef SCARP_MARCH_TWO_FLOAT_GLSL_H
 #define SCARP_MARCH_TWO_FLOAT_GLSL_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// States of interrupted marches of a batch (ray_batch.glsl.h), one struct per ray. C++, for the structs, and GLSL,
-// which must define the requirements of cell_surface.glsl.h and max_mip.glsl.h before it includes this.
+// States of interrupted marches of a batch (ray_batch.glsl.h), one struct per ray. C++ (for the structs) and GLSL,
+// which must define what cell_surface.glsl.h and max_mip.glsl.h require before it includes this file.
 #ifndef SCARP_MARCH_BATCH_STATES_GLSL_H
 #define SCARP_MARCH_BATCH_STATES_GLSL_H
 

@@ -27,8 +27,7 @@ struct BlockWay {
   double t_line;   ///< when it crosses the first of the two far lines, which may be beyond the grid
   double t_leave;  ///< the same, or when it leaves the grid
   double t_out;    ///< the same, or when its range ends
-  bool through_x;  ///< whether that line is of constant column; if the ray crosses both at once, the line of constant
-                   ///< column is first
+  bool through_x;  ///< whether that line is of constant column: it is first if the ray crosses both at once
   bool after_x;    ///< whether the previous line, if any, was of constant column
 };
 

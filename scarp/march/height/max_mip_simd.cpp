@@ -635,7 +635,7 @@ HWY_EXPORT(answer_seen);
 
 thread_local VectorStats t_stats;
 
-// Minimum width of copies of a wrapped ground: entering the next one takes as long as some cells.
+// Minimum width of copies of a wrapped ground: entering the next one takes as long as a few cells.
 constexpr int kNarrowestCopy = 128;
 
 // Excludes fields that vector code does not support: those with holes, where a ray above all ground may be below the

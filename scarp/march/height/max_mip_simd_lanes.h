@@ -177,7 +177,7 @@ struct Packet {
   }
 };
 
-// Offsets of the levels: a table that stays in registers if these are wide enough and the levels few enough.
+// Offsets of the levels. The table stays in registers if these are wide enough and the levels few enough.
 HWY_INLINE VI level_begin(const std::int32_t* table, VI level, bool many) {
   if (many) return hn::GatherIndex(di, table, level);
   if constexpr (N == 16) {
@@ -208,7 +208,8 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const VF maximum = hn::MulAdd(hn::ConvertTo(df, hn::And(block, hn::Set(di, 0xffff))), hn::Set(df, g.maxima_scale),
                                 hn::Set(df, g.maxima_shift));
   const VF middle = hn::NegMulAdd(hn::ConvertTo(df, depth), hn::Mul(half, hn::Set(df, g.depth_unit)), maximum);
-  // The slope along the ray: backwards, it falls where the plane rises. Masks of mirrored lanes are odd.
+  // The slope along the ray: where the ray runs backwards, it falls where the plane rises. Masks of mirrored lanes are
+  // odd.
   const auto slope = [&](VI steps, VI mirror) HWY_ATTR {
     const VF sign = hn::BitCast(df, hn::ShiftLeft<31>(mirror));
     return hn::Xor(hn::Mul(hn::ConvertTo(df, hn::ShiftRight<32 - kSlopeBits>(steps)), hn::Set(df, g.unit)), sign);

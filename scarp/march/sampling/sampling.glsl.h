@@ -32,7 +32,7 @@ const uint kScarpRefineBisect = 2u;
 /// Settings of one march, as in MarchSettings.
 struct ScarpSampling {
   uint march;       ///< kScarpNaive and so on
-  float factor;     ///< naive, relaxed: of the vertical distance; lipschitz: shrink factor; fixed-step: cells or metres
+  float factor;     ///< naive, relaxed: step factor; lipschitz: shrink factor; fixed-step: step in cells or metres
   float least;      ///< naive: minimum step, as a fraction of the ray's length; fixed-step: fraction of the distance
                     ///< travelled
   float tolerance;  ///< distance off the ground that counts as a hit, per unit of distance; fixed-step ignores it

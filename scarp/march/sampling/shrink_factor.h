@@ -18,7 +18,7 @@ Guarantee lipschitz_guarantee(const LipschitzSettings& settings, double slope);
 std::string lipschitz_caveat(const LipschitzSettings& settings, double slope);
 
 struct ShrinkFactor {
-  double factor;        ///< of the vertical distance
+  double factor;        ///< fraction of the vertical distance
   Guarantee guarantee;  ///< conservative if the slope bound proves the factor, else approximate
 };
 

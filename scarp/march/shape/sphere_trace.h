@@ -9,7 +9,7 @@
 // A segment is free, or free up to a point, or known to be below the surface from a point on: a Newton iteration that
 // cannot overshoot. Where the surface is smooth its remainder is of second order, so that rays which graze a face or a
 // ball take a few bounds instead of a thousand balls. The last interval, no longer than the tolerance, is refined (by
-// secants) until the value is rounding error.
+// secants) until the value is within rounding error.
 //
 // Guarantee: conservative, including rounding: it misses no crossing. A hit is a crossing, or a point that is
 // indistinguishable from one within the tolerance. A ray that exceeds the step limit is exhausted, never a hit. A ray
@@ -27,8 +27,8 @@
 
 namespace scarp {
 
-/// Closest hit; Hit::cell stays empty. Uses settings.sphere_trace. Overwrites `stats` unless null: steps are values,
-/// cell_tests bounds of segments; both count towards the step limit.
+/// Closest hit; Hit::cell stays empty. Uses settings.sphere_trace. Overwrites `stats` unless null: steps counts values,
+/// cell_tests counts segment bounds; both count towards the step limit.
 Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings = {},
                        MarchStats* stats = nullptr);
 /// Closest hit that the filter accepts. Behind a rejected hit the ray continues through the solid until it emerges,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `voxel-cubes` and, with cubes ahead of each voxel, `voxel-octants` in shaders (voxel_cubes.h, voxel_octants.h). Text
-// of C++ and of GLSL. The host defines scarp_voxel_byte().
+// `voxel-cubes` and, with cubes ahead of each voxel, `voxel-octants` in shaders (voxel_cubes.h, voxel_octants.h).
+// Compiles as C++ and GLSL. The host defines scarp_voxel_byte().
 #ifndef SCARP_MARCH_VOXEL_CUBES_GLSL_H
 #define SCARP_MARCH_VOXEL_CUBES_GLSL_H
 

@@ -113,7 +113,7 @@ constexpr int kExactStart = 4;
 struct QuantisedDirection {
   std::array<std::int64_t, 3> speed;  ///< per axis, 0..2^28; one of them is 2^28
   std::array<double, 3> slowness;     ///< 1 / speed
-  std::array<int, 3> step;            ///< 1 or -1; VoxelTies::up() along planes
+  std::array<int, 3> step;            ///< 1 or -1; VoxelTies::up() for a ray along planes
   VoxelTies ties;
   std::array<std::uint8_t, 3> after;  ///< per axis, a bit for each axis that is crossed after it
   bool exact;                         ///< paths in this direction are exact from exact starts (kExactStart)
