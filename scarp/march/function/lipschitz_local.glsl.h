@@ -5,7 +5,7 @@
 // Guarantee: conservative, including rounding: it misses no crossing. A hit is a crossing, or a touch: a point where
 // the bounds of a segment of 2^-22 of the time, or 4 times the rounding of clearances, do not separate the ray from the
 // ground. A ray from the surface starts at the height computed there, and may be below the ground by 4 times the width
-// of the bounds of a point, until it is proven to be above: it needs no bound of the ground's slope, unlike the other
+// of the bounds of a point, until it is proven to be above: it needs no bound on the ground's slope, unlike the other
 // implementations.
 //
 // Compiles as C++ and GLSL, including GLSL ES 3.0, which lacks `precise`. The including file must define
@@ -22,7 +22,7 @@ SCARP_GLSL_BEGIN
 /// LipschitzLocalSettings of march_settings.h.
 struct ScarpLipschitzLocal {
   float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
-  int max_steps;    ///< >= 1; more: kScarpFunctionExhausted
+  int max_steps;    ///< >= 1; beyond it: kScarpFunctionExhausted
   int run_steps;    ///< steps per run, a bound and possibly a height each, before the march is interrupted, >= 1
 };
 

@@ -46,8 +46,8 @@ SCARP_FN void scarp_over_field(ScarpTwoFloat way, int cell, int cells, bool wrap
   }
 }
 
-/// The ray's point at time s. Clearance has an error of 16 units of the relief of its cell and of the ray's height
-/// above it.
+/// The ray's point at time s. The clearance has an error of 16 units of the relief of its cell and of the ray's height
+/// above the cell.
 SCARP_FN ScarpPoint scarp_point(ScarpField field, ScarpRay ray, float s) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
   ScarpTwoFloat x = scarp_two_line(0.0f, ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x, s);

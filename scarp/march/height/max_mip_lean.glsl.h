@@ -6,7 +6,7 @@
 //       the ray is above every child on its path by more than the margin   leave the block, go up a level
 //       else                                                              on to the first child that it may meet
 //     in a cell:  above by more than the margin                           leave the cell
-//                 else, more than a few cells from the frame's begin      a new frame that begins here
+//                 else, more than a few cells from the frame's start      a new frame that begins here
 //                 else                                                    the sign of the clearance decides
 //
 // A frame starts at a point that two floats represent exactly, and in its first cells floats are exact to 2^-18 of a

@@ -127,7 +127,7 @@ HWY_INLINE AxisSpan<D> axis_span(D tag, V o, V d, V cells, double seam) {
   s.origin = hn::IfThenElse(s.back, hn::Sub(cells, o), o);
   s.direction = hn::Abs(d);
   s.per = hn::Div(hn::Set(tag, 1), s.direction);
-  // A ray that does not move along the axis is within the field always or never.
+  // A ray that does not move along the axis is always or never within the field.
   const auto still = hn::Eq(d, zero), within = hn::And(hn::Ge(o, zero), hn::Le(o, cells));
   const V off = hn::Max(hn::Neg(o), hn::Sub(o, cells));
   const V line = rounding_of_line(tag, o, cells, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How long a ray stays beside grid lines at heights of the ground: determines whether rims of holes may be crossed at
-// the time of a line, or must be followed (max_mip_rims.h).
+// How long a ray stays beside grid lines within the ground's height range: determines whether rims of holes may be
+// crossed at the time of a line, or must be followed (max_mip_rims.h).
 #pragma once
 
 #include <algorithm>

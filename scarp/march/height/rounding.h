@@ -22,8 +22,8 @@ namespace scarp {
 ///     ray height o_z + d_z t                2    abs(o_z) + abs(d_z t)
 ///     surface a + w (b - a), difference     3    the samples
 ///
-/// No quantity goes through more than 11; 16 is the next power of two. Errors of coordinates change the clearance
-/// through the slope: at most `relief` per cell.
+/// No quantity goes through more than 11 roundings; 16 is the next power of two. Errors of coordinates change the
+/// clearance through the slope: at most `relief` per cell.
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t, double relief) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   constexpr double kRoundings = 16;  // counted above

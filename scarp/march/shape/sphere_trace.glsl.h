@@ -25,7 +25,7 @@ SCARP_GLSL_BEGIN
 /// SphereTraceSettings of march_settings.h.
 struct ScarpSphereTrace {
   float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
-  int max_steps;    ///< >= 1; more: kScarpFunctionExhausted
+  int max_steps;    ///< >= 1; beyond it: kScarpFunctionExhausted
   int run_steps;    ///< steps per run before the march is interrupted (kScarpFunctionUnderWay), >= 1
   float growth;     ///< of the error of values, per metre of the ray
 };

@@ -34,7 +34,7 @@ class DeviceVoxelPictures {
   DeviceVoxelPictures& operator=(DeviceVoxelPictures&&) noexcept;
   ~DeviceVoxelPictures();
 
-  /// Sets hits[i] to the closest hit of rays[i], the ray of pixel i, row by row: within half a pixel of its middle, and
+  /// Sets hits[i] to the closest hit of rays[i], the ray of pixel i, row by row: within half a pixel of its centre, and
   /// with t no less than in the form of VoxelPicture. Returns the indices of rays without an answer, as
   /// DeviceVoxelQueries does. Throws Error if spans differ in length, the picture is too large for the device, its rays
   /// do not span space, or the device is lost. details.steps are those in the objects that are hit.

@@ -3,9 +3,9 @@
 // or all six if the eye is inside; the others collapse to a point.
 //
 // The ray of each pixel through the box must produce a fragment. Rasterisers move corners by up to 2^-5 pixel, corners
-// are rounded to float, and the ray of a pixel may be up to half a pixel beside its middle. Boxes are therefore
-// enlarged by `margin` at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of
-// that end: clip coordinates have errors of a few units of 2^-24 of it.
+// are rounded to float, and the ray of a pixel may be up to half a pixel off its centre. Boxes are therefore enlarged
+// by `margin` at the depth of their far end, a pixel there and more elsewhere, and by 2^-18 of the distance of that
+// end: clip coordinates have errors of a few units of 2^-24 of it.
 //
 // All corners of an object have the same depth, which is in front of all hits in it: depths are thus correct no matter
 // how close the eye is, and nothing near it is clipped.

@@ -100,7 +100,8 @@ constexpr std::int64_t kSlow = std::int64_t{1} << (kDirectionBits - 14);
 
 /// Rays may be displaced where they leave one box and enter the next. Planes that a ray has passed by less than this
 /// where it enters a box count as not crossed yet, so the ray touches the voxels at an edge there: no edge at which two
-/// objects touch lets it pass. In 2^-20 voxel, for boxes of 2,048: 2^-20 + 2^-28 2048 of slow components, and rounding.
+/// objects touch lets it pass. The unit is 2^-20 voxel. For boxes of 2,048 voxels a side, this covers 2^-20 + 2^-28 *
+/// 2048 of slow components, and rounding.
 constexpr std::int64_t kTouch = 10;
 
 /// A path that is exact in one box must be exact in all others of the lattice, or one of them could leave a tie to
