@@ -84,6 +84,28 @@ TEST(CastFrom, AScannerHitsWhereItsRaysDo) {
   });
 }
 
+// With seams between any two copies, at which the samples do not match: periodic ground has a cell there.
+TEST(CastFrom, WrappedGroundIsHitWhereItsRaysDo) {
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    const Terrain ground = terrain({.cell_x = 10, .cell_y = 8, .surface = surface, .wrap = Wrap::periodic});
+    for (const dvec3& eye : {dvec3(1003, 597, 45), dvec3(2009, -1, 45), dvec3(-7003.5, 12003, 60), dvec3(0, 0, 30)}) {
+      for (const double turn : {0.3, 2.0, 3.9, 5.5}) {
+        PinholeCamera camera{.eye = eye, .forward = {std::sin(turn), std::cos(turn), -0.2}, .columns = 77, .rows = 41};
+        camera.t_max = 6000;
+        FanAnswers answers(camera.columns, camera.rows);
+        cast_from(ground, camera, answers);
+        const dvec3 forward = normalize(camera.forward), right = normalize(cross(forward, dvec3(0, 0, 1)));
+        const dvec3 up = cross(right, forward);
+        const double pixel = 2.0 / camera.columns;
+        expect_as_cast(ground, answers, camera.eye, camera.t_max, [&](int column, int row) {
+          return forward + pixel * (column + 0.5 - 0.5 * camera.columns) * right +
+                 pixel * (0.5 * camera.rows - row - 0.5) * up;
+        });
+      }
+    }
+  }
+}
+
 TEST(CastFrom, TakesDirectionsOfTheCallerOnAllThreads) {
   const Terrain ground = terrain();
   const int columns = 333, rows = 64;

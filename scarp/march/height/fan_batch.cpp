@@ -81,6 +81,7 @@ std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ra
   if (std::abs(middle.z) > kStraightDown * length(middle)) return {};
   Fan fan;
   fan.origin = origin;
+  fan.t_max = std::max({rays[0].t_max, rays[1].t_max, rays[n / 2].t_max, rays[n - 1].t_max});
   fan.columns = static_cast<int>(batch.columns ? runs : batch.run);
   fan.rows = static_cast<int>(batch.columns ? batch.run : runs);
   if (!looks_by_fan(target, fan, first, rays[runs * batch.run - 1].direction)) return {};
@@ -154,12 +155,16 @@ class FanGroup {
   bool take(std::size_t begin, std::size_t end) {
     const dvec3 origin = rays_[0].origin;
     bool all = true;
+    double longest = 0;
     for_each_place(begin, end, [&](std::size_t i, std::size_t place) {
       const Ray& ray = rays_[i];
       const dvec3 d = ray.direction;
       all = all && starts_at(ray, origin) && is_plain(d);
+      if (std::isfinite(ray.t_max)) longest = std::max(longest, ray.t_max);
       dx_[place] = static_cast<float>(d.x), dy_[place] = static_cast<float>(d.y), dz_[place] = static_cast<float>(d.z);
     });
+    for (double known = t_max_; known < longest && !t_max_.compare_exchange_weak(known, longest);) {
+    }
     return all;
   }
   void look(int column_begin, int column_end) {
@@ -167,6 +172,7 @@ class FanGroup {
     fan.origin = rays_[0].origin;
     fan.dx = dx_.data(), fan.dy = dy_.data(), fan.dz = dz_.data();
     fan.columns = static_cast<int>(columns_), fan.rows = static_cast<int>(rows_);
+    fan.t_max = t_max_;
     fan.row_stride = kStripColumns, fan.strip_stride = static_cast<std::ptrdiff_t>(kStripColumns * rows_);
     look_max_mip_fan(target_, fan, sights_.data(), column_begin, column_end);
   }
@@ -176,6 +182,7 @@ class FanGroup {
   std::span<const Ray> rays_;
   std::span<Hit> hits_;
   std::size_t rows_, columns_, strips_;
+  std::atomic<double> t_max_ = 0;   // of the longest ray that ends
   KeptVector<float> dx_, dy_, dz_;  // in strips of 16 columns
   KeptVector<FanSight> sights_;
 };

@@ -24,27 +24,40 @@ constexpr std::size_t kBatch = 4096;
 // From above all ground, where rays are far from the ground until they hit, the batch is as fast with fewer rows than
 // this; and anywhere with fewer columns than this, which leave most lanes empty. Measured (doc/dev/decisions/march.md).
 constexpr int kFewRows = 24, kFewColumns = 5;
-// Lines of the grid that take a column as long as a batch takes for one ray.
-constexpr double kLinesPerRow = 32;
+// Lines of the grid that take a column as long as a batch takes for one ray. Over wrapped ground, walks go farther:
+// strips are wider there, and from below the highest ground most lines are skipped.
+constexpr double kLinesPerRow = 32, kWrappedLinesPerRow = 10, kLowLinesPerRow = 75;
 
 // About the number of lines that a column with these ends crosses over ground that may be as high as its rays.
-double lines_of(const HeightField& field, double z, const dvec3& a, const dvec3& b) {
+double lines_of(const HeightField& field, const Fan& fan, const dvec3& a, const dvec3& b) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  double begin = kFar, end = 0;
+  const double z = fan.origin.z, cell = std::min(field.settings().cell_x, field.settings().cell_y);
+  double begin = kFar, end = 0, reach = 0;
   for (const dvec3& d : {a, b}) {
-    const double fall = -d.z / std::hypot(d.x, d.y);
+    const double flat = std::hypot(d.x, d.y), fall = -d.z / flat;
     begin = std::min(begin, fall > 0 ? std::max(z - field.max_height(), 0.0) / fall : kFar);
     end = std::max(end, fall > 0 ? (z - field.min_height()) / fall : kFar);
+    reach = std::max(reach, fan.t_max * flat);
   }
-  const double cell = std::min(field.settings().cell_x, field.settings().cell_y);
-  return begin < end ? std::min(end - begin, std::hypot(field.width(), field.depth())) / cell : 0;
+  if (!(begin < end)) return 0;
+  if (!field.wraps()) return std::min(end - begin, std::hypot(field.width(), field.depth())) / cell;
+  // Without a side, the walk ends with the rays, or where few come down.
+  if (z > field.max_height()) {
+    const double over = z - 0.5 * (field.max_height() + field.min_height());
+    const double step = std::abs(a.z / std::hypot(a.x, a.y) - b.z / std::hypot(b.x, b.y)) / fan.rows;
+    reach = std::min(reach, std::sqrt(static_cast<double>(max_mip::kFarthestGap) * cell * over / step));
+  }
+  return std::max(std::min(end, reach) - begin, 0.0) / cell;
 }
 
 // `first`, `last`: directions at opposite corners of these columns.
 bool pays(const HeightField& field, const Fan& fan, int columns, const dvec3& first, const dvec3& last) {
   if (columns < kFewColumns) return false;
-  if (fan.origin.z <= field.max_height()) return true;
-  return fan.rows >= kFewRows && fan.rows * kLinesPerRow >= lines_of(field, fan.origin.z, first, last);
+  const bool low = fan.origin.z <= field.max_height();
+  if (low && !field.wraps()) return true;
+  if (!low && fan.rows < kFewRows) return false;
+  const double per_row = !field.wraps() ? kLinesPerRow : low ? kLowLinesPerRow : kWrappedLinesPerRow;
+  return fan.rows * per_row >= lines_of(field, fan, first, last);
 }
 
 std::ptrdiff_t place_of(const Fan& fan, int column, int row) {
@@ -107,15 +120,9 @@ constexpr double kFarthest = 0x1p16;
 bool is_beside_no_hole(const HeightField& field, const dvec3& at) {
   const auto beside = [](double place, int cells) { return std::max(-place, place - cells); };
   const double off = std::max(beside(at.x, field.cell_cols()), beside(at.y, field.cell_rows()));
-  if (off > 1) return true;
-  if (off > 0) return false;
-  const int col = static_cast<int>(at.x), row = static_cast<int>(at.y);
-  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, field.cell_rows() - 1); ++r) {
-    for (int c = std::max(col - 1, 0); c <= std::min(col + 1, field.cell_cols() - 1); ++c) {
-      if (!field.cell_heights({c, r})) return false;
-    }
-  }
-  return true;
+  if (!field.wraps() && off > 0) return off > 1;
+  return !max_mip::any_cell_beside(field, {static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y))},
+                                   [&](const Cell& cell) { return !field.cell_heights(cell); });
 }
 
 // In cells; in heights of the field.
@@ -125,9 +132,10 @@ constexpr double kOnBorder = 0x1p-20, kAboveBorder = 0x1p-12;
 
 bool max_mip::walks_fan(const HeightTarget& target, const Fan& fan) {
   const HeightField& field = *target.field;
-  if (field.wraps() || !field.has_cells() || field.all_nodata()) return false;
+  if (!field.has_cells() || field.all_nodata()) return false;
   if (field.cell_cols() > kMostCells || field.cell_rows() > kMostCells) return false;
   if (!(fan.t_min >= 0) || !std::isfinite(fan.t_min) || !(fan.t_max >= fan.t_min)) return false;
+  if (field.wraps() && std::isinf(fan.t_max)) return false;
   Ray ray;
   ray.origin = fan.origin;
   const dvec3 at = field.grid_from_world(ray).origin;
@@ -139,6 +147,7 @@ bool max_mip::walks_fan(const HeightTarget& target, const Fan& fan) {
   if (!(tallest < 0x1p60) || !(relief < 0x1p60)) return false;
   const auto ground = field.height(fan.origin.x, fan.origin.y);
   if (ground && !(fan.origin.z > *ground)) return false;
+  if (field.wraps()) return true;
   // On the border rays may touch a rim before or behind the field, unless they are well above it.
   const auto on_border = [](double place, int cells) {
     return std::min(std::abs(place), std::abs(place - cells)) < kOnBorder;
@@ -165,7 +174,8 @@ void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const 
   std::vector<FanRest> rest;
   max_mip::walk_fan(target, fan, hits, column_begin, column_end, options, rest, t_stats);
   for (const FanRest& one : rest) {
-    if (one.t_clear > 0) {
+    // Over holes the side of a ray depends on the rims that it has crossed.
+    if (one.t_clear > 0 && target.field->nodata_count() == 0) {
       ++t_stats.resumed;
       put(hits, one.ray, resume_max_mip(target, ray_of(fan, one.ray), one.t_clear));
     } else {
@@ -205,15 +215,22 @@ void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sigh
 void closest_hits_max_mip_seen(const HeightTarget& target, std::span<const Ray> rays, std::span<const FanSight> sights,
                                std::span<Hit> hits) {
   require(target, HeightPart::pyramid);
+  const HeightField& field = *target.field;
+  const auto unseen = [](const FanSight& sight) { return sight.clear == -std::numeric_limits<float>::infinity(); };
+  if (std::all_of(sights.begin(), sights.end(), unseen)) return closest_hits_max_mip_simd(target, rays, hits);
   max_mip::answer_seen(target, rays, sights, hits);
   KeptVector<Ray> unknown;
   KeptVector<std::size_t> places;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const float clear = sights[i].clear;
-    if (clear == std::numeric_limits<float>::infinity()) {
+    const bool open = clear < 0 && clear > -std::numeric_limits<float>::infinity();
+    const double t_clear = open ? max_mip::clear_time(field, rays[i], sights[i]) : 0;
+    if (field.wraps() && !max_mip::countable(field.grid_from_world(rays[i]), rays[i])) {
+      unknown.push_back(rays[i]), places.push_back(i);
+    } else if (clear == std::numeric_limits<float>::infinity() || t_clear > rays[i].t_max) {
       hits[i] = {};
-    } else if (clear < 0 && clear > -std::numeric_limits<float>::infinity()) {
-      hits[i] = resume_max_mip(target, rays[i], max_mip::clear_time(*target.field, rays[i], sights[i]));
+    } else if (open && field.nodata_count() == 0) {
+      hits[i] = resume_max_mip(target, rays[i], t_clear);
     } else if (!(clear >= 0)) {
       unknown.push_back(rays[i]), places.push_back(i);
     }

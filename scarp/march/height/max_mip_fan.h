@@ -12,9 +12,12 @@
 // side. Rows of a scanner and of an upright camera are such; so are those of most tilted cameras. Where the rays of all
 // columns are above the tilted planes of the pyramid, many lines are skipped at once.
 //
+// Wrapped ground goes on through all copies, so that lines and nodes are counted beyond the grid and looked up within
+// it; a walk ends with its rays, which must end, or where few are left.
+//
 // Floats decide what a margin proves (doc/dev/numerics.md): that a ray is above the ground, or that it is above at one
 // place and below at a later one. Rays without such a proof, and those that inherit nothing, go to march_max_mip() and
-// its batch form. A ray hits here if it hits there.
+// its batch form, as do all rays of an eye below the ground. A ray hits here if it hits there.
 //
 // Source: own. That a column of pixels is drawn from near to far in one pass is known from games with voxel landscapes
 // (NovaLogic's "Comanche", 1992). Cost: no memory besides the pyramid; pays off if the rows are not far fewer than the
@@ -72,11 +75,14 @@ struct FanSight {
 };
 
 /// Whether look_max_mip_fan() finds anything over this field and from this origin, and is likely to be faster than a
-/// batch. `first` and `last`: directions of the rays at two opposite corners; those of `fan` are not read.
+/// batch. `first` and `last`: directions of the rays at two opposite corners; those of `fan` are not read. Over a field
+/// that wraps, t_max is as for look_max_mip_fan().
 bool looks_by_fan(const HeightTarget& target, const Fan& fan, const dvec3& first, const dvec3& last);
 
 /// Sets sights, laid out as the rays, for t_min = 0 and any t_max. The rays may be given in double elsewhere: sights
-/// are also those of rays whose directions, or multiples of them, round to these floats. Threads and columns as above.
+/// are also those of rays whose directions, or multiples of them, round to these floats. Over a field that wraps, the
+/// rays are followed up to fan.t_max, which must be finite: rays beyond it are only slower. Threads and columns as
+/// above.
 void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int column_begin, int column_end);
 
 /// hits[i] is march_max_mip() of rays[i], bit for bit. sights[i] is that of the ray; its t_min is 0. Runs on the

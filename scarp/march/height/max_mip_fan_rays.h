@@ -32,19 +32,18 @@ struct RowRays {
   MF taken;
 };
 
-// The state of a pass over one octant of a strip, per lane.
-struct StripLanes {
-  alignas(64) std::int32_t count[N];   // rays
-  alignas(64) std::int32_t broken[N];  // the last ray that may not inherit from the one below it; -1: none
-  alignas(64) float least_m[N];
-  float strip_least_m, strip_most_m;
+// How directions become cells and sample units per t, and which rays are taken.
+struct RayScales {
+  float per_x, per_y, per_z;
+  float steepest;    // most rise per cell
+  float most_major;  // most cells per t
 };
 
-HWY_INLINE RowRays row_rays(const StripRays& rays, int i, float per_x, float per_y, float per_z, float steepest) {
+HWY_INLINE RowRays row_rays(const StripRays& rays, int i, const RayScales& scales) {
   const VF zero = hn::Zero(df);
-  const VF gx = hn::Mul(hn::LoadU(df, rays.dx + i * rays.stride), hn::Set(df, per_x));
-  const VF gy = hn::Mul(hn::LoadU(df, rays.dy + i * rays.stride), hn::Set(df, per_y));
-  const VF gz = hn::Mul(hn::LoadU(df, rays.dz + i * rays.stride), hn::Set(df, per_z));
+  const VF gx = hn::Mul(hn::LoadU(df, rays.dx + i * rays.stride), hn::Set(df, scales.per_x));
+  const VF gy = hn::Mul(hn::LoadU(df, rays.dy + i * rays.stride), hn::Set(df, scales.per_y));
+  const VF gz = hn::Mul(hn::LoadU(df, rays.dz + i * rays.stride), hn::Set(df, scales.per_z));
   const VF x = hn::Abs(gx), y = hn::Abs(gy);
   const MF turned = hn::Gt(y, x);
   const VF major = hn::IfThenElse(turned, y, x), minor = hn::IfThenElse(turned, x, y);
@@ -53,8 +52,8 @@ HWY_INLINE RowRays row_rays(const StripRays& rays, int i, float per_x, float per
   const VF m = hn::Mul(minor, r.per_major);
   r.s = hn::Mul(gz, r.per_major);
   // False for NaN.
-  r.taken = hn::And(hn::And(hn::Gt(major, hn::Set(df, 0x1p-60f)), hn::Lt(major, hn::Set(df, 0x1p60f))),
-                    hn::And(hn::Le(m, hn::Set(df, 2)), hn::Lt(hn::Abs(r.s), hn::Set(df, steepest))));
+  r.taken = hn::And(hn::And(hn::Gt(major, hn::Set(df, 0x1p-60f)), hn::Lt(major, hn::Set(df, scales.most_major))),
+                    hn::And(hn::Le(m, hn::Set(df, 2)), hn::Lt(hn::Abs(r.s), hn::Set(df, scales.steepest))));
   r.m = hn::Min(m, hn::Set(df, 1));
   const auto bit = [&](MF set, std::int32_t value)
                        HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, set), hn::Set(di, value)); };

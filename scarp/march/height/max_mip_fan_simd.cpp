@@ -24,6 +24,7 @@
 // foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/height/max_mip_fan_lines.h"
+#include "scarp/march/height/max_mip_fan_pass.h"
 #include "scarp/march/height/max_mip_fan_rays.h"
 #include "scarp/march/height/max_mip_fan_step.h"
 
@@ -50,22 +51,30 @@ class FanWalk {
         stats_(stats) {
     Ray ray;
     ray.origin = fan.origin;
-    const GridRay at = field_.grid_from_world(ray);
-    origin_ = at.origin;
-    for (int i = 0; i < 8; ++i) octants_[i] = octant(grid, origin_, pyramid_.relief().lowest(), i);
+    const dvec3 at = field_.grid_from_world(ray).origin;
+    const bool wraps = field_.wraps();
+    origin_ = at;
+    if (wraps) {
+      origin_.x -= std::floor(at.x / grid.cell_cols) * grid.cell_cols;
+      origin_.y -= std::floor(at.y / grid.cell_rows) * grid.cell_rows;
+    }
+    for (int i = 0; i < 8; ++i) octants_[i] = octant(grid, wraps, origin_, pyramid_.relief().lowest(), i);
     const HeightField::GridScales scales = field_.grid_scales();
-    per_x_ = static_cast<float>(scales.per_cell_x), per_y_ = static_cast<float>(-scales.per_cell_y);
-    per_z_ = static_cast<float>(scales.per_scale);
+    scales_.per_x = static_cast<float>(scales.per_cell_x), scales_.per_y = static_cast<float>(-scales.per_cell_y);
+    scales_.per_z = static_cast<float>(scales.per_scale);
+    // Of the rays whose hits are wanted, march_max_mip() counts the cells of those that end.
+    scales_.most_major = wraps && !sights ? static_cast<float>(std::min(0x1p60, 0x1p40 / fan.t_max)) : 0x1p60f;
     triangles_ = field_.settings().surface == Surface::triangles;
     const double low = field_.min_sample(), high = field_.max_sample();
-    // Above it, rays are above all ground, whatever rounding does to their height.
-    highest_ = static_cast<float>(high - origin_.z + 0x1p-19 * (std::abs(high - origin_.z) + high - low));
-    lowest_ = static_cast<float>(low - origin_.z);
+    // Rays are above all ground there, whatever rounding does to their height.
+    heights_.highest = static_cast<float>(high - origin_.z + 0x1p-19 * (std::abs(high - origin_.z) + high - low));
+    heights_.lowest = static_cast<float>(low - origin_.z);
     const double tall = std::max({high - low, std::abs(origin_.z - low), std::abs(origin_.z - high)});
-    steepest_ray_ = static_cast<float>(std::clamp(tall * 0x1p18, 0x1p-60, 0x1p90));
+    scales_.steepest = static_cast<float>(std::clamp(tall * 0x1p18, 0x1p-60, 0x1p90));
     // Rounding of doubles, for any ray over the field: four times rounding_of_clearance(), for the signs of both
     // marches.
-    const double wide = std::abs(origin_.x) + std::abs(origin_.y) + field_.cell_cols() + field_.cell_rows();
+    const double wide =
+        std::abs(at.x) + std::abs(at.y) + field_.cell_cols() + field_.cell_rows() + (wraps ? 2 * kMostLines : 0);
     const GridRay far{{wide, wide, std::abs(origin_.z)}, {0, 0, std::abs(low) + std::abs(high) + std::abs(origin_.z)}};
     doubt_ = static_cast<float>(4 * rounding_of_clearance(field_, far, 1));
     rounding_ = kFanRounding * options.margin;
@@ -124,14 +133,14 @@ class FanWalk {
     rays_ = {copies_.data(), copies_.data() + rows * N, copies_.data() + 2 * rows * N, N};
   }
 
-  HWY_INLINE RowRays row(int i) const { return row_rays(rays_, i, per_x_, per_y_, per_z_, steepest_ray_); }
+  HWY_INLINE RowRays row(int i) const { return row_rays(rays_, i, scales_); }
 
   // Tables of m and s, and the walks: one per octant that the strip's rays are in.
   HWY_NOINLINE void prepare() {
     const RowRays first = row(0);
     VI seen = hn::Zero(di);
     bool all_taken = true;
-    VF least = hn::Set(df, 2), most = hn::Zero(df);
+    VF least = hn::Set(df, 2), most = hn::Zero(df), per_major = hn::Set(df, kNoTime);
     VI broken = hn::Set(di, -1);
     VF m0 = first.m, s0 = hn::Set(df, -kNoTime);
     const VF relief = hn::Set(df, cell_relief_);
@@ -143,7 +152,7 @@ class FanWalk {
       all_taken &= hn::AllTrue(df, r.taken);
       const VI one = hn::Shl(hn::Set(di, 1), r.octant);
       seen = hn::Or(seen, hn::IfThenElseZero(hn::RebindMask(di, r.taken), one));
-      least = hn::Min(least, r.m), most = hn::Max(most, r.m);
+      least = hn::Min(least, r.m), most = hn::Max(most, r.m), per_major = hn::Min(per_major, r.per_major);
       const MI breaks = hn::RebindMask(di, hn::Not(inherits(m0, s0, r.m, r.s, relief)));
       broken = hn::IfThenElse(breaks, hn::Set(di, i), broken);
       m0 = r.m, s0 = r.s;
@@ -153,12 +162,14 @@ class FanWalk {
     std::int32_t all = 0;
     for (const std::int32_t o : octants) all |= o;
     StripLanes lanes;
+    lanes.m = m_.data(), lanes.s = s_.data();
     if (all_taken && std::has_single_bit(static_cast<unsigned>(all))) {
       hn::Store(hn::Set(di, fan_.rows), di, lanes.count);
       for (std::size_t l = static_cast<std::size_t>(width_); l < N; ++l) lanes.count[l] = 0;
       hn::Store(broken, di, lanes.broken), hn::Store(least, df, lanes.least_m);
       lanes.strip_least_m = hn::GetLane(hn::MinOfLanes(df, least));
       lanes.strip_most_m = hn::GetLane(hn::MaxOfLanes(df, most));
+      lanes.most_major = 1 / hn::GetLane(hn::MinOfLanes(df, per_major));
       rows_ = nullptr;
       walk(octants_[std::countr_zero(static_cast<unsigned>(all))], lanes);
       return;
@@ -176,14 +187,14 @@ class FanWalk {
   HWY_NOINLINE void take(int octant, StripLanes& lanes) {
     std::fill_n(lanes.count, N, 0), std::fill_n(lanes.broken, N, -1), std::fill_n(lanes.least_m, N, 2.0f);
     std::fill_n(m_.begin(), N, 0.0f), std::fill_n(s_.begin(), N, 0.0f);
-    float most = 0;
-    alignas(64) float m[N], s[N];
+    float most = 0, least_per_major = kNoTime;
+    alignas(64) float m[N], s[N], per_major[N];
     for (int i = 0; i < fan_.rows; ++i) {
       const RowRays r = row(i);
       const MF in = hn::And(r.taken, hn::RebindMask(df, hn::Eq(r.octant, hn::Set(di, octant))));
       std::uint64_t bits = bits_of(in) & ((std::uint64_t{1} << width_) - 1);
       if (bits == 0) continue;
-      hn::Store(r.m, df, m), hn::Store(r.s, df, s);
+      hn::Store(r.m, df, m), hn::Store(r.s, df, s), hn::Store(r.per_major, df, per_major);
       for (; bits != 0; bits &= bits - 1) {
         const auto l = static_cast<std::size_t>(std::countr_zero(bits));
         const auto count = static_cast<std::size_t>(lanes.count[l]++), to = count * N + l;
@@ -191,73 +202,20 @@ class FanWalk {
         if (count > 0 && !inherits(m_[to - N], s_[to - N], m[l], s[l], cell_relief_))
           lanes.broken[l] = static_cast<std::int32_t>(count);
         lanes.least_m[l] = std::min(lanes.least_m[l], m[l]);
-        most = std::max(most, m[l]);
+        most = std::max(most, m[l]), least_per_major = std::min(least_per_major, per_major[l]);
       }
     }
     lanes.strip_least_m = *std::min_element(lanes.least_m, lanes.least_m + N);
-    lanes.strip_most_m = most;
+    lanes.strip_most_m = most, lanes.most_major = 1 / least_per_major;
   }
-
-  // The line from which on rays may be near the ground.
-  std::int32_t first_line(const Octant<Sample>& o, const StripLanes& lanes) const {
-    double T = 0;
-    if (highest_ < 0) {
-      T = std::numeric_limits<double>::infinity();
-      for (std::size_t l = 0; l < N; ++l) {
-        if (lanes.count[l] > 0 && s_[l] < 0)
-          T = std::min(T, static_cast<double>(highest_) / static_cast<double>(s_[l]) * (1 - 0x1p-20));
-      }
-    }
-    // Beside the field there is no ground.
-    double first = std::max(std::floor(T + o.fx) - 1, -static_cast<double>(o.line0));
-    if (o.node0 < 0 && lanes.strip_most_m > 0) {
-      const double enters = (-o.node0 - o.fy) / static_cast<double>(lanes.strip_most_m) * (1 - 0x1p-20);
-      first = std::max(first, std::floor(enters + o.fx) - 2);
-    }
-    const auto line =
-        static_cast<std::int32_t>(std::clamp(first, 0.0, static_cast<double>(std::max(o.last_line(), 0))));
-    return line == 0 && o.fx == 1 ? 1 : line;
-  }
-
-  // Whether most rays are likely to inherit, by some of them and the ground that the middle ray of a lane crosses.
-  HWY_NOINLINE bool worthwhile(const Octant<Sample>& o, const StripLanes& lanes) const {
-    constexpr std::int32_t kSamples = 24;
-    constexpr std::size_t kLaneStep = 5;
-    const auto inherit = [&](float steepest) {
-      int links = 0, broken = 0;
-      for (std::size_t l = 0; l < N; l += kLaneStep) {
-        const std::int32_t step = std::max(1, lanes.count[l] / kSamples);
-        for (std::int32_t i = 1; i < lanes.count[l]; i += step) {
-          const std::size_t at = static_cast<std::size_t>(i) * N + l;
-          ++links, broken += !inherits(m_[at - N], s_[at - N], m_[at], s_[at], steepest);
-        }
-      }
-      return static_cast<float>(broken) <= kMostBroken * static_cast<float>(links);
-    };
-    if (inherit(cell_relief_)) return true;
-    const std::int32_t first = std::max(first_line(o, lanes) - 1, 0);
-    std::int32_t last = first;
-    for (std::size_t l = 0; l < N; l += kLaneStep) {
-      if (lanes.count[l] == 0) continue;
-      const float s = s_[static_cast<std::size_t>(lanes.count[l] / 2) * N + l];
-      const double T = s < 0 ? static_cast<double>(lowest_) / static_cast<double>(s) : kFar;
-      last = std::max(last, static_cast<std::int32_t>(std::min(T, static_cast<double>(std::max(o.last_line(), 0)))));
-    }
-    WedgeRelief<Sample> relief(o, pyramid_.relief(), first, static_cast<double>(lanes.strip_least_m),
-                               static_cast<double>(lanes.strip_most_m));
-    return inherit(relief.up_to(last));
-  }
-  static constexpr double kFar = 0x1p17;
-  // A ray by the batch takes about twice the time of one in a fan; bad links are guessed from the worst ground.
-  static constexpr float kMostBroken = 0.3f;
 
   void walk(const Octant<Sample>& o, const StripLanes& lanes) {
-    if (!options_.always && !worthwhile(o, lanes)) return leave(lanes);
-    if (triangles_) {
-      walk_over<true>(o, lanes);
-    } else {
-      walk_over<false>(o, lanes);
-    }
+    const std::int32_t end = end_line(o, lanes, fan_.t_max);
+    if (!options_.always && !worthwhile(o, lanes, heights_, pyramid_.relief(), cell_relief_, end)) return leave(lanes);
+    // Rays that get to the end miss; wrapped ground goes on, and they are above it up to there.
+    const std::int32_t far = o.wraps ? std::min(far_line(lanes, heights_), end) : end;
+    const float last = !o.wraps ? kNoTime : far < end ? -kNoTime : -1 - o.T_at(end);
+    triangles_ ? walk_over<true>(o, lanes, far, last) : walk_over<false>(o, lanes, far, last);
   }
 
   // Leaves the rays of a pass to the batch.
@@ -268,9 +226,8 @@ class FanWalk {
   }
 
   template <bool triangles>
-  HWY_NOINLINE void walk_over(const Octant<Sample>& o, const StripLanes& lanes) {
+  HWY_NOINLINE void walk_over(const Octant<Sample>& o, const StripLanes& lanes, std::int32_t end, float last) {
     const bool rises = o.rises;
-    const std::int32_t end = o.last_line();
     const VI n = hn::Load(di, lanes.count), lane = hn::Iota(di, 0), one = hn::Set(di, 1);
     VI j = hn::Zero(di);
     MF active = hn::RebindMask(df, hn::Gt(n, j)), refused = hn::RebindMask(df, hn::Lt(n, j));
@@ -286,14 +243,14 @@ class FanWalk {
     };
     load_next();
     const VF least_m = hn::Load(df, lanes.least_m);
-    std::int32_t k = first_line(o, lanes);
+    std::int32_t k = first_line(o, lanes, heights_, end);
     WedgeRelief<Sample> relief(o, pyramid_.relief(), std::max(k - 1, 0), static_cast<double>(lanes.strip_least_m),
                                static_cast<double>(lanes.strip_most_m));
 
     std::int32_t b = 0;
     bool wide = false;
     FanLine at;
-    float low_y = 0, high_y = 0;  // the field's sides, from the first node of the windows
+    float low_y = -0x1p30f, high_y = 0x1p30f;  // the field's sides, if any, from the first node of the windows
     float doubt = 0;
     const Sample *line0 = nullptr, *line1 = nullptr;
     // Wide: the nodes of each lane from far_node on, one more at the next line.
@@ -304,6 +261,7 @@ class FanWalk {
     const auto set_window = [&](std::int32_t first) {
       b = first;
       at.y = static_cast<float>(o.fy - b);
+      if (o.wraps) return;
       low_y = static_cast<float>(-o.node0 - b), high_y = static_cast<float>(o.minor_cells - o.node0 - b);
     };
     const auto set_line = [&] {
@@ -349,21 +307,23 @@ class FanWalk {
     std::int32_t no_jump = options_.jumps && pyramid_.planes().exist() ? 1 : std::numeric_limits<std::int32_t>::max();
     for (;;) {
       if (k >= end) {
-        end_lanes(active, j, m_ok, s_ok, relief, k, lanes);
+        end_lanes(active, j, m_ok, s_ok, relief, k, lanes, last);
         return;
       }
       // Over blocks.
-      const std::int32_t real = o.back_major ? o.major_cells - (o.line0 + k) : o.line0 + k;
+      const std::int32_t real = o.back_major ? o.major_cells - o.field_line(k) : o.field_line(k);
       if (k >= no_jump && (real & ((1 << kLeastLevel) - 1)) == 0) {
         const int fits = real == 0 ? top : std::min(top, std::countr_zero(static_cast<unsigned>(real)));
         bool jumped = false;
         for (int l = std::min(level, fits); l >= kLeastLevel && !jumped; --l) {
           ++stats_.jump_tries;
-          const MF clear =
-              clears_blocks(o, planes_, levels[static_cast<std::size_t>(l - 1)], l, k, at, b, r, doubt_, rounding_);
+          const std::int32_t left = o.wraps && !o.back_major ? o.major_cells - real : 1 << l;
+          const std::int32_t lines = std::min(1 << l, left);
+          const MF clear = clears_blocks(o, planes_, levels[static_cast<std::size_t>(l - 1)], l, lines, k, at, b, r,
+                                         doubt_, rounding_);
           if (hn::AllTrue(df, hn::Or(clear, hn::Not(active)))) {
             ++stats_.jumps;
-            k += 1 << l;
+            k += lines;
             level = l + 1;
             jumped = true;
           } else {
@@ -410,7 +370,8 @@ class FanWalk {
         const MF clear = hn::Gt(low, e.margin);
         const VF beyond = hn::Set(df, high_y + at.aside);
         const MF out = hn::AndNot(refused, hn::Gt(p.y, beyond));
-        const MF above = hn::AndNot(refused, hn::And(hn::Ge(r.s, hn::Zero(df)), hn::Gt(e.h0, hn::Set(df, highest_))));
+        const MF above =
+            hn::AndNot(refused, hn::And(hn::Ge(r.s, hn::Zero(df)), hn::Gt(e.h0, hn::Set(df, heights_.highest))));
         const MF go = hn::And(active, hn::Or(hn::Or(hn::Not(clear), out), hn::Or(above, refused)));
         if (hn::AllFalse(df, go)) break;
         const MF all_out = hn::And(out, hn::Gt(hn::MulAdd(least_m, hn::Set(df, at.T0), hn::Set(df, at.y)), beyond));
@@ -486,9 +447,10 @@ class FanWalk {
     const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kNoTime), until);
     const VI cell =
         hn::Add(hn::ConvertTo(di, p.node), hn::IfThenElseZero(hn::RebindMask(di, hn::Not(first)), hn::Set(di, 1)));
-    const VI mirrored = hn::Add(cell, hn::Set(di, o.node0 + b));
+    const VI number = hn::Add(cell, hn::Set(di, o.node0 + b));
+    const VI mirrored = o.wraps ? in_copy(number, o.minor_cells) : number;
     const VI minor = o.back_minor ? hn::Sub(hn::Set(di, o.minor_cells - 1), mirrored) : mirrored;
-    const std::int32_t major = o.back_major ? o.major_cells - 1 - (o.line0 + k) : o.line0 + k;
+    const std::int32_t line = o.field_line(k), major = o.back_major ? o.major_cells - 1 - line : line;
     const VI packed = o.turned
                           ? hn::Or(hn::Set(di, static_cast<std::int32_t>(static_cast<unsigned>(major) << 16)), minor)
                           : hn::Or(hn::ShiftLeft<16>(minor), hn::Set(di, major));
@@ -505,12 +467,8 @@ class FanWalk {
     }
   }
   bool beside_hole(int col, int row) const {
-    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, grid_.cell_rows - 1); ++r) {
-      for (int c = std::max(col - 1, 0); c <= std::min(col + 1, grid_.cell_cols - 1); ++c) {
-        if (grid_.is_hole(c, r)) return true;
-      }
-    }
-    return false;
+    return max_mip::any_cell_beside(field_, {col, row},
+                                    [&](const Cell& cell) { return grid_.is_hole(cell.col, cell.row); });
   }
   std::size_t slot(std::size_t j, std::size_t lane) const {
     const std::size_t at = j * N + lane;
@@ -518,19 +476,23 @@ class FanWalk {
   }
 
   // Rays behind those of some lanes, which have left the field or are above all ground: they miss if they inherit that.
+  // `until` below infinity: all these rays are above the ground up to there.
   HWY_NOINLINE void end_lanes(MF ends, VI j, VF m_ok, VF s_ok, WedgeRelief<Sample>& relief, std::int32_t k,
-                              const StripLanes& lanes) {
+                              const StripLanes& lanes, float until = kNoTime) {
     alignas(64) std::int32_t rows[N];
     alignas(64) float m[N], s[N];
     hn::Store(j, di, rows), hn::Store(m_ok, df, m), hn::Store(s_ok, df, s);
     for (std::uint64_t bits = bits_of(ends); bits != 0; bits &= bits - 1) {
       const auto l = static_cast<std::size_t>(std::countr_zero(bits));
-      if (lanes.broken[l] <= rows[l]) continue;
+      const bool misses = until == kNoTime;
+      if (misses && lanes.broken[l] <= rows[l]) continue;
+      if (!misses) T_[slot(static_cast<std::size_t>(rows[l]), l)] = until;
       const float steepest = relief.up_to(k);
       for (std::int32_t i = rows[l] + 1; i < lanes.count[l]; ++i) {
         const std::size_t at = static_cast<std::size_t>(i) * N + l;
         if (inherits(m[l], s[l], m_[at], s_[at], steepest)) {
           m[l] = m_[at], s[l] = s_[at];
+          if (!misses) T_[slot(static_cast<std::size_t>(i), l)] = until;
         } else {
           T_[slot(static_cast<std::size_t>(i), l)] = -kNoTime;
         }
@@ -552,13 +514,21 @@ class FanWalk {
       const MI hits = hn::RebindMask(di, hit);
       const VF t = hn::IfThenElse(hit, hn::Mul(T, r.per_major), never);
       const VI col = hn::And(cell, hn::Set(di, 0xffff)), row_ = hn::And(hn::ShiftRight<16>(cell), hn::Set(di, 0xffff));
-      const VF gx = hn::Mul(hn::LoadU(df, rays_.dx + i * rays_.stride), hn::Set(df, per_x_));
-      const VF gy = hn::Mul(hn::LoadU(df, rays_.dy + i * rays_.stride), hn::Set(df, per_y_));
-      const auto within = [&](VF g, float in_cell, VI number, std::int32_t origin) HWY_ATTR {
-        const VF from = hn::Sub(hn::Set(df, in_cell), hn::ConvertTo(df, hn::Sub(number, hn::Set(di, origin))));
-        return hn::IfThenElseZero(hit, hn::Min(hn::Max(hn::MulAdd(g, t, from), zero), one));
+      const VF gx = hn::Mul(hn::LoadU(df, rays_.dx + i * rays_.stride), hn::Set(df, scales_.per_x));
+      const VF gy = hn::Mul(hn::LoadU(df, rays_.dy + i * rays_.stride), hn::Set(df, scales_.per_y));
+      const auto within = [&](VF g, float in_cell, VI number, std::int32_t origin, int cells) HWY_ATTR {
+        VF way = hn::ConvertTo(df, hn::Sub(number, hn::Set(di, origin)));
+        if (octants_[0].wraps) {
+          // To the copy of the hit.
+          const VF all = hn::Set(df, static_cast<float>(cells));
+          const VF off = hn::Sub(hn::MulAdd(g, t, hn::Set(df, in_cell - 0.5f)), way);
+          way = hn::MulAdd(hn::Round(hn::Div(off, all)), all, way);
+        }
+        const VF at = hn::MulAdd(g, t, hn::Sub(hn::Set(df, in_cell), way));
+        return hn::IfThenElseZero(hit, hn::Min(hn::Max(at, zero), one));
       };
-      const VF u = within(gx, in_cell_x_, col, origin_cell_.col), v = within(gy, in_cell_y_, row_, origin_cell_.row);
+      const VF u = within(gx, in_cell_x_, col, origin_cell_.col, grid_.cell_cols);
+      const VF v = within(gy, in_cell_y_, row_, origin_cell_.row, grid_.cell_rows);
       const VI none = hn::Set(di, -1);
       const std::ptrdiff_t to = begin_ + i * step_;
       put(t, hits_.t + to, direct), put(u, hits_.u + to, direct), put(v, hits_.v + to, direct);
@@ -610,12 +580,17 @@ class FanWalk {
     const VF slack =
         hn::MulAdd(hn::Set(df, 0x1p-20f), hn::Add(hn::Abs(T), hn::Max(hn::Abs(near), zero)), hn::Set(df, 3));
     const MF late = hn::And(hit, hn::Gt(hn::Sub(T, slack), far));
-    const MF early = hn::And(hit, hn::Lt(hn::Sub(T, slack), near));
+    // No hit is before the origin.
+    const VF begin = fan_.t_min > 0 ? near : hn::Set(df, -kNoTime);
+    const MF early = hn::And(hit, hn::Lt(hn::Sub(T, slack), begin));
     const MF at_end = hn::And(hit, hn::Ge(hn::Add(T, slack), far));
     const VF unknown = hn::Set(df, -kNoTime);
+    // Above the ground to the end; not if nothing is known, where both sides are infinite.
+    const VF until = hn::Sub(hn::Set(df, -1), T), rounded = hn::MulAdd(hn::Set(df, 0x1p-19f), hn::Abs(until), far);
+    const MF clear = hn::And(hn::Lt(T, zero), hn::Gt(hn::Sub(until, hn::Set(df, 1)), rounded));
     // Before a late hit the ray is above, but t_min may be behind it.
     T = hn::IfThenElse(hn::Or(early, at_end), unknown, T);
-    return hn::IfThenElse(hn::AndNot(early, late), never, T);
+    return hn::IfThenElse(hn::Or(hn::AndNot(early, late), clear), never, T);
   }
   template <class V, class E>
   HWY_INLINE void put(V v, E* to, bool direct) const {
@@ -641,9 +616,10 @@ class FanWalk {
   dvec3 origin_;
   Octant<Sample> octants_[8];
   FanPlanes planes_;
-  float per_x_, per_y_, per_z_;
+  RayScales scales_;
+  FanHeights heights_;
   bool triangles_;
-  float highest_, lowest_, steepest_ray_, doubt_, rounding_, cell_relief_;
+  float doubt_, rounding_, cell_relief_;
   Cell origin_cell_;
   float in_cell_x_, in_cell_y_;
 

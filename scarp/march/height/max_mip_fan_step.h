@@ -195,29 +195,34 @@ inline FanPlanes fan_planes(const MaxPyramid& pyramid, double origin_z) {
   return f;
 }
 
-// Lanes that are above all ground from line k, the border of blocks of this level, to that 2^level lines on.
+// Lanes that are above all ground from line k, the border of blocks of this level, to that `lines` on: 2^level, or
+// fewer before a seam.
 template <class Sample>
 HWY_INLINE MF clears_blocks(const Octant<Sample>& o, const FanPlanes& f, const PyramidLevel& blocks, int level,
-                            std::int32_t k, const FanLine& at, std::int32_t b, const FanRays& r, float doubt,
-                            float rounding) {
+                            std::int32_t lines, std::int32_t k, const FanLine& at, std::int32_t b, const FanRays& r,
+                            float doubt, float rounding) {
   const std::int32_t side = 1 << level, first = o.node0 + b;
-  const std::int32_t line = o.line0 + k, cell = o.back_major ? o.major_cells - 1 - line : line;
+  const std::int32_t line = o.field_line(k), cell = o.back_major ? o.major_cells - 1 - line : line;
   const std::int32_t major_block = cell >> level;
-  const float length = static_cast<float>(side), half = 0.5f * length, T0 = at.T0;
+  const float length = static_cast<float>(lines), half = 0.5f * static_cast<float>(side), T0 = at.T0;
   const VF y = hn::MulAdd(r.m, hn::Set(df, T0), hn::Set(df, at.y));
-  const VI node = hn::Add(hn::ConvertTo(di, hn::Floor(y)), hn::Set(di, first));
+  const VI number = hn::Add(hn::ConvertTo(di, hn::Floor(y)), hn::Set(di, first));
+  // In the lane's copy, whose first node is `copy` from that of the windows.
+  const VI node = o.wraps ? in_copy(number, o.minor_cells) : number;
+  const VI copy = hn::Sub(hn::Sub(number, node), hn::Set(di, first));
   const VI last = hn::Set(di, o.minor_cells - 1), zero = hn::Zero(di);
   // Inside to the end: other rays inherit the way, and may be inside where this one has left. Beyond the side, planes
-  // do not bound the ground that continues level.
-  const VF side_y = hn::Set(df, static_cast<float>(o.minor_cells - first));
+  // do not bound the ground that continues level. Lanes cross the seam of a wrapped field line by line.
+  const VF side_y = hn::ConvertTo(df, hn::Add(copy, hn::Set(di, o.minor_cells)));
   const MF stays = hn::Le(hn::MulAdd(r.m, hn::Set(df, length), y), side_y);
   const MI inside = hn::AndNot(hn::Or(hn::Lt(node, zero), hn::Gt(node, last)), hn::RebindMask(di, stays));
   const VI real = o.back_minor ? hn::Sub(last, node) : node;
   const VI within = hn::Min(hn::Max(real, zero), last);
   const VI block = hn::ShiftRightSame(within, level);
   // The line of nodes through which a lane leaves its block, from the first of the windows.
-  const VI edge = o.back_minor ? hn::Sub(hn::Set(di, o.minor_cells - first), hn::ShiftLeftSame(block, level))
-                               : hn::Sub(hn::ShiftLeftSame(hn::Add(block, hn::Set(di, 1)), level), hn::Set(di, first));
+  const VI in_field = o.back_minor ? hn::Sub(hn::Set(di, o.minor_cells), hn::ShiftLeftSame(block, level))
+                                   : hn::ShiftLeftSame(hn::Add(block, hn::Set(di, 1)), level);
+  const VI edge = hn::Add(copy, in_field);
   const VF to_edge = hn::Sub(hn::ConvertTo(df, edge), y);
   // Ways from the line: lines are exact, times are rounded.
   const VF begin = hn::Zero(df), end = hn::Set(df, length), to_leave = hn::Mul(to_edge, r.per_m);

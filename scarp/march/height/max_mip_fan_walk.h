@@ -12,6 +12,10 @@
 
 namespace scarp::max_mip {
 
+/// Lines between the hits of two rays of a column beyond which a batch answers them faster, over wrapped ground.
+/// Measured (doc/dev/decisions/march.md).
+constexpr float kFarthestGap = 128;
+
 /// A ray that floats do not decide, by its place in the arrays. It is above the ground up to t_clear, or kNotClear.
 struct FanRest {
   std::ptrdiff_t ray;
@@ -20,6 +24,20 @@ struct FanRest {
 
 /// Whether vectors walk over the field and from the origin: otherwise all rays go to the batch.
 bool walks_fan(const HeightTarget& target, const Fan& fan);
+
+/// Whether a cell or a neighbour of it is so. Neighbours over a seam are those in the next copy.
+template <class Is>
+bool any_cell_beside(const HeightField& field, const Cell& at, const Is& is) {
+  const int cols = field.cell_cols(), rows = field.cell_rows();
+  const auto exists = [&](int number, int cells) { return field.wraps() || (number >= 0 && number < cells); };
+  const auto cell = [](int number, int cells) { return (number % cells + cells) % cells; };
+  for (int r = at.row - 1; r <= at.row + 1; ++r) {
+    for (int c = at.col - 1; c <= at.col + 1; ++c) {
+      if (exists(r, rows) && exists(c, cols) && is(Cell{cell(c, cols), cell(r, rows)})) return true;
+    }
+  }
+  return false;
+}
 
 /// Answers the rays of columns [begin, end) but for those that it appends to `rest`.
 void walk_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,

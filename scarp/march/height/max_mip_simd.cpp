@@ -46,13 +46,6 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
   }
 }
 
-// A ray that has yet to cross a copy of a wrapped ground.
-struct CopyRay {
-  std::size_t ray;
-  std::int32_t x, y;
-  bool seen;  // above the ground so far
-};
-
 // Traverses many rays, one batch on one thread.
 template <bool any, class T>
 class VectorWalk {
@@ -111,8 +104,14 @@ class VectorWalk {
   void answer_seen(std::span<const FanSight> sights, VectorStats& stats) {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       if (!(sights[i].clear >= 0 && sights[i].clear < std::numeric_limits<float>::infinity())) continue;
-      candidates_.put(candidates_.count++, i, sights[i], max_mip::clear_time(field_, rays_[i], sights[i]));
-      if (candidates_.count == N) find_hits();
+      const double t_clear = max_mip::clear_time(field_, rays_[i], sights[i]);
+      if (field_.wraps() && t_clear > rays_[i].t_max) {
+        answers_[i] = {};
+        continue;
+      }
+      candidates_.put(candidates_.count, i, sights[i], t_clear);
+      if (field_.wraps()) candidates_.put_copy(candidates_.count, f_, field_.grid_from_world(rays_[i]));
+      if (++candidates_.count == N) find_hits();
     }
     if (candidates_.count > 0) find_hits();
     add_to(stats);

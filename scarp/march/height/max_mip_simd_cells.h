@@ -58,6 +58,15 @@ struct Candidates {
     col[i] = static_cast<std::int32_t>(sight.cell & 0xffff), row[i] = static_cast<std::int32_t>(sight.cell >> 16);
     t_clear[i] = clear;
   }
+  // Over a wrapped ground: the copy that has the cell near where the ray is clear. Through a cell of another one the
+  // ray does not come, and march_max_mip() answers.
+  void put_copy(std::size_t i, const FieldFrame& f, const GridRay& local) {
+    const auto copy = [&](int axis, std::int32_t cell, double cells) {
+      const double off = local.origin[axis] + local.direction[axis] * t_clear[i] - cell - 0.5;
+      return static_cast<std::int32_t>(std::clamp(std::round(off / cells), -kFarthestCopy, kFarthestCopy));
+    };
+    copy_x[i] = copy(0, col[i], f.cols), copy_y[i] = copy(1, row[i], f.rows);
+  }
   HWY_INLINE void copy(std::size_t i, std::size_t j) {
     ray[i] = ray[j], seen[i] = seen[j], copy_x[i] = copy_x[j], copy_y[i] = copy_y[j];
     col[i] = col[j], row[i] = row[j], t_clear[i] = t_clear[j];

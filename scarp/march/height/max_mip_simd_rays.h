@@ -27,6 +27,13 @@ namespace {
 // copy, also in the frames of copies.
 constexpr double kFarthestCopy = 0x1p17;
 
+// A ray that has to cross a copy of a wrapped ground.
+struct CopyRay {
+  std::size_t ray;
+  std::int32_t x, y;
+  bool seen;  // above the ground so far
+};
+
 // The field as needed for the preparation; heights in sample units.
 struct FieldFrame {
   double cols, rows, sample_rows, highest, base, per_step;

@@ -20,12 +20,14 @@ void CameraSights::of(const PixelTile& tile, std::vector<FanSight>& to) const {
   }
 }
 
-CameraFan::CameraFan(const Scene& scene, const Camera& camera, int rows, int aa) : rays_(camera.pixel_rays()), aa_(aa) {
+CameraFan::CameraFan(const Scene& scene, const Camera& camera, int rows, int aa)
+    : rays_(camera.pixel_rays()), reach_(camera.reach()), aa_(aa) {
   if (camera.orthographic()) return;
   const std::optional<HeightTarget> target = scene.fan_target();
   Fan fan;
   fan.origin = rays_.origin;
   fan.columns = kFanStrip, fan.rows = rows * aa;
+  fan.t_max = reach_;
   // Corners of the area in the middle, which crosses neither most lines nor fewest.
   const dvec2 size = camera.size();
   const dvec3 left = rays_.direction + 0.5 * (size.y - rows) * rays_.down;
@@ -55,6 +57,7 @@ void CameraFan::look(const PixelTile& area, CameraSights& to) const {
   fan.origin = rays_.origin;
   fan.dx = dx.data(), fan.dy = dy.data(), fan.dz = dz.data();
   fan.columns = strips * kFanStrip, fan.rows = rows;
+  fan.t_max = reach_;
   fan.row_stride = kFanStrip, fan.strip_stride = std::ptrdiff_t{kFanStrip} * rows;
   look_max_mip_fan(*target_, fan, to.sights_.data(), 0, fan.columns);
 }

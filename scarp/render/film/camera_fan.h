@@ -43,6 +43,7 @@ class CameraFan {
  private:
   std::optional<HeightTarget> target_;
   Camera::PixelRays rays_;
+  double reach_;
   int aa_;
 };
 

@@ -69,13 +69,17 @@ void expect_single_answers(const HeightTarget& target, const std::vector<Ray>& r
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(is(hits[i], march_max_mip(target, rays[i]), i));
 }
 
-HeightField hills() {
+HeightField hills(Wrap wrap = Wrap::none) {
+  constexpr int kCols = 150, kRows = 140;
+  const int shared = wrap == Wrap::shared_border;
   std::vector<float> samples;
-  for (int row = 0; row < 90; ++row) {
-    for (int col = 0; col < 110; ++col)
-      samples.push_back(static_cast<float>(10 * std::sin(0.2 * col) * std::cos(0.15 * row) + std::sin(1.7 * col)));
+  for (int row = 0; row < kRows; ++row) {
+    for (int col = 0; col < kCols; ++col) {
+      const int x = col % (kCols - shared), y = row % (kRows - shared);
+      samples.push_back(static_cast<float>(10 * std::sin(0.2 * x) * std::cos(0.15 * y) + std::sin(1.7 * x)));
+    }
   }
-  return HeightField::own(std::move(samples), 110, 90, {.cell_x = 2, .cell_y = 3});
+  return HeightField::own(std::move(samples), kCols, kRows, {.cell_x = 2, .cell_y = 3, .wrap = wrap});
 }
 
 TEST(FanBatch, FindsRowsOfCamerasAndScannersAndFirings) {
@@ -111,6 +115,26 @@ TEST(FanBatch, FindsRowsOfCamerasAndScannersAndFirings) {
   }
 }
 
+TEST(FanBatch, FindsFansOverWrappedFields) {
+  for (const Wrap wrap : {Wrap::periodic, Wrap::shared_border}) {
+    const HeightField field = hills(wrap);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    for (const dvec3& eye : {dvec3(101, 140, 12), dvec3(-5000.5, 7000, 12), dvec3(0, 0, 14)}) {
+      std::vector<Ray> rays = camera(eye, 0.7, 0.1, 0, true);
+      EXPECT_FALSE(fan_batch(target, rays)) << "rays do not end";
+      for (Ray& ray : rays) ray.t_max = 2000;
+      EXPECT_TRUE(fan_batch(target, rays));
+      expect_single_answers(target, rays);
+      // Of different lengths, up to none that cells are counted for.
+      for (std::size_t i = 6; i + 1 < rays.size(); i += 7)
+        rays[i].t_max = i % 3 ? 10 * static_cast<double>(i) : std::numeric_limits<double>::infinity();
+      EXPECT_TRUE(fan_batch(target, rays));
+      expect_single_answers(target, rays);
+    }
+  }
+}
+
 TEST(FanBatch, LeavesOtherBatchesAlone) {
   const HeightField field = hills();
   const MaxPyramid pyramid(field);
@@ -142,6 +166,8 @@ TEST(FanBatch, AnswersAreThoseOfSingleRays) {
   Random random(11);
   std::vector<FieldKind> fields = spiteful_fields();
   fields.push_back({"hills", [](Random&) { return hills(); }});
+  fields.push_back({"periodic hills", [](Random&) { return hills(Wrap::periodic); }});
+  fields.push_back({"hills with a shared border", [](Random&) { return hills(Wrap::shared_border); }});
   int followed = 0;
   for (const FieldKind& kind : fields) {
     const HeightField field = kind.make(random);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -79,11 +80,19 @@ double tolerance(const HeightTarget& target, const Ray& ray, double t) {
   return 0x1p-18 * (std::abs(g.direction.z * t) + (cells + 12) * relief) + 8 * rounding_of_clearance(field, g, t);
 }
 
+// The place of a ray from the corner of a cell, of that copy which is nearest.
+dvec2 in_cell(const HeightField& field, const GridRay& g, double t, Cell cell) {
+  const dvec2 off(g.origin.x + g.direction.x * t - cell.col, g.origin.y + g.direction.y * t - cell.row);
+  if (!field.wraps()) return off;
+  const dvec2 cells(field.cell_cols(), field.cell_rows());
+  return off - glm::round((off - 0.5) / cells) * cells;
+}
+
 double height_over(const HeightField& field, const Ray& ray, double t, Cell cell) {
   const GridRay g = field.grid_from_world(ray);
   const auto h = field.cell_heights(cell);
-  const double u = std::clamp(g.origin.x + g.direction.x * t - cell.col, 0.0, 1.0);
-  const double v = std::clamp(g.origin.y + g.direction.y * t - cell.row, 0.0, 1.0);
+  const dvec2 off = in_cell(field, g, t, cell);
+  const double u = std::clamp(off.x, 0.0, 1.0), v = std::clamp(off.y, 0.0, 1.0);
   return g.origin.z + g.direction.z * t - height_in_cell(field.settings().surface, *h, u, v);
 }
 
@@ -109,15 +118,17 @@ testing::AssertionResult same(const HeightTarget& target, const Ray& ray, const 
   // Times of such directions are hardly floats.
   const double longest = longest_of(ray.direction);
   if (!(longest > 0x1p-60 && longest < 0x1p60)) return testing::AssertionSuccess();
-  if (expected.wall || field.wraps()) return testing::AssertionSuccess();
+  if (expected.wall) return testing::AssertionSuccess();
   const GridRay g = field.grid_from_world(ray);
   const double cells = std::max(std::abs(g.direction.x), std::abs(g.direction.y)) * std::abs(t);
   const double aside = 0x1p-19 * (cells + 4) + HeightField::rounding_of_line(g.origin.x, field.cell_cols()) +
                        HeightField::rounding_of_line(g.origin.y, field.cell_rows());
-  if (std::abs(g.origin.x + g.direction.x * t - cell.col - u) > aside ||
-      std::abs(g.origin.y + g.direction.y * t - cell.row - v) > aside) {
-    return failure("not on the ray");
-  }
+  const dvec2 off = in_cell(field, g, t, cell) - dvec2(u, v);
+  // Copies that are a cell wide begin where they end.
+  const auto on_ray = [&](double from, int period) {
+    return std::abs(from) <= aside || (field.wraps() && std::abs(std::abs(from) - period) <= aside);
+  };
+  if (!on_ray(off.x, field.cell_cols()) || !on_ray(off.y, field.cell_rows())) return failure("not on the ray");
   const double most = tolerance(target, ray, std::max(std::abs(t), std::abs(expected.t)));
   if (std::abs(height_over(field, ray, t, cell)) > most) return failure("not on the surface");
   // No other hit: along the surface from one to the other.
@@ -198,10 +209,12 @@ double tall(const HeightField& f) {
   return f.all_nodata() ? 1 : std::max(f.max_height() - f.min_height(), 0.01 * f.settings().cell_x);
 }
 
-// Over nodes, edges and cells, at any height; beside the field and far from it; on its border.
+// Over nodes, edges and cells, at any height; beside the field and far from it; on its border or near its seams.
 dvec3 eye(const HeightField& f, Random& random) {
   const auto along = [&](int cells) {
     const int kind = whole(random, 0, 9);
+    if (f.wraps() && kind > 6)
+      return whole(random, -1, 2) * cells + std::exp2(uniform(random, -60, 0)) * uniform(random, -1, 1);
     if (kind == 0) return uniform(random, -3, 0) * cells;
     if (kind == 1) return cells * uniform(random, 1, 40);
     if (kind == 2) return static_cast<double>(whole(random, 0, cells));
@@ -262,10 +275,12 @@ Rays aimed(const HeightField& f, Random& random, dvec3 from) {
   for (int c = 0; c < rays.columns; ++c) {
     std::vector<dvec3> column;
     const int col = whole(random, 0, f.cols() - 1), row = whole(random, 0, f.rows() - 1);
+    const int along = whole(random, -3, 3), across = whole(random, -3, 3);
     for (int r = 0; r < rays.rows; ++r) {
       const bool same_way = whole(random, 0, 3) != 0;
       dvec3 to = f.world_from_grid(same_way ? col : whole(random, 0, f.cols() - 1),
                                    same_way ? row : whole(random, 0, f.rows() - 1), 0);
+      if (f.wraps()) to.x += along * f.width(), to.y += across * f.depth();
       to.z = f.height(to.x, to.y).value_or(0) + (whole(random, 0, 2) ? uniform(random, -0.1, 0.1) * tall(f) : 0);
       column.push_back(to - from);
     }
@@ -296,6 +311,8 @@ Rays spiteful(const HeightField& f, Random& random, dvec3 from) {
                 kind == 0  ? slope * r
                 : kind < 4 ? slope
                            : uniform(random, -2, 1)});
+      // Over a field that wraps round, rays must not be long.
+      if (f.wraps()) continue;
       if (kind == 7) rays.dx[i] = number(), rays.dy[i] = number(), rays.dz[i] = number();
       if (kind == 6) rays.dz[i] = whole(random, 0, 1) ? number() : -1e30f;
     }
@@ -308,15 +325,14 @@ void for_some_fans(const HeightTarget& target, Random& random, int count, const 
   for (int i = 0; i < count; ++i) {
     const HeightField& field = *target.field;
     const dvec3 from = eye(field, random);
-    // Over a field that wraps round, rays must not be long.
-    const int kind = whole(random, 0, field.wraps() ? 2 : 3);
+    const int kind = whole(random, 0, 3);
     Rays rays = kind == 0   ? camera(field, random, from)
                 : kind == 1 ? scanner(field, random, from)
                 : kind == 2 ? aimed(field, random, from)
                             : spiteful(field, random, from);
     if (field.wraps() || whole(random, 0, 3) == 0) {
       const double most = kind == 2 ? 1 : field.width() + field.depth();
-      rays.t_max = uniform(random, 0, 2) * most;
+      rays.t_max = uniform(random, 0, whole(random, 0, 3) ? 2 : 12) * most;
     }
     if (whole(random, 0, 5) == 0) rays.t_min = std::min(rays.t_max, uniform(random, -0.1, 1) * field.width());
     each(rays, "fan " + std::to_string(i) + " of kind " + std::to_string(kind));
@@ -383,6 +399,125 @@ TEST(MaxMipFan, HitsWhereTheScalarMarchDoesOverLargerGroundOnEveryInstructionSet
   }
 }
 
+// Waves that end at the seams as they begin, of both kinds of wrap.
+template <class T>
+HeightField wrapped(Random& random, int cols, int rows, double rough, double hole_share, HeightFieldSettings settings) {
+  settings.wrap = whole(random, 0, 1) ? Wrap::periodic : Wrap::shared_border;
+  settings.surface = whole(random, 0, 1) ? Surface::triangles : Surface::bilinear;
+  settings.cell_x = uniform(random, 0.5, 2), settings.cell_y = uniform(random, 0.5, 2);
+  if (hole_share > 0) settings.nodata = 7;
+  const int shared = settings.wrap == Wrap::shared_border;
+  const double across = 2 * kPi / (cols - shared), down = 2 * kPi / (rows - shared);
+  const double wide = whole(random, 1, 3);
+  std::vector<T> samples(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));
+  const auto at = [&](int col, int row) -> T& { return samples[static_cast<std::size_t>(row * cols + col)]; };
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const double z = 40 * std::sin(wide * across * col) * std::cos(down * row) + 9 * std::sin(7 * across * col) +
+                       rough * uniform(random, 0, 1);
+      at(col, row) = uniform(random, 0, 1) < hole_share ? T(7) : static_cast<T>(200 + z);
+      if (shared && col == cols - 1) at(col, row) = at(0, row);
+      if (shared && row == rows - 1) at(col, row) = at(col, 0);
+    }
+  }
+  return HeightField::own(std::move(samples), cols, rows, settings);
+}
+
+TEST(MaxMipFan, HitsWhereTheScalarMarchDoesOverWrappedGroundOnEveryInstructionSet) {
+  Random random(95);
+  const std::vector<std::int64_t> sets = instruction_sets();
+  for (int round = 0; round < 6 * kRounds; ++round) {
+    const int most = round % 3 == 0 ? 20 : round % 3 == 1 ? 90 : 700;
+    const int cols = whole(random, 2, most), rows = whole(random, most == 700 ? 128 : 2, most);
+    const double rough = std::exp2(uniform(random, -6, 4));
+    const double hole_share = whole(random, 0, 3) ? 0 : uniform(random, 0, 0.05);
+    const HeightFieldSettings settings{.scale = round % 2 ? 1.0 : 0.25};
+    const HeightField field = round % 4 == 0   ? wrapped<std::int16_t>(random, cols, rows, rough, hole_share, settings)
+                              : round % 4 == 1 ? wrapped<std::uint16_t>(random, cols, rows, rough, hole_share, settings)
+                                               : wrapped<float>(random, cols, rows, rough, hole_share, settings);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    for_some_fans(target, random, kFansPerField, [&](const Rays& rays, const std::string& what) {
+      for (const std::int64_t set : sets) {
+        const InstructionSet only(set);
+        check(target, rays, what + ", " + hwy::TargetName(set));
+      }
+      check(target, rays, what + ", no jumps", {.jumps = false});
+    });
+    if (HasFatalFailure()) return;
+  }
+}
+
+// Spikes on a plane, in several copies: rays to the plane behind and beside them, then to the spikes.
+TEST(MaxMipFan, InheritsNothingAcrossSpikesOfOtherCopies) {
+  Random random(97);
+  for (int i = 0; i < 20 * kFansPerField; ++i) {
+    const int cols = whole(random, 20, 90), rows = whole(random, 20, 90);
+    std::vector<float> samples(static_cast<std::size_t>(cols * rows));
+    std::vector<dvec2> spikes;
+    for (int k = 0; k < 6; ++k) {
+      const int col = whole(random, 0, cols - 1), row = whole(random, 0, rows - 1);
+      samples[static_cast<std::size_t>(row * cols + col)] = static_cast<float>(uniform(random, 5, 30));
+      spikes.emplace_back(col, rows - 1 - row);
+    }
+    const HeightField field = HeightField::own(std::move(samples), cols, rows, {.wrap = Wrap::periodic});
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    const dvec2 eye(uniform(random, 0, 1) * field.width(), uniform(random, 0, 1) * field.depth());
+    Rays rays({eye.x, eye.y, uniform(random, 31, 60)}, 16, 24, true);
+    const dvec2 copy(whole(random, -3, 3) * field.width(), whole(random, -3, 3) * field.depth());
+    for (int c = 0; c < rays.columns; ++c) {
+      const dvec2 spike = spikes[static_cast<std::size_t>(whole(random, 0, 5))] + copy;
+      const dvec2 way = normalize(spike - eye), side(way.y, -way.x);
+      std::vector<dvec3> column;
+      for (int r = 0; r < rays.rows; ++r) {
+        const bool behind = r % 3 != 0;
+        const double aside = behind ? (r % 2 ? 1 : -1) * uniform(random, 1, 4) : 0;
+        const dvec2 at = spike + (behind ? uniform(random, 1, 20) : 0) * way + aside * side;
+        const double height = *field.height(spike.x, spike.y);
+        column.push_back(dvec3(at, behind ? -0.01 : uniform(random, 0.1, 0.9) * height) - rays.origin);
+      }
+      std::sort(column.begin(), column.end(),
+                [](const dvec3& a, const dvec3& b) { return a.z / std::hypot(a.x, a.y) < b.z / std::hypot(b.x, b.y); });
+      for (int r = 0; r < rays.rows; ++r) rays.put(c, r, column[static_cast<std::size_t>(r)]);
+    }
+    rays.t_max = 2;
+    check(target, rays, "fan " + std::to_string(i));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// Rays that do not end are exhausted, as in march_max_mip(), and so are those that go farther than cells can be
+// counted.
+TEST(MaxMipFan, LongRaysOverWrappedGroundAreExhausted) {
+  Random random(96);
+  const HeightField field = wrapped<float>(random, 150, 140, 1, 0, {});
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  for (const double t_max : {1e3, 1e6, 1e12, 1e20, std::numeric_limits<double>::infinity()}) {
+    Rays rays({3, 4, field.max_height() + 5}, 20, 20, true);
+    for (int c = 0; c < rays.columns; ++c) {
+      for (int r = 0; r < rays.rows; ++r) rays.put(c, r, direction_to(0.3 + 0.02 * c, -0.01 * r - 0.001));
+    }
+    rays.t_max = t_max;
+    check(target, rays, "t_max " + std::to_string(t_max));
+    // Sights of shorter rays.
+    std::vector<FanSight> sights(rays.dx.size()), seen;
+    std::vector<Ray> longer;
+    FanOptions always;
+    always.always = true;
+    rays.t_max = 1e3;
+    look_max_mip_fan(target, rays.fan(), sights.data(), 0, rays.columns, always);
+    for (int i = 0; i < rays.columns * rays.rows; ++i) {
+      const std::size_t at = rays.at(i % rays.columns, i / rays.columns);
+      seen.push_back(sights[at]), longer.push_back(rays.ray(at)), longer.back().t_max = t_max;
+    }
+    std::vector<Hit> hits(longer.size());
+    closest_hits_max_mip_seen(target, longer, seen, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) EXPECT_TRUE(hits[i] == march_max_mip(target, longer[i])) << t_max;
+  }
+}
+
 // Over a plane, at which blocks are bounded best, to places on it beside a side of the field: lower rays have left the
 // field where higher ones come down.
 TEST(MaxMipFan, InheritsNothingFromRaysBeyondTheSides) {
@@ -421,21 +556,25 @@ TEST(MaxMipFan, InheritsNothingFromRaysBeyondTheSides) {
 // Most rays of a usual camera and scanner are decided by floats.
 TEST(MaxMipFan, UsualFansLeaveFewRays) {
   Random random(93);
-  const HeightField field = terrain<float>(random, 513, 513, 0, 0.5, {});
-  const MaxPyramid pyramid(field);
-  const HeightTarget target{&field, &pyramid};
-  const double x = 0.5 * field.width(), y = 0.5 * field.depth();
-  Rays rays({x, y, *field.height(x, y) + 2}, 256, 128, true);
-  for (int c = 0; c < rays.columns; ++c) {
-    for (int r = 0; r < rays.rows; ++r)
-      rays.put(c, r, direction_to(2 * kPi * c / rays.columns, 0.2 - 0.6 * r / rays.rows));
+  for (const bool wraps : {false, true}) {
+    const HeightField field =
+        wraps ? wrapped<float>(random, 513, 513, 0.5, 0, {}) : terrain<float>(random, 513, 513, 0, 0.5, {});
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    const double x = 0.5 * field.width(), y = 0.5 * field.depth();
+    Rays rays({x, y, *field.height(x, y) + 2}, 256, 128, true);
+    for (int c = 0; c < rays.columns; ++c) {
+      for (int r = 0; r < rays.rows; ++r)
+        rays.put(c, r, direction_to(2 * kPi * c / rays.columns, 0.2 - 0.6 * r / rays.rows));
+    }
+    if (wraps) rays.t_max = 5 * field.width();
+    take_fan_stats();
+    check(target, rays, "scanner");
+    const FanStats stats = take_fan_stats();
+    // Once for hits, once for sights.
+    EXPECT_EQ(stats.rays, 2 * static_cast<std::uint64_t>(rays.columns) * static_cast<std::uint64_t>(rays.rows));
+    EXPECT_LT(stats.resumed + stats.from_start, stats.rays / 100) << wraps;
   }
-  take_fan_stats();
-  check(target, rays, "scanner");
-  const FanStats stats = take_fan_stats();
-  // Once for hits, once for sights.
-  EXPECT_EQ(stats.rays, 2 * static_cast<std::uint64_t>(rays.columns) * static_cast<std::uint64_t>(rays.rows));
-  EXPECT_LT(stats.resumed + stats.from_start, stats.rays / 100);
 }
 
 // From above all ground a column crosses as many lines whatever its number of rows: a batch is faster with few.
