@@ -54,7 +54,7 @@ void cast_made(const HeightTarget& terrain, Fan fan, FanAnswers& answers, const 
   const auto rows = static_cast<std::size_t>(fan.rows);
   for_each_strip(fan.columns, fan.rows, [&](int begin, int end) {
     std::vector<float> dx(rows * kFanStrip), dy(dx.size()), dz(dx.size());
-    FanAnswers strip(kFanStrip, fan.rows);
+    FanAnswers strip(kFanStrip, fan.rows, !answers.nx.empty());
     Fan part = fan;
     part.dx = dx.data(), part.dy = dy.data(), part.dz = dz.data();
     part.row_stride = kFanStrip;
@@ -77,19 +77,26 @@ void cast_made(const HeightTarget& terrain, Fan fan, FanAnswers& answers, const 
       };
       copy(strip.t, answers.t), copy(strip.col, answers.col), copy(strip.row, answers.row);
       copy(strip.u, answers.u), copy(strip.v, answers.v), copy(strip.status, answers.status);
+      if (answers.nx.empty()) continue;
+      copy(strip.nx, answers.nx), copy(strip.ny, answers.ny), copy(strip.nz, answers.nz);
     }
   });
 }
 
 }  // namespace
 
-FanAnswers::FanAnswers(int width, int height) : columns(width), rows(height) {
+FanAnswers::FanAnswers(int width, int height, bool normals) : columns(width), rows(height) {
   if (width < 0 || height < 0) throw Error(fmt::format("fan: {} x {} answers", width, height));
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   t.resize(count), col.resize(count), row.resize(count), u.resize(count), v.resize(count), status.resize(count);
+  if (normals) nx.resize(count), ny.resize(count), nz.resize(count);
 }
 
-FanHits FanAnswers::hits() { return {t.data(), col.data(), row.data(), u.data(), v.data(), status.data()}; }
+FanHits FanAnswers::hits() {
+  FanHits to{t.data(), col.data(), row.data(), u.data(), v.data(), status.data()};
+  if (!nx.empty()) to.nx = nx.data(), to.ny = ny.data(), to.nz = nz.data();
+  return to;
+}
 
 void cast_from(const Terrain& terrain, const PinholeCamera& camera, FanAnswers& answers) {
   const dvec3 side = cross(camera.forward, camera.up);
@@ -134,7 +141,9 @@ void cast_from(const HeightTarget& terrain, const Fan& fan, const FanHits& hits)
   if (fan.columns < 0 || fan.rows < 0) throw Error(fmt::format("fan: {} x {} rays", fan.columns, fan.rows));
   const bool any = fan.columns > 0 && fan.rows > 0;
   if (any && (!fan.dx || !fan.dy || !fan.dz || !hits.t || !hits.col || !hits.row || !hits.u || !hits.v))
-    throw Error("fan: an array is missing (only FanHits::status may be null)");
+    throw Error("fan: an array is missing (only FanHits::status and the normals may be null)");
+  if (!hits.nx != !hits.ny || !hits.nx != !hits.nz)
+    throw Error("fan: an array of its normals is missing (all or none may be null)");
   for_each_strip(fan.columns, fan.rows,
                  [&](int begin, int end) { closest_hits_max_mip_fan(terrain, fan, hits, begin, end); });
 }

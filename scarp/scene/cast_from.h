@@ -23,13 +23,15 @@ namespace scarp {
 /// Answers in rows: that of a column and row is at row * columns + column.
 struct FanAnswers {
   FanAnswers() = default;
-  FanAnswers(int columns, int rows);
+  /// With `normals`, they are computed as well.
+  FanAnswers(int columns, int rows, bool normals = false);
 
   int columns = 0, rows = 0;
   std::vector<float> t{};                  ///< in units of the direction's length; infinity if the ray hits nothing
   std::vector<std::int32_t> col{}, row{};  ///< cell of the hit; -1 if there is none
   std::vector<float> u{}, v{};             ///< position in the cell, 0..1
   std::vector<HitStatus> status{};
+  std::vector<float> nx{}, ny{}, nz{};  ///< unit normal at the hit in world space, 0 if there is none; or empty
 
   FanHits hits();
 };

@@ -106,6 +106,38 @@ TEST(CastFrom, WrappedGroundIsHitWhereItsRaysDo) {
   }
 }
 
+// Those of HeightField, and of the walls of solid ground, which eyes outside see.
+TEST(CastFrom, GivesNormalsOnRequest) {
+  int hits = 0, walls = 0;
+  for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
+    const Terrain ground = terrain({.cell_x = 10, .cell_y = 8, .wrap = wrap, .solid = true});
+    const HeightField& field = *ground.scene().terrain();
+    for (const dvec3& eye : {dvec3(1003, 597, 45), dvec3(-200, 597, 10)}) {
+      PinholeCamera camera{.eye = eye, .forward = {1, 0.2, -0.2}, .columns = 50, .rows = 41, .t_max = 5000};
+      FanAnswers answers(camera.columns, camera.rows, true);
+      cast_from(ground, camera, answers);
+      for (std::size_t i = 0; i < answers.t.size(); ++i) {
+        const dvec3 normal(dvec3(vec3(answers.nx[i], answers.ny[i], answers.nz[i])));
+        if (answers.status[i] != HitStatus::hit) {
+          ASSERT_EQ(normal, dvec3(0.0));
+          continue;
+        }
+        ++hits;
+        ASSERT_NEAR(length(normal), 1, 1e-6);
+        if (answers.nz[i] == 0) {
+          ++walls;
+          continue;
+        }
+        const dvec3 expected = field.normal({answers.col[i], answers.row[i]}, static_cast<double>(answers.u[i]),
+                                            static_cast<double>(answers.v[i]));
+        ASSERT_NEAR(length(normal - expected), 0, 1e-5);
+      }
+    }
+  }
+  EXPECT_GT(hits, 2000);
+  EXPECT_GT(walls, 10);
+}
+
 TEST(CastFrom, TakesDirectionsOfTheCallerOnAllThreads) {
   const Terrain ground = terrain();
   const int columns = 333, rows = 64;
@@ -177,6 +209,12 @@ TEST(CastFrom, RefusesWhatIsUnsound) {
   bad.t_max = -1;
   EXPECT_THROW(cast_from(ground, bad, answers), Error);
   EXPECT_THROW(cast_from(ground, Fan{.columns = 1, .rows = 1}, FanHits{}), Error);
+  float number = 0;
+  std::int32_t cell = 0;
+  FanHits torn{&number, &cell, &cell, &number, &number};
+  torn.nx = &number;
+  const Fan one{.dx = &number, .dy = &number, .dz = &number, .columns = 1, .rows = 1};
+  EXPECT_THROW(cast_from(ground, one, torn), Error);
   auto memory = std::make_shared<std::vector<float>>(waves(9, 9));
   const Terrain view = Terrain::view(memory->data(), 9, 9, {}, 0, memory);
   EXPECT_NO_THROW(cast_from(view, camera, answers));

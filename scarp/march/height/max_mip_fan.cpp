@@ -12,6 +12,7 @@
 #include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/max_mip_simd.h"
+#include "scarp/march/height/wall.h"
 #include "scarp/march/usual_ray.h"
 
 namespace scarp {
@@ -77,12 +78,33 @@ Ray ray_of(const Fan& fan, std::ptrdiff_t i) {
   return ray;
 }
 
-void put(const FanHits& to, std::ptrdiff_t i, const Hit& hit) {
+void put_normal(const FanHits& to, std::ptrdiff_t i, const dvec3& normal) {
+  to.nx[i] = static_cast<float>(normal.x), to.ny[i] = static_cast<float>(normal.y);
+  to.nz[i] = static_cast<float>(normal.z);
+}
+
+// Normals of the hits of some columns, which no wall has.
+void put_normals(const HeightField& field, const Fan& fan, const FanHits& to, int column_begin, int column_end) {
+  for (int row = 0; row < fan.rows; ++row) {
+    for (int column = column_begin; column < column_end; ++column) {
+      const std::ptrdiff_t i = place_of(fan, column, row);
+      const auto normal = [&] {
+        return field.normal({to.col[i], to.row[i]}, static_cast<double>(to.u[i]), static_cast<double>(to.v[i]));
+      };
+      put_normal(to, i, to.col[i] < 0 ? dvec3(0.0) : normal());
+    }
+  }
+}
+
+void put(const HeightField& field, const Ray& ray, const FanHits& to, std::ptrdiff_t i, const Hit& hit) {
   using Float = std::numeric_limits<float>;
   to.t[i] = hit ? static_cast<float>(std::min(hit.t, static_cast<double>(Float::max()))) : Float::infinity();
   to.col[i] = hit ? hit.cell.col : -1, to.row[i] = hit ? hit.cell.row : -1;
   to.u[i] = hit ? static_cast<float>(hit.u) : 0, to.v[i] = hit ? static_cast<float>(hit.v) : 0;
   if (to.status) to.status[i] = hit.status;
+  if (!to.nx) return;
+  const auto normal = [&] { return hit.wall ? wall_normal(ray, hit) : field.normal(hit.cell, hit.u, hit.v); };
+  put_normal(to, i, hit ? normal() : dvec3(0.0));
 }
 
 // Answers rays of which nothing is known, many at once.
@@ -92,14 +114,14 @@ class Batch {
 
   void add(std::ptrdiff_t i) {
     const Ray ray = ray_of(fan_, i);
-    if (!is_followable(ray)) return put(to_, i, {});
+    if (!is_followable(ray)) return put(*target_.field, ray, to_, i, {});
     rays_.push_back(ray), places_.push_back(i);
     if (rays_.size() == kBatch) answer();
   }
   void answer() {
     hits_.resize(rays_.size());
     closest_hits_max_mip_simd(target_, rays_, hits_);
-    for (std::size_t i = 0; i < rays_.size(); ++i) put(to_, places_[i], hits_[i]);
+    for (std::size_t i = 0; i < rays_.size(); ++i) put(*target_.field, rays_[i], to_, places_[i], hits_[i]);
     rays_.clear(), places_.clear();
   }
 
@@ -173,11 +195,13 @@ void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const 
   }
   std::vector<FanRest> rest;
   max_mip::walk_fan(target, fan, hits, column_begin, column_end, options, rest, t_stats);
+  if (hits.nx) put_normals(*target.field, fan, hits, column_begin, column_end);
   for (const FanRest& one : rest) {
     // Over holes the side of a ray depends on the rims that it has crossed.
     if (one.t_clear > 0 && target.field->nodata_count() == 0) {
       ++t_stats.resumed;
-      put(hits, one.ray, resume_max_mip(target, ray_of(fan, one.ray), one.t_clear));
+      const Ray ray = ray_of(fan, one.ray);
+      put(*target.field, ray, hits, one.ray, resume_max_mip(target, ray, one.t_clear));
     } else {
       ++t_stats.from_start;
       batch.add(one.ray);

@@ -54,6 +54,9 @@ struct FanHits {
   std::int32_t *col = nullptr, *row = nullptr;  ///< cell of the hit; -1 if there is none
   float *u = nullptr, *v = nullptr;             ///< position in the cell, 0..1; 0 if there is no hit
   HitStatus* status = nullptr;                  ///< optional
+  /// Optional, all or none: the upward unit normal of the surface at the hit, HeightField::normal() of the cell, u and
+  /// v; that of the wall if solid ground is hit there; 0 if there is no hit.
+  float *nx = nullptr, *ny = nullptr, *nz = nullptr;
 };
 
 /// Closest hits. hits.status and so the choice between hit and none equals march_max_mip() of each ray; t, cell, u and
