@@ -2,7 +2,8 @@
 // `scarp-bench leaks --fans`: very many fans beside the scalar march, which `leaks` judges.
 //
 // Eyes are at any height over nodes, edges and cells, beside the field, far from it and below it. Columns go through
-// nodes and points of edges, or are those of cameras and scanners; some have their rays in no order.
+// nodes and points of edges, or are those of cameras and scanners; some have their rays in no order. Over fields that
+// wrap, rays end, most of them some copies on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,6 +86,7 @@ dvec3 direction_to(double azimuth, double altitude) {
 // The arrays of a fan, in rows.
 struct FanRays {
   dvec3 eye;
+  double t_max = std::numeric_limits<double>::infinity();
   std::vector<float> dx = std::vector<float>(kPiece), dy = dx, dz = dx;
 
   void put(int column, int row, dvec3 d) {
@@ -95,12 +97,15 @@ struct FanRays {
     Ray ray;
     ray.origin = eye;
     ray.direction = {static_cast<double>(dx[i]), static_cast<double>(dy[i]), static_cast<double>(dz[i])};
+    ray.t_max = t_max;
     return ray;
   }
 };
 
 FanRays make_fan(Kind kind, const HeightField& f, Random& random) {
   FanRays rays{make_eye(f, random)};
+  const bool aimed = kind == Kind::aimed || kind == Kind::unordered;
+  if (f.wraps()) rays.t_max = random.uniform(0, 8) * (aimed ? 1 : f.width() + f.depth());
   // Slopes that suit the field: rays meet the ground near and far away.
   const double lift = random.below(2) ? tall(f) / (f.width() + f.depth()) : 1;
   const double yaw = random.uniform(0, 2 * kPi), pitch = random.uniform(-1.2, 0.4);
@@ -167,7 +172,7 @@ class FanLeaks {
  public:
   FanLeaks(const LeaksOptions& options, const std::vector<LeakField>& fields) : options_(options) {
     for (const LeakField& field : fields) {
-      if (!field.field.wraps() && field.field.has_cells() && !field.field.all_nodata()) grounds_.push_back(&field);
+      if (field.field.has_cells() && !field.field.all_nodata()) grounds_.push_back(&field);
     }
   }
 
@@ -197,6 +202,7 @@ class FanLeaks {
     fan.origin = rays.eye;
     fan.dx = rays.dx.data(), fan.dy = rays.dy.data(), fan.dz = rays.dz.data();
     fan.columns = kColumns, fan.rows = kRows, fan.row_stride = kColumns;
+    fan.t_max = rays.t_max;
     std::vector<float> t(kPiece), u(kPiece), v(kPiece);
     std::vector<std::int32_t> col(kPiece), row(kPiece);
     std::vector<HitStatus> status(kPiece);
