@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Runs the tests of some of its files: where several test programs are built as one (TOGETHER in test/CMakeLists.txt),
-// a test of ctest still runs the files of one of them, in a separate process. SCARP_TEST_FILES: their names, separated
-// by commas. Without it, and with --gtest_filter, all files count.
+// Runs the tests of the files that SCARP_TEST_FILES names, separated by commas. Where several test programs are built
+// as one (TOGETHER in test/CMakeLists.txt), each ctest test still runs the files of one of them, in a separate process.
+// Without the variable, or with --gtest_filter, the files are not restricted.
 #include <gtest/gtest.h>
 
 #include <cstdio>

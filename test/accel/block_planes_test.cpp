@@ -31,7 +31,7 @@ double plane_at(const MaxPyramid& pyramid, int level, int col, int row, int x, i
   return pyramid.planes().height(block, level, from_middle_x, from_middle_y);
 }
 
-// Expects no plane below a sample. Returns the mean height of the planes above the samples.
+// Expects that no plane is below a sample. Returns the mean height of the planes above the samples.
 double expect_above(const HeightField& field, const MaxPyramid& pyramid, int level) {
   const PyramidLevel& at = pyramid.levels()[static_cast<std::size_t>(level - 1)];
   double sum = 0;

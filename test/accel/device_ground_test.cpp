@@ -153,7 +153,7 @@ TEST_F(DeviceGrounds, UpdateMatchesARebuild) {
       rect.rows = 1 + below(rows - rect.row);
       if (settings.wrap == Wrap::shared_border) rect = {1, 1, 1 + below(cols - 2), 1 + below(rows - 2)};
       std::vector<T> edit(static_cast<std::size_t>(rect.cols) * rect.rows);
-      // The last edits leave the range of the codes of floats.
+      // The last edits are outside the range of the float codes.
       for (T& sample : edit) sample = below(12) == 0 ? nodata : static_cast<T>(below(i < 35 ? 30000 : 60000));
       const CellBox changed = field.set_samples(rect, edit.data(), rect.cols);
       seen = {std::min(seen.low, field.min_sample()), std::max(seen.high, field.max_sample())};
@@ -178,8 +178,8 @@ TEST_F(DeviceGrounds, UpdateCreatesNoPasses) {
   EXPECT_EQ(ground.passes()[0].name, "max_pyramid");
 }
 
-// More samples than one storage buffer of lavapipe holds (128 MiB), and a level wider than one dispatch; the checked
-// build would take half a minute for that, so it uses a long row. Rays hit the ground there.
+// More samples than fit in one storage buffer of lavapipe (128 MiB), and a level wider than one dispatch. The checked
+// build would take half a minute for that, so it uses only a long row. Rays must hit the ground there.
 TEST_F(DeviceGrounds, LongFieldsWork) {
 #ifdef NDEBUG
   const int cols = 17'500'000;
@@ -215,7 +215,7 @@ TEST_F(DeviceGrounds, LongFieldsWork) {
   EXPECT_GT(met, 500);
 }
 
-// Reads through ground_buffers.glsl.h the four heights of each cell, and whether it is a hole.
+// Reads the four heights of each cell through ground_buffers.glsl.h, and whether the cell is a hole.
 TEST_F(DeviceGrounds, ShadersReadTheFieldsSamples) {
   struct Push {
     glsl::Address ground, out;

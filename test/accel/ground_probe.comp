@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the shader's view of each cell: its four heights, and 1 or, for a hole, 0.
+// Writes the shader's view of each cell: its four heights, then 0 for a hole and 1 for any other cell.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Edits during queries: every batch sees one epoch, and neither side waits for ever. Run under the thread sanitizer,
-// too.
+// Edits during queries: every batch sees one epoch, and neither side waits for ever. Also run under the thread
+// sanitizer.
 #include "scarp/accel/live_field.h"
 
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ void expect_whole_epochs() {
       }
     });
   }
-  // Termination shows that nobody starves: readers never pause, and there are as many edits.
+  // That the test ends proves that nothing starves: readers never pause, and the number of edits is fixed.
   for (int i = 0; i < kEdits; ++i) {
     EXPECT_EQ(live.edit(kRect, (i % 2 ? one : other).data(), kRect.cols), static_cast<std::uint64_t>(i + 1));
   }
@@ -120,7 +120,7 @@ TEST(LiveField, EditIsNotStarvedByReaders) {
   LiveField live(HeightField::own(ground<float>(0, kSide), kSide, kSide));
   std::atomic<bool> done{false};
   std::vector<std::thread> readers;
-  // At any time one of them holds a reading: without a turnstile the edit would never get its turn.
+  // At any time one of the readers holds a reading: without a turnstile the edit would never get its turn.
   for (int i = 0; i < 3; ++i) {
     readers.emplace_back([&] {
       while (!done) {

@@ -37,7 +37,7 @@ Bounds brute_force(const HeightField& field, int level, int col, int row) {
   return bounds;
 }
 
-// Each entry bounds its block, and by less than one step of the code.
+// Each entry bounds its block to within less than one step of the code.
 void expect_tight(const HeightField& field, const MaxPyramid& pyramid) {
   const double step = pyramid.code().step;
   const bool exact = field.sample_type() != SampleType::float32;
@@ -98,7 +98,7 @@ TEST(MaxPyramid, BoundsEachBlockTightlyAtAnySize) {
 }
 
 TEST(MaxPyramid, BoundsHeightsOfAnyOffsetAndScale) {
-  // Far above the datum, tiny, huge, and all the same.
+  // Far above the datum, tiny, huge, and all equal.
   for (const double offset : {0.0, 1e6, -3e30}) {
     for (const double scale : {0.0, 1e-7, 1.0 / 3, 1e30}) {
       auto samples = noise<float>(33, 18, scale);

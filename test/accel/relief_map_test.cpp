@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBlockSide = 1 << ReliefMap::kLevel;
 
-// The steepest edge of a block's cells, straight from the samples; nodata is the lowest of them.
+// The steepest edge of a block's cells, straight from the samples; nodata counts as the lowest sample.
 double brute_force(const HeightField& field, int col, int row) {
   double steepest = 0;
   for (int r = row * kBlockSide; r < std::min((row + 1) * kBlockSide, field.cell_rows()); ++r) {
@@ -76,7 +76,7 @@ TEST(ReliefMap, HasTheSteepestEdgeOfEachBlockAtAnySize) {
   }
 }
 
-TEST(ReliefMap, TakesNodataForTheLowestSample) {
+TEST(ReliefMap, TreatsNodataAsTheLowestSample) {
   auto samples = rough_samples<float>(40, 33, 1);
   samples[40 * 16 + 16] = std::numeric_limits<float>::quiet_NaN();
   const HeightField field = HeightField::own(samples, 40, 33);

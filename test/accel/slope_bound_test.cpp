@@ -37,7 +37,7 @@ RC_GTEST_PROP(SlopeBound, IsNeverExceededAndIsAttainedAtACorner, ()) {
       }
     }
   }
-  // All quantities are multiples of 1/320 up to 1,000 and their root: a few units in the last place.
+  // All quantities are multiples of 1/320 up to 1,000, or a square root of these: a few units in the last place.
   RC_ASSERT(std::abs(steepest - bound) <= 8 * 0x1p-52 * bound);
 }
 

@@ -167,8 +167,8 @@ TEST(VoxelAccelerators, MatchTheirDefinitionsForRowsOfAnyLength) {
   }
 }
 
-// The effects of edits may be far away, beyond another solid voxel, on all sides or on one. The edits add and remove at
-// once, and report more than they change.
+// Edits may have effects far away, beyond another solid voxel, on all sides or on one side. These edits add and remove
+// voxels at once, and report larger boxes than they change.
 TEST(VoxelAccelerators, MatchARebuildAfterHostileEdits) {
   Random random(15);
   const std::array sizes{ivec3(70, 31, 43), ivec3(129, 23, 20), ivec3(31, 90, 24)};
@@ -278,7 +278,7 @@ TEST(VoxelAccelerators, RejectOversizedGrids) {
   EXPECT_NO_THROW((BrickMasks(grid)));
 }
 
-// Above the size at which the builder changes.
+// Above the size at which another builder is used.
 TEST(VoxelAccelerators, AllCubeBuildersAgreeOnALargeGrid) {
   VoxelGrid grid({100, 90, 70}, 1);
   grid.fill_sphere({20, 70, 30}, 9, 1);

@@ -16,7 +16,7 @@
 namespace scarp::test {
 namespace {
 
-// Least clearance of a ray over bilinear ground, by 64 samples per cell. The start does not count.
+// Least clearance of a ray over bilinear ground, from 64 samples per cell. The start does not count.
 double dense_clearance(const HeightField& field, double col, double row, double cols, double rows, double z, double dz,
                        double length, bool with_end = false) {
   double least = std::numeric_limits<double>::infinity();

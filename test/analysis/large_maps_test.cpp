@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maps of more than 2048 x 2048 nodes at random nodes: against one ray each, and some against the slow judge.
+// Maps of more than 2048 x 2048 nodes, checked at random nodes: each against one ray, some also against the slow judge.
 #include <gtest/gtest.h>
 
 #include <cmath>

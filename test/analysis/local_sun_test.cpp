@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shadows by the sun of every node, against the judge with the same rays, and against one sun where the field is small.
+// Shadows with a separate sun position for every node, against the judge with the same rays, and on small fields
+// against a single sun position.
 #include "scarp/analysis/local_sun.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
-// A field in degrees, its north-west node at (west, north), turned clockwise against true north.
+// A field in degrees, its north-west node at (west, north), rotated clockwise from true north.
 struct Ground {
   HeightField field;
   double west, north, step, turn = 0;
@@ -91,13 +92,13 @@ TEST(LocalSun, StepsAreGroundDistances) {
   EXPECT_NEAR(steps.row.y, -1111.51, 0.05);
   EXPECT_EQ(steps.col.y, 0);
   EXPECT_EQ(steps.row.x, 0);
-  // Across 180 degrees.
+  // Across the antimeridian.
   EXPECT_NEAR(node_steps({180, 46, 0}, {179.99, 46, 0}, {-179.99, 46, 0}, 2, {180, 46.01, 0}, {180, 45.99, 0}, 2).col.x,
               774.63, 0.05);
   EXPECT_THROW(sun_ray({{0, 0}, {0, -1}}, {.azimuth = 1, .altitude = 1}), Error);
 }
 
-// Over 20 km the sun moves by 0.2 degree: few nodes differ from those under one sun.
+// Over 20 km the sun's position changes by 0.2 degree: few nodes differ from those under a single sun position.
 TEST(LocalSun, BarelyVariesOverASmallField) {
   const double step = 0.002, north = 46 * kRadians;
   const HeightField field = rough(90, 90, step * 111320 * std::cos(north), step * 111151, 400);
@@ -113,7 +114,7 @@ TEST(LocalSun, BarelyVariesOverASmallField) {
   EXPECT_GT(dark, 1000);
   EXPECT_GT(different, 0);
   EXPECT_LT(different, 100);
-  // A band is those rows.
+  // A band equals these rows of the whole map.
   const auto band = local_shadow(field, sun, {31, 50});
   EXPECT_TRUE(std::equal(band.begin(), band.end(), local.begin() + 31 * 90));
   EXPECT_THROW(local_shadow(field, sun, {31, 91}), Error);

@@ -24,7 +24,7 @@ HeightField sampled(int cols, int rows, double cell_x, double cell_y, const Shap
   return HeightField::own(std::move(samples), cols, rows, {.cell_x = cell_x, .cell_y = cell_y});
 }
 
-// Whole metres, so that exact ties are common; `levels` is their number.
+// Whole metres, so that exact ties are common; `levels` is the number of different heights.
 Shape steps(unsigned seed, int levels) {
   return [random = std::mt19937(seed), levels](int, int) mutable {
     return static_cast<float>(random() % static_cast<unsigned>(levels));
@@ -84,7 +84,7 @@ std::vector<MapField> map_fields() {
     add(name, sampled(13, 12, 1, 1, shape));
     add(name + ", oblong cells", sampled(9, 16, 30, 10, shape));
   }
-  // Holes: scattered, a moat, all but a cross, one corner.
+  // Holes: scattered, a moat, everything except a cross, one corner.
   for (unsigned every : {2u, 3u, 7u, 20u}) {
     add("scattered holes", sampled(12, 11, 2, 2, with_holes(steps(every, 4), every, every)));
     add("rough with holes", sampled(11, 14, 1, 3, with_holes(rough(every, 9), every + 1, every)));
@@ -136,7 +136,7 @@ std::vector<SunDirection> map_suns() {
   std::vector<SunDirection> suns;
   for (const double azimuth : {0, 45, 90, 135, 180, 225, 270, 315}) suns.push_back({azimuth * kDegree, 30 * kDegree});
   for (const double azimuth : {1, 63, 200, 333}) suns.push_back({azimuth * kDegree, 5 * kDegree});
-  // A slope of exactly one cell height per cell, where grazing counts.
+  // A ray that falls by exactly one metre per metre, where grazing counts.
   suns.push_back({90 * kDegree, std::atan(1.0)});
   suns.push_back({2.5, 89 * kDegree});
   suns.push_back({2.5, std::numbers::pi / 2});

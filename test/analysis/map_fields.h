@@ -18,13 +18,13 @@ struct MapField {
 /// At least 60 fields of up to 24 samples per side: shapes, ties, cliffs, holes, oblong cells, single rows.
 std::vector<MapField> map_fields();
 
-/// Observers of a field: corners, edges, inside, as far as they have a sample.
+/// Observers in a field: at corners, at edges and inside, wherever there is a sample.
 std::vector<Node> map_observers(const HeightField& field);
 
-/// Settings of viewsheds: on the ground, on a tower, high up, with and without curvature and limits.
+/// Viewshed settings: on the ground, on a tower, high up, with and without curvature and limits.
 std::vector<ViewshedSettings> map_settings();
 
-/// Suns: along axes and diagonals, between them, low and high.
+/// Sun positions: along axes and diagonals, between them, low and high.
 std::vector<SunDirection> map_suns();
 
 }  // namespace scarp::test

@@ -46,7 +46,7 @@ TEST(Maps, ViewshedsMatchTheJudge) {
   unsigned turn = 0;
   for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
-      // One set of settings per observer, in turn: all are combined with all shapes.
+      // Observers use the sets of settings in turn, so that every set is combined with every shape.
       const auto settings = map_settings();
       const auto& chosen = settings[turn++ % settings.size()];
       const auto judged = judge_viewshed(kind.field, observer, chosen);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 const SightCurvature kFlat{.coefficient = 0};
-// Metres: 16 roundings of numbers below 2^17, as heights and drops of these fields are.
+// In metres: 16 roundings of numbers below 2^17, which heights and drops in these fields do not exceed.
 constexpr double kHeightRounding = 0x1p17 * 16 * 0x1p-53;
 
 HeightField field_of(int cols, int rows, double cell, const std::function<double(int, int)>& height) {
@@ -37,7 +37,7 @@ HeightField field_of(int cols, int rows, double cell, const std::function<double
 SightEnd random_end(const HeightField& field, std::mt19937& random) {
   const auto along = [&](int samples) {
     const auto steps = static_cast<unsigned>((samples - 1) * kSubcells);
-    // Nodes and grid lines as often as positions between them.
+    // Nodes and grid lines are as frequent as positions between them.
     const auto place = static_cast<unsigned>(random() % (steps + 1));
     constexpr auto kCell = static_cast<unsigned>(kSubcells);
     return (random() % 2 ? place / kCell * kCell : place) / static_cast<double>(kCell);
@@ -71,7 +71,7 @@ TEST(LineOfSight, MatchesTheJudgeEverywhere) {
   EXPECT_GT(blocked, 100);
 }
 
-// Skipping changes nothing, on fields of several blocks and with holes.
+// Skipping does not change the answer, on fields of several blocks and with holes.
 TEST(LineOfSight, IsUnchangedByMaxima) {
   std::mt19937 random(3);
   const auto ridges = [](int col, int row) {
@@ -158,7 +158,7 @@ TEST(LineOfSight, IsReciprocal) {
         ASSERT_EQ(there.visible, back.visible) << kind.name;
         const SightCurvature round{.coefficient = 1, .diameter = 1000};
         const LineOfSight over = line_of_sight(kind.field, from, to, round);
-        // With curvature up to the rounding of lowered heights.
+        // With curvature, results agree except within the rounding of the lowered heights.
         if (std::abs(over.clearance) > kHeightRounding) {
           ASSERT_EQ(over.visible, line_of_sight(kind.field, to, from, round).visible);
         }
@@ -204,11 +204,12 @@ TEST(LineOfSight, RejectsBadEndpoints) {
   EXPECT_THROW(line_of_sight(field, {0, 0, -1}, {2, 0}), Error);
 }
 
-TEST(Profile, ListsEveryCrossingOnceAndKeepsTheGround) {
+TEST(Profile, ListsEachCrossingOnceWithItsGroundHeight) {
   const auto field = field_of(30, 20, 10, [](int col, int row) { return 3. * col - 2. * row; });
   const SightLine line(field, {1, 2, 5}, {25, 14, 5}, {.coefficient = 1, .diameter = 1e4});
   const auto points = profile(line);
-  // 23 column lines and 11 row lines between the ends, 11 of them at one node; and the ends.
+  // 23 column lines and 11 row lines between the ends; 11 column and row crossings coincide at nodes; plus the two
+  // ends.
   EXPECT_EQ(points.size(), 23u + 11 - 11 + 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(points[i].ground, 3 * points[i].col - 2 * points[i].row, kHeightRounding);
@@ -284,7 +285,7 @@ TEST(Viewshed, EndsAtTheSeaHorizon) {
   const auto hidden = std::find(codes.begin(), codes.end(), Seen::hidden) - codes.begin();
   EXPECT_NEAR(static_cast<double>(hidden) * cell, horizon, 1.5 * cell);
   EXPECT_TRUE(std::all_of(codes.begin() + hidden, codes.end(), [](Seen code) { return code == Seen::hidden; }));
-  // A mast beyond the horizon is seen from the height sqrt allows: (d - horizon)^2 cc / D.
+  // A mast beyond the horizon is visible from the height (d - horizon)^2 cc / D.
   const auto least = least_visible(field, {0, 0}, {.observer_height = height, .curvature = curvature});
   const SightGround ground(field, 0, 0, curvature);
   const double beyond = 390 * cell - horizon;
@@ -310,7 +311,7 @@ TEST(Viewshed, IsMonotoneInTargetHeightAndNestedInDistance) {
   }
 }
 
-// Least heights decide visibility: a target is visible from there on, and not one double below.
+// Least heights decide visibility: a target is visible at that height and above, but not one double below it.
 TEST(Viewshed, LeastVisibleHeightsAreTight) {
   for (const MapField& kind : map_fields()) {
     const Node observer = map_observers(kind.field).front();
@@ -358,7 +359,8 @@ TEST(Maps, DoNotDependOnThreads) {
   EXPECT_EQ(shadow(field, {1, 0.3}), lit);
 }
 
-// The shadow of a pillar is as long as its height over the tangent of the altitude, and one cell wide at most.
+// The length of a pillar's shadow is its height divided by the tangent of the sun's altitude; its width is at most one
+// cell.
 TEST(Shadow, MatchesAPillar) {
   const double height = 50, cell = 2, altitude = 30 * kDegree;
   const auto field = field_of(80, 21, cell, [&](int col, int row) { return col == 60 && row == 10 ? height : 0.; });

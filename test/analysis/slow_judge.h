@@ -14,7 +14,8 @@ namespace scarp::test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-/// Whether no crossing strictly between two places blocks. Places in columns and rows, heights lowered.
+/// Whether no crossing strictly between two points blocks the view. Points are in columns and rows, heights are
+/// lowered.
 bool judge_line(const SightGround& ground, double col, double row, double eye, double to_col, double to_row,
                 double target);
 

@@ -31,7 +31,7 @@ TEST(SunPosition, AltitudeAtThePoleIsTheDeclination) {
   EXPECT_NEAR(sun.altitude / kDegree, -7.783817 - 0.0024, 0.001);
 }
 
-// Equinox of March 2026: 20 March 14:46 UTC. The sun is over the equator.
+// March equinox of 2026: 20 March 14:46 UTC. The sun is over the equator.
 TEST(SunPosition, IsOnTheEquatorAtEquinox) {
   EXPECT_NEAR(sun_position(parse_time("2026-03-20T14:46Z"), {0, 90 * kDegree, 0}).altitude / kDegree, 0, kTolerance);
 }

@@ -208,7 +208,8 @@ struct GridSymmetry {
   }
 };
 
-// The maps of a field rotated by quarter turns or mirrored are rotated and mirrored, too: no direction is favoured.
+// The maps of a field that is rotated by quarter turns or mirrored are rotated and mirrored, too: no direction is
+// favoured.
 TEST(Sweeps, AreSymmetric) {
   SweepDraw draw(4);
   for (int number = 0; number < 64; ++number) {
@@ -242,7 +243,7 @@ TEST(Sweeps, AreSymmetric) {
   }
 }
 
-// Two nodes see each other or neither does, and a higher sun lights more.
+// Visibility between two nodes is mutual, and a higher sun lights more nodes.
 TEST(Sweeps, AreReciprocalAndMonotone) {
   SweepDraw draw(6);
   int visible = 0, lit_later = 0;

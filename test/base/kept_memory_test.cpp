@@ -10,7 +10,7 @@ struct Own {
   int number = 3;
 };
 
-TEST(KeptMemory, NextVectorOfTheThreadHasItAndIsEmpty) {
+TEST(KeptMemory, NextVectorOfTheThreadReusesItAndIsEmpty) {
   const Own* memory = nullptr;
   {
     KeptVector<Own> first(1000);
@@ -24,7 +24,7 @@ TEST(KeptMemory, NextVectorOfTheThreadHasItAndIsEmpty) {
   EXPECT_EQ(second[7].number, 3);
 }
 
-TEST(KeptMemory, VectorsAtOnceDoNotShareIt) {
+TEST(KeptMemory, SimultaneousVectorsDoNotShareIt) {
   { KeptVector<Own> first(100); }
   KeptVector<Own> second(100), third(100);
   EXPECT_NE(second.data(), third.data());

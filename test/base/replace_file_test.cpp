@@ -31,7 +31,7 @@ std::string refusal(const std::string& path) {
   return test::refusal([&] { ReplaceFile{path}; });
 }
 
-// Root may write anywhere: drops that right during its lifetime.
+// Root can write anywhere: drops that privilege during its lifetime.
 class WithoutRoot {
  public:
   WithoutRoot() : root_(::geteuid() == 0) {
