@@ -39,7 +39,7 @@ class CastStarts : public testing::Test {
 
 TEST_F(CastStarts, CountAsAboveTheSurface) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
-  // Along the plane: touching is a hit for a free ray, none for one that starts on it.
+  // Along the plane: touching is a hit for a free ray, but not for one that starts on it.
   const auto result = run({"cast", path("hills.asc"), "--coords", "local", "--rays",
                            rays("x,y,z,dx,dy,dz,start_col,start_row\n15,15,0,1,0,0,,\n15,15,0,1,0,0,1,1\n")});
   const auto rows = rows_of(result.out);
@@ -65,14 +65,14 @@ TEST_F(CastStarts, MustLieInTheirCell) {
     EXPECT_EQ(result.status, 0) << result.err;
     return result.err;
   };
-  // On the border and beside it, as numbers of a table may be rounded.
+  // On the border and slightly off it, because numbers in a table may be rounded.
   err("20,15,0,0,0,1,0,9,1,1\n20,15,0,0,0,1,0,9,2,1\n20.5,15,0,0,0,1,0,9,1,1\n15,15,0,1,0,0,10,99,2,1\n");
   err("65,15,0,0,0,1,0,9,1,1\n", {"--wrap", "periodic"});
   EXPECT_NE(err("15,15,9000,0,0,1,0,9,1,1\n").find("note: rays with start_col and start_row start on the surface"),
             std::string::npos);
 }
 
-// The next ray starts at the hit of the last, given by its x, y, z and cell. Some are on borders of their cell.
+// Each ray starts at the hit of the previous one, given by its x, y, z and cell. Some are on borders of their cell.
 TEST_F(CastStarts, MayBeHitsOfOtherRays) {
   const std::string degrees = scratch_.write("degrees.asc",
                                              "ncols 5\nnrows 4\nxllcenter 10\nyllcenter 50\ncellsize 0.0001\n"

@@ -44,7 +44,7 @@ class Cast : public testing::Test {
                                           kCols, kRows, text));
   }
 
-  // `cast` of hills must fail: one line on stderr that has the fragment, nothing on stdout, no file left.
+  // `cast` on hills must fail: one line on stderr that contains the fragment, nothing on stdout, no file left.
   void expect_refused(const Names& options, const std::string& fragment) {
     hills();
     const Names before = scratch_.files();
@@ -59,7 +59,7 @@ class Cast : public testing::Test {
     expect_refused(options, fragment);
   }
 
-  // Looks straight down at each node, whose position is `place(col, row)`; `inner`: not at those on the border.
+  // Looks straight down at each node, whose position is `place(col, row)`; `inner`: skips nodes on the border.
   template <class Place>
   std::vector<Row> look_down(const Names& options, const Place& place, bool inner = false) {
     std::string table = "col_in,row_in,x,y,z,dx,dy,dz\n";
@@ -109,7 +109,7 @@ TEST_F(Cast, LonlatNodesHitTheirSamples) {
   const double west = -84.5, south = 36.25, cell = 1.0 / 1024;
   const std::string bounds = fmt::format("--bounds={},{},{},{}", west - cell / 2, south - cell / 2,
                                          west + (kCols - 0.5) * cell, south + (kRows - 0.5) * cell);
-  // Their cells on the ground are rounded: a node of the border may be outside by a rounding error.
+  // Their cell sizes in metres are rounded: a border node may be outside by a rounding error.
   look_down(
       {"--coords", "lonlat", "--crs", "EPSG:4326", bounds},
       [&](int col, int row) { return std::pair(west + cell * col, south + cell * (kRows - 1 - row)); }, true);
@@ -136,7 +136,7 @@ TEST_F(Cast, CoordinateSystemsAgree) {
     EXPECT_NEAR(number(row, "u"), 1.0 / 3, kSeries);
     EXPECT_NEAR(number(row, "z"), (north + below) / 2, kSeries);
   }
-  // Local metres are the ground's: those of the map times one scale, 1.0002 here.
+  // Local metres are ground metres: map metres times one scale, here 1.0002.
   const double scale = 1.0002;
   const Row local = cast(fmt::format("{},{}", (x - west) * scale, (y - south) * scale), "local");
   EXPECT_NEAR(number(local, "u"), 1.0 / 3, 0.001);
@@ -198,7 +198,7 @@ TEST_F(Cast, MarchesAgree) {
 }
 
 TEST_F(Cast, AllHitsAreSortedByT) {
-  // Two ridges along the way.
+  // Two ridges along the ray.
   hills("1 9 1 9 1\n1 9 1 9 1\n1 9 1 9 1\n1 9 1 9 1");
   rays("x,y,z,dx,dy,dz\n-5,15,5,1,0,0\n-5,15,20,1,0,0\n");
   for (const char* march : {"max-mip", "exhaustive"}) {
@@ -264,7 +264,7 @@ class CastInputs : public Cast {
       "objects": [{"function": 2, "material": "grey"},
                   {"shape": {"union": [{"sphere": {"radius": 3, "at": [0, 0, 5]}, "material": "red"}]}}]})");
   }
-  // Two columns of one voxel each, the place between them empty.
+  // Two columns, each of one voxel, with a gap between them.
   std::string columns() const { return write("columns.raw", std::string("\1\0\1", 3)); }
   const Names volume_{"--volume", "3x1x1:u8"};
 };
@@ -307,7 +307,7 @@ TEST_F(CastInputs, SceneHitsReportObjectAndMaterial) {
   EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 3 * 23 * 8 % 64u);
 }
 
-// A terrain's own columns come first, as without the rest.
+// A terrain's own columns have the same values as in a cast of the terrain alone.
 TEST_F(CastInputs, TerrainHitsInASceneReportTheCell) {
   const std::string dem = hills(), table = "x,y,z,dx,dy,dz\n15,15,900,0,0,-1\n";
   const Row alone = cast({dem, "--coords", "local"}, table).at(0),
@@ -326,7 +326,7 @@ TEST_F(CastInputs, MeshHitsReportTheTriangle) {
   // The corners (8, 0), (8, 8), (0, 8).
   EXPECT_FLOAT_EQ(static_cast<float>(number(row, "u")), 0.5f);
   EXPECT_FLOAT_EQ(static_cast<float>(number(row, "v")), 0.25f);
-  // On terrain it is an object like the terrain.
+  // On terrain, the mesh is an object of the scene, as the terrain is.
   const Names over{hills(), "--coords", "local", "--mesh", mesh, "--mesh-up", "z", "--mesh-at", "15,15,900"};
   const auto rows = cast(over, "x,y,z,dx,dy,dz\n15,15,1000,0,0,-1\n35,25,1000,0,0,-1\n");
   EXPECT_EQ(rows[0].at("kind") + rows[0].at("object") + rows[0].at("z"), "mesh1900");
@@ -376,8 +376,8 @@ TEST_F(Cast, AppliesSurfaceOptions) {
     const auto rows = rows_of(result.out);
     return rows.empty() ? Row() : rows[0];
   };
-  // The middle of the cell whose south-east corner is the peak: a quarter of it bilinear; the diagonal of the triangles
-  // joins the two other corners.
+  // At the middle of the cell whose south-east corner is the peak, the bilinear surface has a quarter of its height;
+  // the diagonal of the triangles joins the two other corners.
   const std::string down = "x,y,z,dx,dy,dz\n15,15,100,0,0,-1\n";
   EXPECT_EQ(number(cast(down, {}), "z"), 2);
   EXPECT_EQ(number(cast(down, {"--surface", "triangles"}), "z"), 0);
@@ -446,7 +446,7 @@ TEST_F(Cast, ReadsAndWritesFilesAndStreams) {
   EXPECT_NE(run(with({"-"})).err.find("-: empty file"), std::string::npos);
   EXPECT_EQ(run(with({path("rays.csv"), "-o", path("hits.npy")})).status, 0);
   EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 14 * 8 % 64u);
-  // The output of one cast is input for the next: a table whose fields it knows or ignores.
+  // The output of one cast is the input of the next, which reads the columns that it knows and ignores the others.
   EXPECT_NE(run(with({path("hits.npy")})).err.find("no column 'dx'"), std::string::npos);
   EXPECT_EQ(run(with({rays("x,y,z,dx,dy,dz\n")})).out, "ray,status,t,x,y,z,col,row,u,v,nx,ny,nz,wall\n");
 }
@@ -549,8 +549,9 @@ TEST_F(Cast, WarnsThatAFieldWithoutCompleteCellsIsNeverHit) {
 }
 
 #ifdef SCARP_VULKAN
-// Rows of a device are those of the CPU within delta of numerics.md. The CPU's rays are raised and lowered by delta:
-// where these three agree, so does the device, and its hits are no farther from the CPU's than theirs.
+// Rows from a device match the CPU's within delta of numerics.md. The CPU's rays are raised and lowered by delta: where
+// all three answers of the CPU agree, the device's answer agrees with them, and its hit is no farther from the CPU's
+// than theirs are.
 TEST_F(Cast, DeviceMatchesCpu) {
   const auto devices = nlohmann::json::parse(test::run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);

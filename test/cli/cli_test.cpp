@@ -39,7 +39,7 @@ class Cli : public testing::Test {
   }
   std::string good() const { return grid("good.asc", 4, 3, "1 2 3 4\n2 3 4 5\n3 9 5 6"); }
 
-  // render must fail on this input: one line on stderr that has the fragment, nothing on stdout, no file left.
+  // render must fail on this input: one line on stderr that contains the fragment, nothing on stdout, no file left.
   void expect_refused(const std::string& input, const std::string& fragment) {
     const Names before = scratch_.files();
     const auto result = run({"render", input, "-o", path("out.png")});
@@ -450,7 +450,7 @@ TEST_F(Cli, GenerateRejectsInvalidOptions) {
   }
 }
 
-// Samples and pyramid together: 4 bytes where the file has 16 bits, 6 where it has float32, and a float per 8 x 8 cells
+// Samples and pyramid together take 4 bytes per sample for 16-bit files and 6 for float32, plus a float per 8 x 8 cells
 // for the steepest edges.
 TEST_F(Cli, SamplesKeepTheTypeOfTheFile) {
   constexpr int kSide = 64;
@@ -555,7 +555,7 @@ TEST_P(Interrupt, LeavesNoOutput) {
   EXPECT_EQ(scratch_.files(), Names{"good.asc"});
 }
 
-// A pipe that others can open at once, and whose readers wait until it is closed.
+// A pipe that other processes can open immediately, and whose readers wait until it is closed.
 class OpenPipe {
  public:
   explicit OpenPipe(const std::string& path) {
@@ -578,7 +578,7 @@ class OpenPipe {
   int file_ = -1;
 };
 
-// Waits at a pipe for a function that nobody writes, and so cannot check for signals.
+// Waits on a pipe for a function that nobody writes, so it cannot check for signals.
 TEST_P(Interrupt, EndsBlockedReads) {
   const std::string pipe = path("pipe");
   const OpenPipe kept(pipe);
@@ -618,7 +618,7 @@ TEST_F(Cli, KeepsIgnoredSignalsIgnored) {
   const std::string pipe = path("pipe");
   OpenPipe function(pipe);
   const auto before = std::signal(SIGHUP, SIG_IGN);
-  // Checks for signals after it has read the function.
+  // Checks for signals after reading the function.
   test::Program program({"render", "--function", "/dev/stdin", "-o", path("out.png"), "--size", "8x6"}, nullptr, pipe,
                         test::Ignored::inherited);
   std::signal(SIGHUP, before);

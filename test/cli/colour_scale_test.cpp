@@ -80,7 +80,7 @@ TEST_F(ColourScale, RampRangeMatchesTheLegend) {
 }
 
 TEST_F(ColourScale, LevelGroundAtAContourIsNotDrawn) {
-  // A lake at 100 m, and its shore; contours at 80, 100 and 120 m. The second one has samples of float precision.
+  // A lake at 100 m, and its shore; contours at 80, 100 and 120 m. The second lake is rough by 1e-5 m, like rounded floats.
   for (const double rounding : {0.0, 1e-5}) {
     const std::string lake = dem("lake.asc", [&](int col, int row) {
       const double away = std::max(std::abs(col - 16), std::abs(row - 16)) - 8;
@@ -127,7 +127,7 @@ TEST_F(ColourScale, ExaggerationFollowsTheRelief) {
     EXPECT_EQ(result.status, 0) << result.err;
     return result.err;
   };
-  // 0.288 m over 320 m: with 111 it would be a tenth.
+  // The relief is 0.288 m over 320 m; exaggerated 111 times, it would be a tenth of the width.
   EXPECT_NE(with(flat, "").find("hardly shows (--exaggeration auto, or a factor such as 100"), std::string::npos);
   EXPECT_NE(with(flat, "auto").find("--exaggeration auto is 100: the relief of 0.288 m over 320 m"), std::string::npos);
   const std::string chosen = text_of(out_);

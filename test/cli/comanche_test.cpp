@@ -187,7 +187,7 @@ TEST(Reach, EndlessGroundIsVisibleFromAbove) {
 TEST(Overlay, IsPlacedByItsGeoreference) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);
-  // Over the western half of the ground, red; the eastern half has the ramp's grey.
+  // Red over the western half of the ground; the eastern half has the ramp's grey.
   std::vector<std::uint8_t> red(3 * 40 * 80);
   for (std::size_t i = 0; i < red.size(); i += 3) red[i] = 255;
   write_png(scratch.path("red.png"), {red.data(), 40, 80});
@@ -199,7 +199,7 @@ TEST(Overlay, IsPlacedByItsGeoreference) {
   for (int y = 2; y < 78; y += 5) {
     for (int x = 2; x < 78; x += 5) {
       const auto* p = picture.bytes.data() + 3 * (y * 80 + x);
-      // Within a pixel of its border colours are mixed, by the warper and again by the lookup.
+      // At its border, colours are mixed within a pixel, first by the warper and then by the lookup.
       if (x >= 38 && x <= 42) continue;
       EXPECT_EQ(p[1] == 0 && p[2] == 0, x < 40) << x << ", " << y;
     }
@@ -240,7 +240,7 @@ TEST(Composite, ShowsTheNearerPixel) {
   ASSERT_EQ(
       test::run({"render", dem, "-o", ours, "--top", "--size", "8x8", "--aa", "1", "--depth-range", "1,1000"}).status,
       0);
-  // A level plate in green: seen from above it hides what is deeper. The eye is 80 + 80 + 80 m over the middle of the
+  // A level green plate: seen from above, it hides everything deeper. The eye is 80 + 80 + 80 m over the middle of the
   // box; the depth is read from the file.
   std::vector<float> zero(64, 0.0f), one(64, 1.0f), z(64, 300.0f), device(64);
   const auto write = [&](const std::string& name, float plate) {
@@ -268,7 +268,7 @@ TEST(Composite, ShowsTheNearerPixel) {
   EXPECT_EQ(greens({}, "far.exr"), 0);
   write("near.exr", 1.5f);
   EXPECT_EQ(greens({}, "near.exr"), 64);
-  // Between the summit and the foot of the hill, by both kinds of depth the same.
+  // Between the summit and the foot of the hill; both kinds of depth give the same result.
   int between = 0;
   for (float plate = 100; plate < 400; plate += 40) {
     write("plate.exr", plate);
@@ -286,13 +286,13 @@ TEST(Composite, ShowsTheNearerPixel) {
   EXPECT_NE(missing.err.find("a.png': does not exist (name an EXR picture)"), std::string::npos) << missing.err;
 }
 
-// Nothing is as far away as the sky: a plate is seen before it, and another renderer's sky hides nothing.
+// The sky is behind everything: a plate is visible in front of it, and another renderer's sky hides nothing.
 TEST(Composite, ShowsObjectsInFrontOfTheSky) {
   constexpr int kSide = 16;
   const test::Scratch scratch;
   const std::string ours = scratch.path("ours.exr"), out = scratch.path("out.exr");
   const std::string size = fmt::format("{0}x{0}", kSide);
-  // The hill fills the middle of the picture; the sky is round it.
+  // The hill fills the middle of the picture; the sky is around it.
   ASSERT_EQ(test::run({"render", hill(scratch), "-o", ours, "--view", "180,10,2", "--size", size, "--aa", "1"}).status,
             0);
   const auto write = [&](float plate) {

@@ -32,7 +32,7 @@ TEST(Devices, AreListedAsTextAndJson) {
   }
 }
 
-// An empty list is a list.
+// An empty list is a valid answer.
 TEST(Devices, ExplainWhyNoneIsListed) {
   ::setenv("VK_DRIVER_FILES", "/nonexistent", 1);
   ::setenv("VK_ICD_FILENAMES", "/nonexistent", 1);

@@ -66,7 +66,7 @@ TEST_F(ExrOutput, PositionsMatchTheMatrices) {
         Imath::M44d(exr.matrices.at("worldToCamera")).multVecMatrix(position, in_camera);
         EXPECT_NEAR(in_camera.z, depth[k], kRounding);
         Imath::M44d(exr.matrices.at("worldToNDC")).multVecMatrix(position, in_picture);
-        // A pixel is worth more than a metre here.
+        // A pixel covers more than a metre here.
         EXPECT_NEAR((in_picture.x + 1) / 2 * exr.width, i + 0.5, exr.width * kRounding);
         EXPECT_NEAR((1 - in_picture.y) / 2 * exr.height, j + 0.5, exr.height * kRounding);
       }

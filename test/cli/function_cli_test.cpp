@@ -94,7 +94,7 @@ TEST_F(Functions, WriteLayers) {
 }
 #endif
 
-TEST_F(Functions, TakeColourRamps) {
+TEST_F(Functions, AcceptColourRamps) {
   const std::string picture = out("ramped.png"), table = scratch_.write("table.cpt", "0 255 0 0 100 0 0 255\n");
   const auto rendered = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"render", "--function", ramp(),   "--extent", "100",
@@ -143,7 +143,7 @@ TEST_F(Functions, CanBeSampledIntoAnElevationModel) {
   EXPECT_EQ(info["rows"], 17);
   EXPECT_NEAR(info["min_m"].get<double>(), 7 - 0.5 * 160, 1e-9);
   EXPECT_NEAR(info["max_m"].get<double>(), 7 + 0.5 * 160, 1e-9);
-  // Cells are measured on the ellipsoid, by differences.
+  // Cell sizes are measured on the ellipsoid, by differences.
   EXPECT_NEAR(info["slope_bound"].get<double>(), 0.5, 1e-6);
 }
 

@@ -64,8 +64,8 @@ std::vector<Golden> goldens() {
   return all;
 }
 
-// The pictures that doc/user shows are those of its commands.
-TEST(DocumentPictures, AreThoseOfTheirCommands) {
+// The pictures in doc/user are what their commands render.
+TEST(DocumentPictures, MatchTheirCommands) {
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
   const test::Scratch scratch;
@@ -177,7 +177,7 @@ TEST(GoldenMesh, MatchesTheReviewedPicture) {
 
 class GoldenScene : public testing::TestWithParam<const char*> {};
 
-// One sample in the middle of each of few pixels. Functions are slow with sanitizers: there, two scenes must suffice.
+// Few pixels, each with one sample in its middle. Functions are slow with sanitizers: there, two scenes must suffice.
 TEST_P(GoldenScene, MatchesTheReviewedPicture) {
   const std::string name = GetParam();
 #ifndef SCARP_MESHES_IN_SCENES

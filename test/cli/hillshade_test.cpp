@@ -43,8 +43,8 @@ TEST(Hillshade, MatchesGdaldem) {
   const auto result = test::run({"render", dem, "-o", picture, "--top", "--size", "257x257", "--look", "hillshade"});
   ASSERT_EQ(result.status, 0) << result.err;
   const test::Rgb ours = test::read_png(picture);
-  // A map goes from the first sample to the last: pixels are a little closer together than samples. gdaldem has nothing
-  // (0) along the border.
+  // A map spans from the first sample to the last, so pixels are slightly closer together than samples. gdaldem writes
+  // nodata (0) along the border.
   const auto gdal_at = [&](int x, int y) {
     const auto at = [&](int col, int row) {
       return static_cast<double>(expected[static_cast<std::size_t>(row * side + col)]);

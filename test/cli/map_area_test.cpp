@@ -41,7 +41,7 @@ class MapArea : public testing::Test {
 
 TEST_F(MapArea, MatchesThatPartOfTheWholeMap) {
   const test::Rgb whole = map({"--size", "128x128"});
-  // Its south-west: columns from 16 to 80, rows from 32 on, of 16 m a pixel.
+  // Its south-western part: columns from 16 to 80, rows from 32 on, at 16 m per pixel.
   const test::Rgb part = map({"--size", "64x96", "--area", "256,0,1280,1536"});
   ASSERT_EQ(part.width, 64);
   ASSERT_EQ(part.height, 96);

@@ -183,13 +183,13 @@ TEST_F(MapsCli, CountsObserversAndFindsLeastVisibleHeights) {
   EXPECT_STREQ(dataset->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
   const auto ground = pixels_of(*dataset);
   EXPECT_EQ(ground.at(15, 10), 0);
-  // Row 9.5 from the south: the observer is at column 10. Over the wall, 48 m higher in 10 cells: at column 25 72 + 2
-  // m.
+  // Row 9.5 from the south; the observer is at column 10. The line of sight over the wall rises 48 m in 10 cells, so at
+  // column 25 the least height is 72 + 2 m.
   EXPECT_FLOAT_EQ(ground.at(25, 9), 48 * 1.5 + 2);
   EXPECT_EQ(ground.at(0, 0), -9999);
 }
 
-TEST_F(MapsCli, AnglesCountFromTheHorizontal) {
+TEST_F(MapsCli, AnglesAreMeasuredFromTheHorizontal) {
   const Names angles = on_dem("viewshed") + Names{"--mode", "angle", "--cc", "0", "-o", path("angle.tif")};
   ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2"}).status, 0);
   const auto dataset = open(path("angle.tif"));
@@ -200,7 +200,7 @@ TEST_F(MapsCli, AnglesCountFromTheHorizontal) {
   EXPECT_NEAR(one.at(20, 9), std::atan(48 / 100.) * 180 / 3.14159265, 1e-2);
   EXPECT_EQ(one.at(25, 9), -9999);
   EXPECT_EQ(one.at(0, 0), -9999);
-  // The higher one of two observers sees the ground at a smaller angle.
+  // The largest angle counts: the higher of the two observers sees the ground at a smaller one.
   ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2", "--observer", "500105,5000105,9"}).status, 0);
   EXPECT_EQ(pixels_of(*open(path("angle.tif"))).at(15, 9), one.at(15, 9));
 }
@@ -231,7 +231,7 @@ TEST_F(MapsCli, ShadowAcceptsTimes) {
   expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "-o", path("x.tif")},
                  "below the horizon");
   expect_refused(on_dem("shadow") + Names{"--time", "21.6.2026 12:00", "-o", path("x.tif")}, "2026-06-21T09:00+02:00");
-  // The sun of every pixel: here within 0.003 degrees of the one at the centre.
+  // With a sun position for every pixel: here within 0.003 degrees of the one at the centre.
   EXPECT_NE(result.err.find("--sun-per-cell"), std::string::npos) << result.err;
   const Names evening = on_dem("shadow") + Names{"--time", "2026-06-21T19:00+02:00", "-o"};
   const auto local = run(evening + Names{path("local.tif"), "--sun-per-cell"});
@@ -286,7 +286,7 @@ TEST_F(MapsCli, PartsMatchTheWhole) {
   expect_refused(sun + Names{"1/21"}, "has only 20 rows");
 }
 
-// Between the samples of a saddle the ground is higher than on any grid line that a diagonal crosses.
+// Between the samples of a saddle, the ground is higher than at any grid line that a diagonal crosses.
 TEST_F(MapsCli, SupportsBilinearSurface) {
   const std::string saddle =
       scratch_.write("saddle.asc", "ncols 2\nnrows 2\nxllcorner -5\nyllcorner -5\ncellsize 10\n0 30\n30 0\n");
@@ -364,7 +364,7 @@ TEST_F(MapsCli, ProfileWritesATableOrAFigure) {
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
 }
 
-// Green where the observer sees the ground, grey where not, height colours outside of the map.
+// Green where the observer sees the ground, grey elsewhere, height colours outside the map.
 TEST_F(MapsCli, PreviewOverlaysTheMap) {
   const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("v.tif")};
 #ifndef SCARP_CAIRO
@@ -387,7 +387,7 @@ TEST_F(MapsCli, PreviewOverlaysTheMap) {
   EXPECT_GT(share(greens), 0.3);
   EXPECT_GT(share(greys), 0.02);
   EXPECT_GT(share(whites), 0.05);  // the margin with the legend
-  // A map of heights, of a part, has a ramp.
+  // A map of heights has a ramp; this one covers a part of the field.
   EXPECT_EQ(run(view + Names{"--mode", "ground", "--part", "1/2", "--preview", path("g.pdf")}).status, 0);
   EXPECT_EQ(text_of(path("g.pdf")).substr(0, 4), "%PDF");
   fs::remove(path("g.pdf"));
@@ -570,7 +570,7 @@ TEST_F(MapsCli, DryRunWritesNothing) {
   EXPECT_FALSE(fs::exists(path("x.tif")));
 }
 
-// A degree has another length in the north of a large raster than in its south.
+// A degree has a different length in the north of a large raster than in its south.
 TEST_F(MapsCli, RejectsDegreesWhereThePlaneErrorIsLarge) {
   std::string text = "ncols 200\nnrows 200\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n";
   for (int i = 0; i < 200 * 200; ++i) text += "1 ";

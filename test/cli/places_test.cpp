@@ -68,7 +68,7 @@ TEST_F(Places, AgreeInAllCoordinateSystems) {
   const std::string expected = picture(local);
   EXPECT_EQ(picture({"--coords", "local", "--eye", "20,10,150", "--target", "100,100,110"}), expected);
   EXPECT_EQ(picture({"--coords", "map", "--eye", "1025,2015,150", "--target", "1105,2105,110"}), expected);
-  // Heights of the map are those of the file.
+  // Map coordinates have heights as in the file.
   const Names twice{"--exaggeration", "2", "--eye", "20,10,300", "--target", "100,100,220"},
       mapped{"--exaggeration", "2", "--coords", "map", "--eye", "1025,2015,150", "--target", "1105,2105,110"};
   EXPECT_EQ(picture(twice), picture(mapped));
@@ -80,7 +80,7 @@ TEST_F(Places, AgreeInAllCoordinateSystems) {
   EXPECT_EQ(picture(lonlat, degrees), picture(map, degrees));
 }
 
-TEST_F(Places, CountHeightsFromGroundAndWater) {
+TEST_F(Places, MeasureHeightsFromGroundAndWater) {
   const std::string target = "100,100,110";
   const auto from = [&](const Names& eye) {
     Names all{"--target", target};
@@ -157,7 +157,7 @@ TEST_F(Places, ReportErrorsInOneLine) {
                  {"--function", "hills"});
 }
 
-TEST_F(Places, CountHeightsFromFunctionsAndScenes) {
+TEST_F(Places, MeasureHeightsFromFunctionsAndScenes) {
   const auto view = [&](const Names& input, const Names& eye) {
     Names arguments{"render", "-o", out_, "--size", "24x18", "--target", "0,0,0"};
     arguments.insert(arguments.end(), input.begin(), input.end());
@@ -171,7 +171,7 @@ TEST_F(Places, CountHeightsFromFunctionsAndScenes) {
                     ball = scratch_.write("ball.json", R"({"objects": [{"shape": {"sphere": {"radius": 5}}}]})");
   EXPECT_EQ(view({"--function", plane}, {"--eye", "100,20", "--eye-above", "3"}),
             view({"--function", plane}, {"--eye", "100,20,60"}));
-  // By a ray from above, which hits the sphere at z = 4.
+  // Found by a ray from above, which hits the sphere at z = 4.
   EXPECT_EQ(view({ball}, {"--eye", "0,3", "--eye-above", "6"}), view({ball}, {"--eye", "0,3,10"}));
 }
 

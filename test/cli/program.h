@@ -23,7 +23,7 @@
 
 namespace scarp::test {
 
-/// A folder that goes away with the test.
+/// A temporary folder, removed at the end of the test.
 class Scratch {
  public:
   Scratch() {
@@ -89,7 +89,7 @@ struct Result {
 };
 
 inline Result result_of(int status, const Streams& streams, std::uint64_t peak = 0) {
-  // A device, as /dev/full, has no end.
+  // A device such as /dev/full has no end.
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
           std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err), peak};
 }

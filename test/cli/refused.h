@@ -10,7 +10,7 @@
 
 namespace scarp::test {
 
-/// One line on stderr that has the fragment, nothing on stdout, and the status of a failure or of wrong usage.
+/// One line on stderr that contains the fragment, nothing on stdout, and the status of a failure or of wrong usage.
 inline void expect_refused(const Result& result, const std::string& fragment) {
   EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status;
   EXPECT_EQ(result.out, "");

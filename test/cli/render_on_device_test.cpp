@@ -128,7 +128,7 @@ TEST_F(RenderOnDevice, RendersVoxelsAsTheCpu) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     on_both(arguments, picture_, there);
   }
-  // The camera's rays by drawing boxes, all others by compute; in perspective and without.
+  // Camera rays are answered by drawing boxes, all others by compute; with and without perspective.
   for (const std::vector<std::string>& more :
        {std::vector<std::string>{"--corner-ao"}, {"--top"}, {"--look", "hillshade"}}) {
     std::vector<std::string> arguments = render;

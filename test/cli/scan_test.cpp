@@ -63,10 +63,10 @@ class Scan : public testing::Test {
   static double hill(int col, int row) {
     return 100 + 20 * std::sin(0.11 * col) * std::cos(0.09 * row) + 2 * std::sin(0.9 * col + row);
   }
-  // By the edges between nodes: 20 * 0.11 + 4 * sin(0.45), and less on the other axis.
+  // Largest height difference between neighbouring nodes: 20 * 0.11 + 4 * sin(0.45), and less along the other axis.
   static constexpr double kSteepestEdge = 4;
   std::string hills() const { return grid("hills.asc", hill); }
-  // Between the nodes of hills(), which are written in hundredths.
+  // Height between the nodes of hills(), which are written in hundredths.
   static std::optional<double> height_of_hills(double x, double y) {
     const double col = (x - 1000) / 10, row = (2000 + 10 * (kSide - 1) - y) / 10;
     if (!(col >= 0 && col < kSide - 1 && row >= 0 && row < kSide - 1)) return {};
@@ -82,7 +82,7 @@ class Scan : public testing::Test {
   }
   std::string still() const { return scanner(R"("pose": {"at": [1500, 2500], "above": 1.5, "heading": 45})"); }
 
-  // One line on stderr that has the fragment, and no file left.
+  // One line on stderr that contains the fragment, and no file left.
   void expect_refused(const Names& arguments, const std::string& fragment) const {
     const Names before = scratch_.files();
     expect_refusal(run(arguments), before, fragment);
@@ -253,7 +253,7 @@ TEST_F(Scan, ThreadsDoNotChangeThePoints) {
   EXPECT_GT(test::text_of(path("a.npy")).size(), 100000u);
 }
 
-TEST_F(Scan, ScansWithoutPointsAreWholeFilesWithANote) {
+TEST_F(Scan, ScansWithoutPointsWriteValidFilesAndANote) {
   const std::string up = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5})", "", "[30, 60]");
   for (const char* name : {"o.csv", "o.npy", "o.ply", "o.las"}) {
     const auto result = cast({flat(), "--scanner", up, "-o", path(name)});
@@ -275,7 +275,7 @@ TEST_F(Scan, ScansWithoutPointsAreWholeFilesWithANote) {
   EXPECT_EQ(none.err, "note: the path is shorter than a column of the scanner: 0 rays, and no points in the output\n");
 }
 
-TEST_F(Scan, ErrorsSayWhatToDo) {
+TEST_F(Scan, ErrorsSuggestARemedy) {
   const std::string ground = flat(), lidar = still(), rays = write("rays.csv", "x,y,z,dx,dy,dz\n1,2,3,0,0,-1\n");
   expect_refused({"cast", ground}, "--rays FILE or --scanner FILE is required");
   expect_refused({"cast", ground, "--rays", rays, "--scanner", lidar}, "--scanner");
@@ -298,7 +298,7 @@ TEST_F(Scan, ErrorsSayWhatToDo) {
                  "drive.csv: line 3: y 'nan' is not a finite number");
 }
 
-TEST_F(Scan, FullDisksLeaveNothing) {
+TEST_F(Scan, FullDiskLeavesNoFile) {
   const std::string ground = flat();
   const std::string lidar = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5})", R"(, "turns": 300)");
   const Names before = scratch_.files();
@@ -309,7 +309,7 @@ TEST_F(Scan, FullDisksLeaveNothing) {
   }
 }
 
-TEST_F(Scan, InterruptsLeaveNothing) {
+TEST_F(Scan, InterruptLeavesNoFile) {
   const std::string ground = flat();
   const std::string lidar = scanner(R"("pose": {"at": [1500, 2500], "above": 1.5})", R"(, "turns": 1000000)");
   const Names before = scratch_.files();
@@ -323,8 +323,8 @@ TEST_F(Scan, InterruptsLeaveNothing) {
   EXPECT_EQ(scratch_.files(), before);
 }
 
-// Degrees in steps of 1e-8, and the CRS as WKT 1.
-TEST_F(Scan, LasOfDegreesKeepsMillimetres) {
+// LAS coordinates are degrees in steps of 1e-8, and the CRS is WKT 1.
+TEST_F(Scan, LasInDegreesKeepsMillimetres) {
   const std::string ground = grid("flat.asc", [](int, int) { return 100.0; });
   const Names raster = {"--crs", "EPSG:4326", "--bounds=10,0,10.01,0.01"};
   const std::string lidar = scanner(R"("pose": {"at": [10.005, 0.005], "above": 1.5})");

@@ -176,8 +176,8 @@ TEST_F(Scenes, AreDescribedByInfo) {
   EXPECT_EQ(info["objects"][1]["name"], "ball");
   EXPECT_EQ(info["objects"][1]["fields"][0]["march"], "sphere-trace");
   EXPECT_EQ(info["endless"], true);
-  // Boxes of shapes are padded by 2^-49 of their numbers (distance_node.cpp), those of objects that are placed by some
-  // more roundings: fewer than 64 units of the 5 m that the ball reaches from the origin.
+  // Boxes of shapes are padded by 2^-49 of their coordinates (distance_node.cpp), and boxes of placed objects by a few
+  // more roundings: fewer than 64 units in the last place of the 5 m that the ball reaches from the origin.
   EXPECT_NEAR(info["low_m"][2].get<double>(), -1, 64 * 5 * 0x1p-53);
   EXPECT_LE(info["low_m"][2].get<double>(), -1);
   EXPECT_NE(test::run({"info", path_}).out.find("1 ball: 1 x shape by sphere-trace"), std::string::npos);

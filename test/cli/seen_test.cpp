@@ -31,7 +31,7 @@ class Seen : public testing::Test {
   static double hill(int col, int row) { return std::round(200 + 100 * std::sin(col * 0.5) * std::cos(row * 0.4)); }
   std::string hills() const { return grid("hills.asc", 100, hill); }
 
-  // Output of a run other than its notes; it must succeed.
+  // The warning of a run, or an empty string; the run must succeed.
   std::string warning(const std::string& input, Names options, const std::string& output = "out.png") const {
     Names arguments{"render", input, "-o", scratch_.path(output), "--size", "48x27"};
     arguments.insert(arguments.end(), options.begin(), options.end());

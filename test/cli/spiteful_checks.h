@@ -42,7 +42,7 @@ struct Wanted {
   std::string note{};                   ///< in the other output of `info` and stderr
   bool tiny = false;                    ///< too small for the picture: a warning is due instead
   std::int64_t canvas = 0;              ///< voxels in the boxes of its models, where the file has fewer bytes
-  std::vector<std::string> options{};   ///< of all commands
+  std::vector<std::string> options{};   ///< for all commands
   std::optional<std::int64_t> solid{};  ///< voxels in the world, by `voxelise`
   std::vector<std::string> also{};      ///< other commands to try: `section`, `cast`, `voxelise`
   bool of_option = false;               ///< the error is in an option, which is named instead of the file

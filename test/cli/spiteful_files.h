@@ -62,7 +62,7 @@ inline std::string size_chunk(std::int64_t x, std::int64_t y, std::int64_t z) {
   return chunk("SIZE", numbers({x, y, z}));
 }
 
-/// An XYZI chunk that states the count `count`, if it is not negative.
+/// An XYZI chunk that declares `count` voxels, or the true number if `count` is negative.
 inline std::string dots_chunk(const std::vector<Dot>& dots, std::int64_t count = -1) {
   std::string content = number(count < 0 ? static_cast<std::int64_t>(dots.size()) : count);
   for (const Dot& dot : dots) content += bytes({dot.x, dot.y, dot.z, dot.index});
@@ -120,7 +120,7 @@ inline std::string group(int id, const std::vector<int>& children) {
   return chunk("nGRP", content);
 }
 
-/// A shape of a model for each frame.
+/// A shape with one model per frame.
 inline std::string shape(int id, const std::vector<std::pair<int, Attributes>>& models = {{0, {}}}) {
   std::string content = number(id) + attributes({}) + number(static_cast<std::int64_t>(models.size()));
   for (const auto& [model, frame] : models) content += number(model) + attributes(frame);
@@ -166,7 +166,7 @@ inline std::string qubicle_reds(std::int64_t count) {
   return out;
 }
 
-/// A .kv6 of a solid block of up to 2 voxels a side, so that all are on its surface; states `count` of them.
+/// A .kv6 of a solid block of up to 2 voxels per side, so that all are on its surface; declares `count` of them.
 inline std::string kv6(const Size& size, std::int64_t count, int z_step = 1) {
   std::string out = "Kvxl" + numbers({size[0], size[1], size[2], 0, 0, 0, count});
   for (int column = 0; column < size[0] * size[1]; ++column) {
@@ -177,7 +177,8 @@ inline std::string kv6(const Size& size, std::int64_t count, int z_step = 1) {
   return out;
 }
 
-/// Columns of a .vxl, one span each: the colours of the voxels from `top` down to `bottom`; below them all is solid.
+/// Columns of a .vxl with one span each: the colours of the voxels from `top` down to `bottom`; everything below is
+/// solid.
 inline std::string vxl_columns(int columns, int top, int bottom) {
   std::string column = bytes({0, top, bottom, 0});
   for (int z = top; z <= bottom; ++z) column += bytes({0, 0, 255, 128});

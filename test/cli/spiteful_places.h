@@ -165,7 +165,7 @@ inline SpitefulRasters pictures_and_bands(const SpitefulFiles& f) {
         },
         options, bands);
   };
-  // Without a world file a PNG has no place: relief of 65 km on 23 m.
+  // Without a world file a PNG has no georeference: relief of 65 km on 23 m.
   const std::string wide = plain("wide.tif", GDT_UInt16, grey), narrow = plain("narrow.tif", GDT_Byte, hills());
   const auto bare = [&](const std::string& source, const char* driver, const std::string& name) {
     const std::string copy = f.copy(source, driver, name);

@@ -35,13 +35,13 @@ struct SpitefulRaster {
   std::string kind;  ///< its oddity
   std::vector<std::string> inputs;
   Expected expected = Expected::drawn;
-  std::string words = {};  ///< one of them must be in the notes or in the error, without regard to case: "nodata|hole"
+  std::string words = {};  ///< one of them must be in the notes or in the error, in any case: "nodata|hole"
   Heights heights = {};
   double width_m = std::numeric_limits<double>::quiet_NaN();  ///< from the first to the last column; NaN: any
   std::string size = "24x16";                                 ///< in samples; empty: any
   bool peaks_in_north_east = false;
   std::vector<std::string> options = {};
-  bool may_hang = false;  ///< or take much memory: run with a limit of both
+  bool may_hang = false;  ///< or use much memory: run with limits on both
 };
 
 using SpitefulRasters = std::vector<SpitefulRaster>;
@@ -115,7 +115,7 @@ class SpitefulFiles {
     return path(name);
   }
 
-  /// The same of hills in 16-bit integers, with another CRS and other cells.
+  /// The same for hills in 16-bit integers, with a different CRS and cell size.
   std::string tiff_at(const std::string& name, const std::string& crs, std::array<double, 6> map,
                       const std::vector<double>& samples = hills()) const {
     return tiff(name, GDT_Int16, samples, [&](GDALDataset& dataset) {

@@ -70,16 +70,16 @@ bool has_one_of(const std::string& text, const std::string& words) {
   return words.empty();
 }
 
-// A picture of heights is black where there is no terrain (walls of a plinth included), and grey 1 to 255 where there
-// is: a look apart from those that people see, with the same camera.
+// A picture of heights is black where there is no terrain (including the walls of a plinth), and grey 1 to 255
+// elsewhere. It is a separate picture, from the same camera as the one that people see.
 double share_of_ground(const test::Rgb& heights) {
   std::size_t ground = 0;
   for (std::size_t i = 0; i < heights.bytes.size(); i += 3) ground += heights.bytes[i] > 0;
   return 3.0 * static_cast<double>(ground) / static_cast<double>(heights.bytes.size());
 }
 
-// Where heights have ground, a picture has other colours than the sky's in its upper left corner. Half of them suffice:
-// haze and white summits resemble the sky.
+// Where there is ground in the picture of heights, the visible picture must differ from the sky colour in its upper
+// left corner. Half of the pixels suffice, because haze and white summits resemble the sky.
 bool shows_ground(const test::Rgb& picture, const test::Rgb& heights) {
   int ground = 0, different = 0;
   for (int y = 0; y < heights.height; ++y) {
@@ -335,7 +335,7 @@ TEST(SpitefulRasters, BrokenFiles) {
   judge(test::broken_files(files));
 }
 
-// Besides inputs: files of options.
+// Not only inputs: also files that options name.
 TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
   const test::SpitefulFiles files;
   const std::string terrain = files.tiff("hills.tif", GDT_Int16, test::hills());
@@ -358,7 +358,7 @@ TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
   }
 }
 
-// Beyond the program's memory for four samples.
+// In addition to the memory that the program needs for four samples.
 TEST(SpitefulRasters, MemoryStaysBelowFourTimesTheSamples) {
   const test::SpitefulFiles files;
   const auto peak = [&](const std::string& file) {

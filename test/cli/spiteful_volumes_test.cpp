@@ -157,7 +157,7 @@ TEST(SpitefulVolume, Arrays) {
       "m.npy");
 }
 
-// Files of Qubicle and Voxlap. Either they are read correctly, or the program lists the formats that it reads, and does
+// Files of Qubicle and Voxlap. Either they are read correctly, or the program lists the formats that it reads and does
 // not ask for another copy of an undamaged file.
 
 TEST(SpitefulOthers, Qubicle) {

@@ -204,7 +204,7 @@ TEST(SpitefulScene, DistantModels) {
 }
 
 TEST(SpitefulScene, ManyInstances) {
-  // The walls of a box of 126^3, at 10,000 places.
+  // The walls of a box of 126^3, at 10,000 positions.
   constexpr int kSide = 126;
   std::vector<Dot> walls;
   for (const Dot& dot : dots_of({kSide, kSide, kSide})) {

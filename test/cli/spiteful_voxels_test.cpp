@@ -187,7 +187,7 @@ TEST(SpitefulVox, ForeignChunks) {
   });
 }
 
-// Names are for people: what they contain must neither break JSON nor reach a terminal.
+// Names are free text: their bytes must neither break JSON nor reach a terminal as control codes.
 TEST(SpitefulVox, NamesWithArbitraryBytes) {
   const std::string scene = moved(0, 1, {{}}, 0, {{"_name", "a\x1b[31mb\nc"}}) + shape(1);
   const std::string bytes = vox(kBlock + scene + layer(0, {{"_name", "\xff\xfe\x1b]0;x\x07"}}) +
@@ -231,7 +231,7 @@ TEST(SpitefulVox, TruncatedAtEveryTenthByte) {
   });
 }
 
-// Files of other kinds are not fetched again: that would not help.
+// For files of other kinds, the error does not advise fetching them again: that would not help.
 TEST(SpitefulVox, OtherFormatsNamedVox) {
   // Width, depth and height, then a byte each, 255 empty, and a palette of 6 bits: Voxlap's .vox.
   const std::string slab = numbers({2, 2, 2}) + std::string(8, '\x01') + std::string(768, '\x3f');

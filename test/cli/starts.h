@@ -2,8 +2,8 @@
 // Calls `scarp` without starting it: a process that has loaded the command line and its libraries, and no more, forks
 // itself for each call. Most calls of the tests take less time than loading GDAL's hundred libraries.
 //
-// The process (starter.cpp) communicates over a socket: a call consists of lists of words and limits, its answer of the
-// exit state.
+// The process (starter.cpp) communicates over a socket: a call is sent as lists of words and limits, and its answer is
+// the exit state.
 #pragma once
 
 #include <fcntl.h>

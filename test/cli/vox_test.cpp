@@ -331,7 +331,7 @@ TEST_F(CliVox, EveryLookDiffers) {
   }
 }
 
-// A plate of 3 x 3 with 2 voxels of room: 49 cells, 40 of them with the number of their distance.
+// A plate of 3 x 3 with a margin of 2 voxels: 49 cells, 40 of which show their distance.
 TEST_F(CliVox, SectionPrintsDistances) {
   const std::string svg = path("section.svg");
   const auto count = [](const std::string& text, const std::string& part) {
@@ -367,7 +367,7 @@ TEST_F(CliVox, ErrorNamesOversizedScenes) {
   write_vox(model_, file);
   expect_refused({"render", model_, "-o", path("out.png")}, named);
   expect_refused({"info", model_}, named);
-  // Only info counts hidden ones.
+  // Only `info` counts the hidden voxels.
   file.nodes[0].attributes = {{"_hidden", "1"}};
   write_vox(model_, file);
   expect_refused({"info", model_}, named);

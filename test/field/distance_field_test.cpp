@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Distance fields: the sign is that of sets, values change by a metre per metre, bounds are never exceeded, gradients
-// are those of differences, settings are checked.
+// Distance fields: the sign matches set membership, values change by at most one metre per metre, bounds are never
+// exceeded, gradients match finite differences, settings are checked.
 #include "scarp/field/distance_field.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ dvec3 anywhere(FunctionRandom& random, double reach = 20) {
   return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
 }
 
-// A position near the surface: from anywhere inwards along the gradient.
+// A position near the surface: moves from a random position towards the surface, along the gradient.
 dvec3 near_surface(const DistanceField& field, FunctionRandom& random, double spread = 1e-3) {
   dvec3 p = anywhere(random, 12);
   // Bounds are short by up to a factor of 4 in the zoo.

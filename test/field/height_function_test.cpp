@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions: gradients are those of differences, bounds are never exceeded, settings are checked.
+// Terrain functions: gradients match finite differences, bounds are never exceeded, settings are checked.
 #include "scarp/field/height_function.h"
 
 #include <fmt/format.h>
@@ -30,8 +30,8 @@ TEST(HeightFunction, GradientsMatchFiniteDifferences) {
     int creases = 0;
     for (int i = 0; i < 3000; ++i) {
       const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
-      // Central differences are off by h^2 / 6 times the third derivative: the difference of two of them, h and 2 h, is
-      // three times what the finer one is off by.
+      // The error of a central difference is h^2 / 6 times the third derivative, so the difference between those with
+      // steps h and 2 h is three times the error of the finer one.
       const auto differences = [&](double h) {
         return dvec2(function.value(x + h, y) - function.value(x - h, y),
                      function.value(x, y + h) - function.value(x, y - h)) /
@@ -40,9 +40,10 @@ TEST(HeightFunction, GradientsMatchFiniteDifferences) {
       constexpr double kH = 1e-3;
       const dvec2 coarse = differences(2 * kH), fine = differences(kH);
       const double off = length(coarse - fine);
-      // Two heights over 2 h, in both coordinates, of the fine and half as much of the coarse one: at most 4 / h of
-      // what a height is off by. That is its own rounding, and that of the place x + h, 2^-53 of it, times the slope.
-      // The gradient itself takes fewer than 2^10 roundings of numbers no larger than 1 + slope.
+      // Rounding: two heights over 2 h, in both coordinates, of the fine difference and half as much of the coarse one:
+      // at most 4 / h times the error of a height. That error is the height's own rounding plus the slope times the
+      // rounding of the position x + h, 2^-53 of it. The gradient itself takes fewer than 2^10 roundings of numbers no
+      // larger than 1 + slope.
       const FunctionBound near = function.bound({x - 1, x + 1, y - 1, y + 1});
       const double height_off = near.rounding + 0x1p-53 * (std::abs(x) + std::abs(y) + 1) * near.slope;
       const double rounding = 4 * height_off / kH + 0x1p-43 * (1 + near.slope);
@@ -113,7 +114,7 @@ TEST(HeightFunction, SegmentBoundsHold) {
         Seen seen;
         for (int i = 0; i < 500; ++i) {
           const double t = random.between(t0, t1), q = (t - 0.5 * (t0 + t1)) / (0.5 * size);
-          // t, t1 and the middle are rounded numbers below 2^12: three of 2^-42 over half the size.
+          // t, t1 and the middle are rounded numbers below 2^12: three roundings of 2^-42, over half the size.
           const double rounding_of_q = 3 * 0x1p-42 / (0.5 * size);
           const dvec2 p = origin + direction * t;
           const double h = function.value(p.x, p.y);

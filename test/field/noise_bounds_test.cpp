@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The bounds of noise (NoiseBound) proven: for any lattice values, a derivative of order k in a direction e is at most
-// the sum over the corners of the length of what the corner's direction g is multiplied with,
+// Proves the bounds of noise (NoiseBound): for any lattice values, a derivative of order k in a direction e is at most
+// the sum, over the corners, of the length of the factor of the corner's direction g:
 //
 //   d^k/de^k  w(p) (g . d)  =  g . ( w^(k) d + k w^(k-1) e )        d: from the corner to the place, |g| = |e| = 1
 //
-// (of value noise: the sum of |w^(k)|). The largest such sum over place and direction is found by subdivision with
-// intervals: a box of places and directions is done when its upper end is below the bound, and halved when it is not.
+// (for value noise: the sum of |w^(k)|). The largest such sum over positions and directions is found by subdivision
+// with intervals: a box of positions and directions is done when the upper end of its sum is below the bound; otherwise
+// it is halved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace {
 
 using boost::numeric::square;
 
-// Without optimisation the same proof, of bounds that are less tight and need fewer boxes.
+// Unoptimised builds prove looser bounds in the same way, which takes fewer boxes.
 #ifdef NDEBUG
 constexpr double kLooser = 1;
 #else
@@ -31,8 +32,8 @@ constexpr double kLooser = 1.25;
 #endif
 constexpr int kMostBoxes = 20'000'000;
 
-// The fade and its derivatives over a part of [0, 1/2], where the fade grows, its first derivative grows, its third
-// falls, and its second has its largest value at (3 - sqrt(3)) / 6.
+// The fade and its derivatives over a part of [0, 1/2]. There the fade and its first derivative grow, its third falls,
+// and its second has its maximum at (3 - sqrt(3)) / 6.
 using Derivatives = std::array<Interval, 4>;
 Derivatives fade_over(const Interval& t) {
   const auto at = [](double p, int order) {
@@ -50,15 +51,15 @@ Derivatives fade_over(const Interval& t) {
   }
   return d;
 }
-// The same of 1 - fade.
+// The same for 1 - fade.
 Derivatives rest_of(const Derivatives& d) { return {1.0 - d[0], -d[1], -d[2], -d[3]}; }
 
-// A unit vector whose angle is in an interval of less than a right angle that holds no axis but at its ends.
+// A unit vector whose angle is in an interval of less than a right angle, with no axis inside, only at its ends.
 struct Unit {
   Interval x, y;
 };
 Unit unit_over(const Interval& angle) {
-  // The C library's functions are right within 2 units of the last place: 2^-51.
+  // The C library's functions are accurate to 2 units in the last place: 2^-51.
   const auto around = [](double v) { return Interval(v - 0x1p-51, v + 0x1p-51); };
   return {hull(around(std::cos(angle.lower())), around(std::cos(angle.upper()))),
           hull(around(std::sin(angle.lower())), around(std::sin(angle.upper())))};
@@ -83,7 +84,7 @@ Interval weighed(const Derivatives& w, std::size_t k, const Interval& dx, const 
   return sqrt(square(w[k] * dx + times * w[k - 1] * e.x) + square(w[k] * dy + times * w[k - 1] * e.y));
 }
 
-// On the square lattice. Mirrored and swapped places have the same sums, so x <= y <= 1/2 are all.
+// On the square lattice. Mirrored and swapped positions have the same sums, so x <= y <= 1/2 covers all positions.
 Interval square_sum(NoiseKind kind, std::size_t k, const Box& box) {
   const Unit e = unit_over(box.angle);
   const Derivatives east = fade_over(box.x), west = rest_of(east), north = fade_over(box.y), south = rest_of(north);
@@ -100,8 +101,8 @@ Interval square_sum(NoiseKind kind, std::size_t k, const Box& box) {
   return sum;
 }
 
-// On the triangular one, of side sqrt(2/3), with m = 1/2 - |d|^2, w = m^4 and s = d . e. Turned and mirrored places
-// have the same sums: those nearest to the first corner and on one side of its bisector are all.
+// On the triangular lattice of side sqrt(2/3), with m = 1/2 - |d|^2, w = m^4 and s = d . e. Rotated and mirrored
+// positions have the same sums, so the positions nearest to the first corner and on one side of its bisector cover all.
 Interval simplex_sum(std::size_t k, const Box& box) {
   const Unit e = unit_over(box.angle);
   const Interval side = sqrt(Interval(2.0) / 3.0), height = sqrt(Interval(0.5));
@@ -127,13 +128,13 @@ bool counts(NoiseKind kind, const Box& box) {
 // Number of boxes that prove that no sum is above `bound`; 0 if it cannot be proven.
 int boxes_to_prove(NoiseKind kind, std::size_t k, double bound) {
   std::vector<Box> open;
-  constexpr int kQuadrants = 2;  // e and -e are one
+  constexpr int kQuadrants = 2;  // e and -e give the same sums
   for (int quadrant = 0; quadrant < kQuadrants; ++quadrant) {
     const double half_pi = std::numbers::pi / 2;
-    // Half the side of the triangle, and the height of its middle, a little more.
+    // Half the side of the triangle, and the height of its centre, slightly enlarged.
     const Interval x = kind == NoiseKind::simplex ? Interval(0.0, 0.4083) : Interval(0.0, 0.5);
     const Interval y = kind == NoiseKind::simplex ? Interval(0.0, 0.2358) : Interval(0.0, 0.5);
-    // Values have no direction.
+    // Heights have no direction.
     const Interval angle =
         k == 0 ? Interval(0.0) : Interval(quadrant * half_pi, (quadrant + 1) * half_pi + (quadrant == 1 ? 1e-15 : 0));
     open.push_back({x, y, angle});
@@ -187,7 +188,7 @@ void expect_proven(NoiseKind kind) {
     const int boxes = boxes_to_prove(kind, k, kLooser * bounds[k]);
     EXPECT_GT(boxes, 0) << "order " << k;
     std::printf("order %d: %d boxes\n", static_cast<int>(k), boxes);
-    // A check that the proof is of the right sum: somewhere the sum is nearly the bound.
+    // Checks that the proof uses the right sum: somewhere the sum nearly reaches the bound.
     EXPECT_GE(largest_found(kind, k), 0.95 * bounds[k]) << "order " << k;
   }
 }

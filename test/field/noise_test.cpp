@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Noise: the same bits everywhere, derivatives that are those of differences, bounds that hold for any lattice.
+// Noise: the same bits everywhere, derivatives match finite differences, bounds hold for any lattice.
 #include "scarp/field/noise.h"
 
 #include <gtest/gtest.h>
@@ -40,8 +40,8 @@ TEST(Noise, DerivativesMatchFiniteDifferences) {
       EXPECT_EQ(jet.n, noise(kind, 3, x, y));
       const NoiseJet east = noise_jet(kind, 3, x + h, y), west = noise_jet(kind, 3, x - h, y);
       const NoiseJet north = noise_jet(kind, 3, x, y + h), south = noise_jet(kind, 3, x, y - h);
-      // The error of the difference is h^2 / 6 of the third derivative, some 1e-8; that of second ones over a line of
-      // the lattice, where the third derivative of some kinds jumps, is h / 2 of it.
+      // The error of the difference is h^2 / 6 times the third derivative, some 1e-8. For second derivatives across a
+      // line of the lattice, where the third derivative of some kinds jumps, it is h / 2 times the third derivative.
       EXPECT_NEAR(jet.x, (east.n - west.n) / (2 * h), 1e-7);
       EXPECT_NEAR(jet.y, (north.n - south.n) / (2 * h), 1e-7);
       EXPECT_NEAR(jet.xx, (east.x - west.x) / (2 * h), 1e-2);

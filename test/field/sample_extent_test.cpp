@@ -14,7 +14,7 @@
 namespace scarp {
 namespace {
 
-// Several tiles, those at the east and south borders cut off, and not by a multiple of four rows.
+// Several tiles; those at the east and south borders are clipped, and not to a multiple of four rows.
 constexpr int kCols = 203, kRows = 151;
 
 template <class T>
@@ -92,7 +92,7 @@ TYPED_TEST(SampleExtentTest, ForgetsOverwrittenExtremes) {
 TYPED_TEST(SampleExtentTest, RescansFullyOverwrittenTiles) {
   Ground<TypeParam> ground({});
   ground.fill({64, 64, 64, 64}, 900);
-  ground.fill({128, 128, kCols - 128, kRows - 128}, 100);  // cut off by both borders
+  ground.fill({128, 128, kCols - 128, kRows - 128}, 100);  // clipped by both borders
   ground.fill({60, 60, kCols - 60, kRows - 60}, 700);
   ground.fill({0, 0, kCols, kRows}, 300);
   EXPECT_EQ(ground.extent().min, 300);

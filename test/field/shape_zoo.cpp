@@ -222,7 +222,7 @@ struct Holds {
       const double period = r.period[static_cast<int>(i)];
       if (period == 0) continue;
       const double near = std::round(p[static_cast<int>(i)] / period), count = r.count[i];
-      // Shapes are at any position: more than enough copies.
+      // Shapes may be at any position: more than enough copies.
       from[i] = near - 20, to[i] = near + 20;
       if (count > 0) from[i] = -count, to[i] = count;
     }

@@ -15,15 +15,17 @@ struct NamedShape {
   Shape shape;
 };
 
-/// All solids, all operations, grounds of both kinds; within some 20 m of the origin.
+/// All solids, all operations, both kinds of ground; within some 20 m of the origin.
 std::vector<NamedShape> shape_zoo();
 
 /// Solids of one or two metres in size.
 Shape random_solid(FunctionRandom& random);
-/// Nested at most `depth` deep. Without `smooth` its solid is that of sets, and solid_holds() decides it.
+/// Trees nested at most `depth` deep. Without `smooth` the solid follows from set operations, and solid_holds() decides
+/// it.
 Shape random_shape(FunctionRandom& random, int depth, bool smooth);
 
-/// Whether a position is in the solid: by the inequality of each solid, and by sets. No smooth operations.
+/// Whether a position is in the solid: by the inequality of each solid, and by set operations. Without smooth
+/// operations.
 bool solid_holds(const Shape& shape, const dvec3& p);
 
 }  // namespace scarp::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One terrain function of each kind, and random numbers for them.
+// One terrain function of each kind, and a random generator for tests.
 #pragma once
 
 #include <random>
@@ -13,7 +13,7 @@ namespace scarp::test {
 struct NamedFunction {
   std::string name;
   Function function;
-  bool smooth;  ///< no creases: the gradient is everywhere that of differences
+  bool smooth;  ///< no creases: finite differences match the gradient everywhere
 };
 
 /// All nodes, all kinds of noise; features of 10 to 3000 m, heights of some hundred.

@@ -62,7 +62,7 @@ TEST_P(Grids, EditsChangeOnlyTheirVoxels) {
   }
 }
 
-// Many at once, beyond the grid and twice in one place as well: as one after the other.
+// Setting many voxels at once, some outside the grid and some twice, equals setting them one after another.
 TEST_P(Grids, SettingManyVoxelsMatchesSettingEach) {
   Random random(5);
   for (int round = 0; round < 4; ++round) {
@@ -281,7 +281,7 @@ TEST(VoxelGrid, FillsGroundBelowItsTops) {
   EXPECT_THROW(ground_voxels({65536, 32768, 32768}, tops, 8, none), Error);
 }
 
-// Memory follows the solid voxels, not the box.
+// Memory use depends on the solid voxels, not on the box.
 TEST(VoxelGrid, StoresNoEmptyPages) {
   VoxelGrid grid({1024, 1024, 1024});
   EXPECT_LT(grid.bytes(), 2u << 20);

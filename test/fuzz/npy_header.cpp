@@ -29,7 +29,8 @@ void parse(std::string_view bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   parse({reinterpret_cast<const char*>(data), size});
-  // A valid length is hard to guess. The header ends where its memory ends: a byte read too many is found.
+  // A valid length is hard to guess. The header ends at the end of its memory, so that reading a byte too many is
+  // found.
   const std::string_view dictionary(reinterpret_cast<const char*>(data), std::min<std::size_t>(size, 0xffff));
   std::vector<char> file{'\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0};
   file.push_back(static_cast<char>(dictionary.size() & 255));

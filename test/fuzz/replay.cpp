@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Feeds a fuzz target with the files of a folder, each whole and cut off at every length: replay FOLDER
+// Runs a fuzz target on the files of a folder, each whole and truncated at every length: replay FOLDER
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

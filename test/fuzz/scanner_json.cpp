@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using scarp::fuzz::require;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  // The path may be a file, and a device is one without an end.
+  // The path of a scanner may name any file, and a device has no end.
   if (text.find("dev") != std::string_view::npos || text.find('\\') != std::string_view::npos) return 0;
   try {
     const scarp::ScannerFile file = scarp::parse_scanner(text, "no-such-folder");

@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const int bands : {3, 4}) {
     const auto pixel_bytes = static_cast<std::size_t>(bands);
-    // Copies of the exact sizes: a byte read or a sample written too many is found.
+    // Copies of the exact sizes, so that reading a byte or writing a sample too many is found.
     const std::vector<std::uint8_t> pixels(data, data + size / pixel_bytes * pixel_bytes);
     std::vector<float> samples(pixels.size() / pixel_bytes);
     scarp::decode_rgb(pixels.data(), samples.size(), bands, samples.data());

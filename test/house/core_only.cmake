@@ -1,4 +1,4 @@
-# A project that adds Scarp as a subfolder gets scarp::core and needs nothing of files, pictures and devices:
+# A project that adds Scarp as a subfolder gets scarp::core and needs no library for files, pictures or devices:
 #   cmake -D ROOT=<checkout> -D WORK=<scratch folder> -D GENERATOR=... -D CXX=<compiler> -P core_only.cmake
 cmake_minimum_required(VERSION 3.25)
 

@@ -1,4 +1,5 @@
-# What find_package(scarp) looks for is said in doc/library/using.md, by Debian's name, and installed by ./dev setup:
+# doc/library/using.md names each package that find_package(scarp) looks for, by Debian's name, and ./dev setup installs
+# it:
 #   cmake -D ROOT=<checkout> -P dependencies.cmake
 cmake_minimum_required(VERSION 3.25)
 

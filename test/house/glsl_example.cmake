@@ -1,10 +1,11 @@
-# Builds examples/glsl against nothing but the shader texts of an installed tree, and runs it:
+# Builds examples/glsl against only the shader texts of an installed tree, and runs it:
 #   cmake -D ROOT=<checkout> -D PREFIX=<installed tree> -D WORK=<scratch folder> -D GENERATOR=... -D CXX=<compiler>
 #         -P glsl_example.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# Counted in doubles, each ray in 500 steps per unit of time: SHADOWS, of which GRAZING dip into the ground by less than
-# single precision tells for a ray from the surface (scarp_rounding() of ray_frame.glsl.h: at most 0.0005 here).
+# Counted in doubles, with 500 steps per unit of time for each ray: SHADOWS rays are in shadow, and GRAZING of these dip
+# into the ground by less than single precision resolves for a ray from the surface (scarp_rounding() of
+# ray_frame.glsl.h: at most 0.0005 here).
 set(SHADOWS 42428)
 set(GRAZING 64)
 
@@ -21,7 +22,7 @@ file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} -S ${ROOT}/examples/glsl -B ${WORK}/build -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${PREFIX}
     -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-# It has read the installed texts, not those of the checkout.
+# It has read the installed texts, not those in the checkout.
 file(STRINGS ${WORK}/build/CMakeCache.txt found REGEX "^SCARP_GLSL:")
 if(NOT found MATCHES "=${PREFIX}/")
   message(FATAL_ERROR "the example reads other shader texts than those just installed: ${found}")

@@ -1,7 +1,7 @@
-# Installs the built tree and builds a project outside of it against what was installed:
+# Installs the built tree and builds a project outside the checkout against it:
 #   cmake -D ROOT=<checkout> -D BUILD=<build folder> -D WORK=<scratch folder>
 #         -D GENERATOR=... -D CXX=<compiler> -D TYPE=<build type> -P outside.cmake
-# With -D PREFIX=<tree> in place of BUILD, takes what is installed there.
+# With -D PREFIX=<tree> instead of BUILD, uses the tree that is already installed there.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -30,7 +30,7 @@ outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE
         -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -D CMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON)
 outside(scarp)
 
-# The same programs by pkg-config.
+# The same programs, built with pkg-config.
 find_program(PKG_CONFIG pkg-config)
 if(PKG_CONFIG)
   file(GLOB_RECURSE pc_file ${PREFIX}/lib/*scarp-core.pc)
@@ -45,8 +45,8 @@ if(PKG_CONFIG)
   endforeach()
 endif()
 
-# Every installed header, and the templates that the programs instantiate, with the warnings that careful programs use, by the
-# compilers that are here. clang's -Wconversion includes changes of sign, g++'s does not.
+# Every installed header, and the templates that the programs instantiate, compiled with strict warnings by every available
+# compiler. clang's -Wconversion includes sign changes, g++'s does not.
 file(GLOB_RECURSE installed RELATIVE ${PREFIX}/include ${PREFIX}/include/*.h)
 list(FILTER installed EXCLUDE REGEX "\\.glsl\\.h$|glsl_cpp\\.h$")
 set(every_header "")
@@ -70,7 +70,7 @@ foreach(file naive.glsl relaxed.glsl lipschitz.glsl fixed_step.glsl max_mip.glsl
   endif()
 endforeach()
 
-# What scarp.h declares and scarp::core lacks is named by the linker.
+# The linker names what scarp.h declares and scarp::core lacks.
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core --target outside_door OUTPUT_VARIABLE output ERROR_VARIABLE output
                 RESULT_VARIABLE status)
 if(status EQUAL 0 OR NOT output MATCHES "undefined (reference|symbol).*scarp::render\\(")

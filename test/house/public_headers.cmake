@@ -1,4 +1,4 @@
-# Public headers are those that users need, and no others:
+# The public headers are exactly those that users need:
 #   cmake -D ROOT=<checkout> -D PUBLIC_HEADERS=<file with one header per line> -P public_headers.cmake
 # A list APP_HEADERS of the same form is beside it, in app_headers.txt (cmake/Station.cmake says what both are).
 # 1. A header is public if README.md, doc/user or doc/library names it, an example or test/house/outside includes it, or

@@ -1,4 +1,4 @@
-# README shows examples/hello_terrain.cpp as it is compiled, but for its licence line:
+# README shows examples/hello_terrain.cpp as it is compiled, except for its licence line:
 #   cmake -D ROOT=<checkout> -P readme.cmake
 cmake_minimum_required(VERSION 3.25)
 file(READ ${ROOT}/examples/hello_terrain.cpp example)

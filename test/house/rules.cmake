@@ -1,4 +1,4 @@
-# The rules of the house, checked on the sources' text:
+# The rules of the repository, checked on the text of its sources:
 #   cmake -D ROOT=<checkout> -D PUBLIC_HEADERS=<file with one header per line> -P rules.cmake
 # The list of the private headers for app/ and bench/ is beside it, in app_headers.txt (public_headers.cmake checks both).
 # 1. Includes go one way along the stations.        2. scarp::core includes neither GDAL, PROJ, libpng nor OpenEXR.
@@ -9,7 +9,7 @@
 # 7. The oracles share no code with the marches that they judge.
 # 8. In march/, only the tables and the queries include the tables: a technique does not depend on the others.
 # 9. Nothing that scarp/scarp.h includes, at any depth, needs GDAL, Vulkan or another library that scarp::core is free of.
-# 10. Scripts with `pipefail` pipe nothing into head: what writes there may be ended by SIGPIPE, or not, and the script with it.
+# 10. Scripts with `pipefail` never pipe into head: the writing program may or may not end by SIGPIPE, and the script with it.
 # 11. Rooms (folders of scarp/ and app/, header and source together) include one another one way only, without cycles.
 # Before it judges the checkout, the check proves itself on a tree with one breach of each rule.
 cmake_minimum_required(VERSION 3.25)

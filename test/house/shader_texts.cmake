@@ -1,12 +1,11 @@
-# The shader texts that are installed say what they are, function by function, and every number that a march is given has its
-# unit:
+# The installed shader texts describe every function, and state the unit of every number that a march takes:
 #   cmake -D ROOT=<checkout> -D TEXTS=<a,b,...> -P shader_texts.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# What hosts fill in, and read.
+# Members that hosts fill in or read.
 set(spoken_structs ScarpField ScarpRay ScarpHit ScarpSampling ScarpLipschitzLocal ScarpSphereTrace)
 
-# check(FILE NAME out SILENT out FUNCTIONS): what has no comment, and how many functions there are.
+# check(FILE NAME out SILENT out FUNCTIONS): the items without a comment, and the number of functions.
 function(check file name silent count)
   file(READ ${file} text)
   # Semicolons and brackets are list syntax to CMake.

@@ -1,5 +1,5 @@
-# What the command line is without Vulkan, in a build that has it: no file asks for a header that is not there then, and the files that
-# are other then compile (the target without_vulkan). The stations are built without it in `tsan`.
+# Checks the command line without Vulkan, in a build that has it: no file includes a header that such a build lacks, and the files that
+# differ there compile (the target without_vulkan). `tsan` builds the stations without Vulkan.
 #   cmake -D ROOT=<checkout> -D BUILD=<build folder> -P without_vulkan.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -8,7 +8,7 @@ function(check file result)
   file(STRINGS ${file} lines REGEX "^#")
   set(found ${${result}})
   set(depth 0)
-  set(vulkan 0)  # the depth at which SCARP_VULKAN was asked for; 0: not
+  set(vulkan 0)  # the depth at which SCARP_VULKAN was tested; 0: not inside
   foreach(line IN LISTS lines)
     if(line MATCHES "^#if")
       math(EXPR depth "${depth} + 1")
@@ -41,7 +41,7 @@ endif()
 
 set(breaches "")
 file(GLOB files ${ROOT}/app/cli/*.h ${ROOT}/app/cli/*.cpp)
-list(REMOVE_ITEM files ${ROOT}/app/cli/commands/devices.cpp)  # is built with Vulkan alone
+list(REMOVE_ITEM files ${ROOT}/app/cli/commands/devices.cpp)  # is built with Vulkan only
 foreach(file IN LISTS files)
   check(${file} breaches)
 endforeach()
