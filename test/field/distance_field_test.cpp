@@ -30,7 +30,7 @@ dvec3 anywhere(FunctionRandom& random, double reach = 20) {
   return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
 }
 
-// A position near the surface: moves from a random position towards the surface, along the gradient.
+// A position near the surface, reached from a random position along the gradient.
 dvec3 near_surface(const DistanceField& field, FunctionRandom& random, double spread = 1e-3) {
   dvec3 p = anywhere(random, 12);
   // Bounds are short by up to a factor of 4 in the zoo.

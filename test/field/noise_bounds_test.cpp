@@ -2,7 +2,7 @@
 // Proves the bounds of noise (NoiseBound): for any lattice values, a derivative of order k in a direction e is at most
 // the sum, over the corners, of the length of the factor of the corner's direction g:
 //
-//   d^k/de^k  w(p) (g . d)  =  g . ( w^(k) d + k w^(k-1) e )        d: from the corner to the place, |g| = |e| = 1
+//   d^k/de^k  w(p) (g . d)  =  g . ( w^(k) d + k w^(k-1) e )        d: from the corner to the point, |g| = |e| = 1
 //
 // (for value noise: the sum of |w^(k)|). The largest such sum over positions and directions is found by subdivision
 // with intervals: a box of positions and directions is done when the upper end of its sum is below the bound; otherwise
@@ -134,7 +134,7 @@ int boxes_to_prove(NoiseKind kind, std::size_t k, double bound) {
     // Half the side of the triangle, and the height of its centre, slightly enlarged.
     const Interval x = kind == NoiseKind::simplex ? Interval(0.0, 0.4083) : Interval(0.0, 0.5);
     const Interval y = kind == NoiseKind::simplex ? Interval(0.0, 0.2358) : Interval(0.0, 0.5);
-    // Heights have no direction.
+    // The height itself (order 0) has no direction.
     const Interval angle =
         k == 0 ? Interval(0.0) : Interval(quadrant * half_pi, (quadrant + 1) * half_pi + (quadrant == 1 ? 1e-15 : 0));
     open.push_back({x, y, angle});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each set of instructions that the build has and the machine can run, for tests of code that is compiled once for
-// each.
+// Every instruction set that the build has and the machine can run, for tests of code that is compiled once for each.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@ inline std::vector<std::int64_t> instruction_sets() {
   return sets;
 }
 
-/// During its lifetime; afterwards the default of the machine applies again.
+/// Selects an instruction set during its lifetime; afterwards the machine's default applies again.
 class InstructionSet {
  public:
   explicit InstructionSet(std::int64_t set) { hwy::SetSupportedTargetsForTest(set); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// lipschitz: it never passes the surface, on any field and ray, and says so when it gives up.
+// lipschitz: it never passes the surface, on any field and ray, and reports when it gives up.
 #include "scarp/march/height/height_sampling.h"
 #include "scarp/march/sampling/shrink_factor.h"
 
@@ -52,8 +52,8 @@ TEST(Lipschitz, AcceptsAShrinkFactorInsteadOfTheSlope) {
   EXPECT_THROW(validate(settings), Error);
 }
 
-// Like shaders whose factor was found by trial and error: rays pass through slopes, and hit where they are found under
-// the ground.
+// Like shaders whose factor was found by trial and error: rays pass through slopes, and hit where they are found to be
+// below the ground.
 TEST(Lipschitz, HitsBelowGroundWithAnUnprovenFactor) {
   const HeightField field = waves();
   const MaxPyramid pyramid(field);
@@ -96,7 +96,7 @@ TEST(Lipschitz, NeverPassesTheSurface) {
   int hits = 0, exhausted = 0, oracle_hits = 0;
   for (const FieldKind& fields : spiteful_fields()) {
     for (const RayKind& rays : spiteful_rays()) {
-      // Their squares overflow: the sampling marches are not made for them.
+      // Their squares overflow, which the sampling marches do not support.
       if (rays.name == "a direction of extreme length") continue;
       Random random(17);
       for (int f = 0; f < kFields; ++f) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The effect of refinement on the hits of naive, fixed-step and relaxed over a height field, by `exhaustive`.
+// The effect of refinement on the hits of naive, fixed-step and relaxed over a height field, judged by `exhaustive`.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,7 @@ struct RefinementErrors {
 /// Traces rays with a march of these settings.
 using CastAll = std::function<std::vector<Hit>(const HeightField&, std::span<const Ray>, const MarchSettings&)>;
 
-/// Rays down to hills, which `cast` answers without refinement and with this one.
+/// Casts rays down to hills, without refinement and with the given one.
 RefinementErrors refinement_errors(std::string_view march, Refinement refinement, const CastAll& cast);
 
 }  // namespace scarp::test

@@ -12,18 +12,18 @@
 namespace scarp::test {
 namespace {
 
-// Rounding unit of floats, 2^-24, and the products of roundings: at most 2^10 in a number.
+// Rounding unit of floats, 2^-24, including products of roundings: a number has at most 2^10 of them.
 constexpr double kUnit = 0x1p-24 * (1 + 0x1p-10);
 // Roundings, in units: of the length of the direction and its inverse; of lipschitz' factor.
 constexpr double kLength = 2.5, kInverse = kLength + 1, kShrink = kLength + 3 + 2;
 
-// A bound above this share of the range decides nothing: on steep ground, where the rule steps back and forth, small
+// A bound above this fraction of the range decides nothing: on steep ground, where the rule steps back and forth, small
 // differences grow.
 constexpr double kLost = 0x1p-10;
 
 constexpr int kMiss = 0, kHit = 1, kBelow = 2, kExhausted = 3;
 
-// Values at a time, and the bound of how much the text's values differ if its time differs by `off`.
+// Values at a time, and a bound on the difference of the shader's values if its time differs by `off`.
 struct Point {
   double h, off;     // height above the ground, in metres
   double low, high;  // of dh/dt around the time
@@ -42,7 +42,7 @@ class Follower {
   EasyAnswers fixed_step();
 
  private:
-  // The slopes are those of the ground around the place, or of the steepest ground.
+  // The slopes are those of the ground around the position, or of the steepest ground.
   Point at(double t, double off, bool around) const {
     const dvec3 d = ray_.direction, p = ray_.at(t);
     // origin + t * direction: the product and the sum, on each axis.
@@ -65,19 +65,19 @@ class Follower {
     }
     const double height = function_.value(p.x, p.y), by_time = point.steepest() * off;
     point.h = p.z - height;
-    // The ground at the moved place, rounded, and the difference.
+    // The ground at the displaced position, rounded, and the difference.
     point.off = by_time + z + ground.slope * std::hypot(x, y) + 2 * ground.rounding +
                 kUnit * (std::abs(height) + by_time + std::abs(d.z) * off) + kUnit * (std::abs(point.h) + by_time);
     return point;
   }
-  // Bounds of a product with `share`, rounded so often.
+  // Bound of a product with `share` that is rounded this often.
   static double scaled(const Point& point, double share, double roundings) {
     return share * point.off + roundings * kUnit * share * (std::abs(point.h) + point.off);
   }
   bool surely_over(double t, double off) const { return t - off > ray_.t_max; }
   bool maybe_over(double t, double off) const { return t + off > ray_.t_max; }
 
-  // Records an answer that the text may give, and that of the rule in double if it is the first it gives.
+  // Records an answer that the shader may give, and the answer of the rule in double if it is the first one.
   void may(int status, double t, double off) { answers_.allowed.push_back({status, t, off}); }
   void does(int status, double t) {
     if (decided_) return;
@@ -143,7 +143,7 @@ EasyAnswers Follower::naive() {
     if (by_height + by_height_off >= least - least_off) {
       if (h + h_off > 0) growth = std::max({growth, std::abs(1 + low), std::abs(1 + high)});
       if (h - h_off < 0) growth = std::max({growth, std::abs(1 - low), std::abs(1 - high)});
-      // The part of the bound that is not the time's.
+      // The part of the bound that does not come from the time.
       rounding = by_height_off - s.step_factor * per_metre * point.steepest() * off;
     }
     if (by_height - by_height_off <= least + least_off) {
@@ -182,7 +182,7 @@ EasyAnswers Follower::lipschitz() {
   const LipschitzSettings& s = settings_.lipschitz;
   const ShrinkFactor factor = shrink_factor(s, function_.bound_everywhere().slope, 0x1p-50);
   const double shrink = factor.factor / speed_;
-  // The CPU subtracts its rounding, the text does not.
+  // The CPU subtracts its rounding, the shader does not.
   const double rounding = FunctionRay(function_, ray_, FunctionUse::march).rounding();
   double t = 0, off = 0;
   for (int i = 0; !ends(i, s.max_steps, t, off); ++i) {
@@ -205,7 +205,7 @@ EasyAnswers Follower::fixed_step() {
   const FixedStepSettings& s = settings_.fixed_step;
   const double dt = settings_.function.step / speed_;
   double t_before = 0, h_before = 0, off_before = 0, h_off_before = 0;
-  bool may_be_above = false, is_above = false;  // the last sample; in the text, and in double
+  bool may_be_above = false, is_above = false;  // the last sample, in the shader and in double
   bool may_begin_below = false, may_not = true, begins_below = false;
   double t = 0, off = 0;
   for (int i = 0; i < s.max_steps; ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Answers that the easy texts of naive, fixed-step, relaxed and lipschitz (march/sampling/*_easy.glsl) may give in
-// floats. The judge follows the rule in double, point by point, and with each time a bound of how far the text's own
-// time is from it (doc/dev/numerics.md, "The easy texts over functions"). Where a decision is within its bound, both
-// answers count.
+// floats. The judge follows the rule in double, point by point, and keeps with each time a bound on its distance from
+// the shader's own time (doc/dev/numerics.md, "The easy texts over functions"). Where a decision is within its bound,
+// both answers count.
 #pragma once
 
 #include <string>
@@ -24,19 +24,19 @@ struct TimedStatus {
 /// The answers of one ray.
 struct EasyAnswers {
   TimedStatus exact;                 ///< of the rule in double
-  std::vector<TimedStatus> allowed;  ///< of the text; one, unless a decision was within its bound
-  bool lost = false;                 ///< the bound became too wide to go on: the text may also give other answers
+  std::vector<TimedStatus> allowed;  ///< of the shader; one, unless a decision was within its bound
+  bool lost = false;                 ///< the bound became too wide to go on: the shader may also give other answers
 
-  /// Empty if the text may give this answer, otherwise the reason.
+  /// Empty if the shader may give this answer, otherwise the reason.
   std::string objection(int status, double t) const;
 };
 
-/// Follows a ray from t = 0 to ray.t_max, all of whose numbers are floats. The ground of the text is function.value()
-/// at a float position, rounded to float. `march`: naive, fixed-step, relaxed, lipschitz.
+/// Follows a ray from t = 0 to ray.t_max, all of whose numbers are floats. The shader's ground is function.value() at a
+/// float position, rounded to float. `march`: naive, fixed-step, relaxed, lipschitz.
 EasyAnswers easy_answers(std::string_view march, const MarchSettings& settings, const HeightFunction& function,
                          const Ray& ray);
 
-/// Whether the text may hit at t by its own rule, whatever points came before. fixed-step: always, as its points are
+/// Whether the shader may hit at t by its own rule, whatever points came before. fixed-step: always, as its points are
 /// known beforehand.
 bool may_hit_at(std::string_view march, const MarchSettings& settings, const HeightFunction& function, const Ray& ray,
                 double t);

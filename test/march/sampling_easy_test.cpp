@@ -103,7 +103,7 @@ std::vector<NamedGround> grounds() {
 
 class EasySampling : public testing::TestWithParam<std::string> {};
 
-TEST_P(EasySampling, GivesTheAnswersOfTheCpu) {
+TEST_P(EasySampling, MatchesTheCpu) {
   const std::string& march = GetParam();
   const MarchSettings settings;
   for (const NamedGround& ground : grounds()) {
@@ -164,7 +164,7 @@ TEST_P(EasySampling, ReportsEachStatus) {
   float t = 0;
   EXPECT_EQ(over_plane(march, settings, 40, 0, t), glsl::kScarpMiss);
   EXPECT_EQ(over_plane(march, settings, 40, 1, t), glsl::kScarpHit);
-  EXPECT_NEAR(t, 40, march == "fixed-step" ? 1e-5 : 0.35);  // 0.0015 of the way, 204 m, over the sine of 0.196
+  EXPECT_NEAR(t, 40, march == "fixed-step" ? 1e-5 : 0.35);  // 0.0015 of the distance, 204 m, over the sine of 0.196
   const bool hits_at_start = march == "naive";
   EXPECT_EQ(over_plane(march, settings, -1, 0, t), hits_at_start ? glsl::kScarpHit : glsl::kScarpBelow);
   settings.naive.max_steps = settings.relaxed.max_steps = settings.lipschitz.max_steps = 3;
@@ -174,7 +174,7 @@ TEST_P(EasySampling, ReportsEachStatus) {
 }
 
 // Steps of the full height, as for flat ground, lead below a slope.
-TEST(EasyLipschitz, IsExhaustedBelowGroundThatIsSteeperThanItsSlope) {
+TEST(EasyLipschitz, IsExhaustedBelowGroundSteeperThanItsSlope) {
   const HeightFunction steep(make_function(Plane{0, 2, 0}));
   glsl::host_ground = &steep;
   const Ray ray{{-50, 0, 30}, {1, 0, 0}, 0, 1000};
@@ -185,7 +185,7 @@ TEST(EasyLipschitz, IsExhaustedBelowGroundThatIsSteeperThanItsSlope) {
   EXPECT_LE(t, 65);
 }
 
-// For pasting: no preprocessor, no suffixes of literals, nothing that its reader does not know.
+// For pasting: no preprocessor, no literal suffixes, nothing that a reader does not know.
 TEST_P(EasySampling, SourceIsShortAndSelfContained) {
   std::string name = GetParam();
   std::replace(name.begin(), name.end(), '-', '_');

@@ -130,7 +130,7 @@ TEST(Relaxed, FollowsItsRecurrence) {
 }
 
 TEST(Relaxed, ReportsExhaustionRatherThanAHit) {
-  // Level flight at a height that 300 steps of 0.4 h do not bring to the border.
+  // A level ray at a height from which 300 steps of 0.4 h do not reach the border.
   const HeightField field = flat();
   EXPECT_EQ(march_relaxed({&field, nullptr}, {{0, 50, 0.5}, {1, 0, 0}}).status, HitStatus::exhausted);
 }
@@ -159,7 +159,7 @@ TEST(SamplingMarches, RefineTheirHits) {
   }
 }
 
-// From over a hole there is no clearance to refine from, and a line that ends over one leaves the hit where it was.
+// Over a hole there is no clearance to refine from, and a secant that ends over one leaves the hit where it was.
 TEST(SamplingMarches, DoNotRefineAcrossHoles) {
   constexpr float kNodata = -99;
   std::vector<float> samples(101 * 101, 0.f);

@@ -54,7 +54,7 @@ std::string sampling_objection(std::string_view march, const MarchSettings& sett
     if (on_surface) return {};
     const double shrink = 1 / std::hypot(1.0, slope);
     if (hit.status == HitStatus::miss && !judge.may_miss()) return "passes a hit";
-    // Within rounding it may still be on either side.
+    // Within rounding the ray may still be on either side.
     const double near = (0x1p-20 + settings.lipschitz.tolerance) * travelled / metres_per_t;
     if ((hit || hit.status == HitStatus::exhausted) && !judge.may_pass(hit.t - near)) return "passes a hit before";
     // The distance travelled is a float.

@@ -25,7 +25,7 @@ inline HeightField waves() {
   }
   return HeightField::own(samples, 129, 129);
 }
-/// The same without an end.
+/// The same waves as a function, without a border.
 inline Function endless_waves() { return make_function(Sines{{{kWaveHeight, kWavelength, 0, 0}}}); }
 
 /// Rays that descend to them from above, 0.1 to 1 metre per metre.
@@ -41,7 +41,7 @@ inline std::vector<Ray> rays_over_waves(int count) {
   return rays;
 }
 
-/// Fails unless all rays hit, many behind the first ground, and some of these under the ground.
+/// Fails unless all rays hit, many of them beyond the first ground, and some of these below the ground.
 inline void expect_hits_under_the_ground(const HeightField& field, const std::vector<Ray>& rays,
                                          const std::vector<Hit>& hits) {
   int late = 0, under = 0, missed = 0;

@@ -64,7 +64,8 @@ TEST(FunctionMarches, ConservativeMarchesLoseNoHits) {
       expect_nothing_lost(named, judge, ray, march_lipschitz(function, ray), 0, global);
       expect_nothing_lost(named, judge, ray, march_lipschitz_local(function, ray), kTolerance, local);
     }
-    // The judge decides nearly always, and lipschitz-local agrees with it: not only conservative, but right.
+    // The judge nearly always decides, and lipschitz-local agrees with it: the march is not only conservative, but
+    // correct.
     EXPECT_LE(undecided, 1 + kRays / 500) << named.name;
     EXPECT_GE(crossings, kRays / 4) << named.name;
     EXPECT_LE(local.exhausted, kRays / 500) << named.name;
@@ -253,8 +254,8 @@ TEST(FunctionMarches, PresetsSetTheDocumentedValues) {
   EXPECT_NEAR(t, 102, 1e-12);
   EXPECT_EQ(steps("castle", t), 2u);
   EXPECT_EQ(t, 102);
-  // It would approach the ramp for ever without the minimum step, 2^-40 of the distance: it is below it by no more than
-  // that.
+  // Without the minimum step, 2^-40 of the distance, it would approach the ramp for ever: it ends below the ramp by no
+  // more than that.
   EXPECT_LE(steps("snowy", t), 64u);
   EXPECT_TRUE(t > 102 && t <= 102 + 200 * 0x1p-40);
   EXPECT_THROW(find_march_preset("comanche"), Error);
@@ -304,7 +305,7 @@ TEST(FunctionMarches, FixedStepCountsItsSamples) {
   hit = march_fixed_step(ramp, ray, settings, &stats);
   EXPECT_EQ(hit.t, 60);
   EXPECT_EQ(stats.steps, 10u);
-  // A ray that starts below the ramp is below; one that rises above it and enters again is not.
+  // A ray that starts below the ramp is reported as below; a ray that rises above it and enters again is not.
   EXPECT_EQ(march_fixed_step(ramp, {{10, 0, 2}, {1, 0, 0}, 0, 60}, settings).status, HitStatus::below);
   EXPECT_EQ(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 60}, {}).status, HitStatus::below);
   EXPECT_TRUE(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 160}, {}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions in single precision: the shaders' text, compiled as C++, against doubles. Lattices to the bit,
-// heights and bounds within what field/function_single.h derives, and the marches by what follows from that.
+// Terrain functions in single precision: the shader text, compiled as C++, against doubles. Lattices match to the bit,
+// heights and bounds to within the errors that field/function_single.h derives, and marches to within what follows from
+// these.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +60,7 @@ class Program {
   glsl::ScarpProgram program_;
 };
 
-// Places that 48 bits hold, near the origin and far away.
+// Positions that 48 bits can hold, near the origin and far away.
 double random_place(FunctionRandom& random) {
   const double reach = std::exp2(random.between(0, 30));
   return value(two(random.between(-reach, reach)));
@@ -161,7 +162,7 @@ TEST(FunctionsInShaders, BoundsHold) {
       ASSERT_GE(static_cast<double>(proof.begin_most), begin) << named.name << ": " << s0 << " to " << s1;
       ASSERT_LE(static_cast<double>(proof.end), end) << named.name << ": " << s0 << " to " << s1;
       ASSERT_GE(static_cast<double>(proof.end_most), end) << named.name << ": " << s0 << " to " << s1;
-      // Where a segment shrinks to a point, the bounds are as good as heights are.
+      // Where a segment shrinks to a point, the bounds are as accurate as heights are.
       const glsl::ScarpProof point = glsl::scarp_proof(*program, prepared.ray, 0, s0, s0);
       const double own =
           0x1p-20 * std::abs(clearance(static_cast<double>(s0))) + 0x1p-12 * static_cast<double>(point.half_);

@@ -78,8 +78,8 @@ TEST_F(FunctionsOnDevice, MarchesMatchWithinSinglePrecision) {
   }
 }
 
-// Invocations share a vector and its loop iterations, and reach their last evaluations at different steps: the longest
-// program, and the most of these.
+// Invocations share a vector and its loop iterations, and reach their last evaluations at different steps: tests the
+// longest program, and the largest number of these evaluations.
 TEST_F(FunctionsOnDevice, RaysDoNotAffectNeighbours) {
   const int kTogether = cases(16, 16, 4);
   Fractal fractal{.damping = 0.1, .octaves = {kMostOctaves, kMostOctaves, kMostOctaves}};
@@ -111,7 +111,8 @@ TEST_F(FunctionsOnDevice, RaysDoNotAffectNeighbours) {
   }
 }
 
-// castle ends within a millimetre of the ground, less than a float may be off: its rays to the sun start there.
+// castle stops within a millimetre of the ground, which is less than the error of a float: its rays to the sun start
+// there.
 TEST_F(FunctionsOnDevice, RaysFromTheSurfaceEscape) {
   const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
   const DeviceFunction on_device(device(), hills);

@@ -69,7 +69,7 @@ TEST_F(BatchesOnDevice, MatchWhenSpecialisedForTheField) {
   DeviceHeightMarch any_field(device(), "max-mip"), in_pieces(device(), "max-mip", 5);
   Random random(3);
   int runs = 0;
-  // One field each of different flags: compiling a march for lavapipe takes longer than running it.
+  // One field for each set of flags: compiling a march for lavapipe takes longer than running it.
   std::vector<std::uint32_t> seen;
   for (const FieldKind& fields : spiteful_fields()) {
     const HeightField field = fields.make(random);

@@ -4,8 +4,8 @@
 // Embree computes in float32: in the coordinates of a vertex, in the edge functions and in t. If L is the largest input
 // coordinate, each clearance of its planes is off by some 2^-24 L, of which 32 are allowed (vertices minus origin, two
 // products and a sum per component of a cross product and a dot product, twice). If both hit, the ray must therefore be
-// within 32 * 2^-24 L of Scarp's surface between the two times. Otherwise, a hit of Embree's that Scarp passes must be
-// a back face, from below; a hit of Scarp's that Embree passes counts as lost by Embree. Scarp must lose none.
+// within 32 * 2^-24 L of Scarp's surface between the two times. Otherwise, a hit of Embree that Scarp misses must be a
+// back face, from below; a hit of Scarp that Embree misses counts as lost by Embree. Scarp must lose none.
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 #include <pmmintrin.h>
@@ -184,7 +184,7 @@ TEST(Embree, AgreesOnTheSameTriangles) {
         for (int k = 0; k <= 8; ++k) {
           const dvec3 p = ray.at(from + (to - from) * k / 8);
           const auto ground = field.height(p.x, p.y);
-          // Sideways errors reach the clearance through the slope, 11 at most here.
+          // Sideways errors change the clearance in proportion to the slope, at most 11 here.
           if (ground && std::abs(p.z - *ground) > 11 * kFloatRounding * largest) return false;
         }
         return true;

@@ -35,7 +35,7 @@ inline HeightField bowl_field(bool pierced, bool solid) {
   return HeightField::own(samples, kBowlSide, kBowlSide, settings);
 }
 
-/// Rays through the border, or `from_holes` from within a hole, under the ground around, to a place above the bowl.
+/// Rays through the border, or `from_holes` from within a hole, under the ground around, to a point above the bowl.
 inline std::vector<Ray> entering_rays(const HeightField& field, bool from_holes, int count) {
   Random random(7);
   std::vector<Ray> rays;
@@ -57,7 +57,7 @@ inline std::vector<Ray> entering_rays(const HeightField& field, bool from_holes,
   return rays;
 }
 
-/// Answers of a march to rays, and whether it calls them blocked.
+/// The answers of a march to rays, and whether it reports them as blocked.
 using CastEntering =
     std::function<void(const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits)>;
 

@@ -30,7 +30,7 @@ inline const std::string kVertices = R"(#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
 )";
 
-/// A context without a window; none: why.
+/// A context without a window; `why_not` gives the reason if there is none.
 class EsContext {
  public:
   EsContext() {
@@ -90,7 +90,7 @@ inline void fill_3d(GLenum unit, GLint format, const std::array<int, 3>& size, c
   glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-/// A texture of 32-bit floats for texelFetch; the unit is where the shader finds it.
+/// A texture of 32-bit floats for texelFetch, bound to the texture unit that the shader reads.
 inline void fill(GLenum unit, GLint format, GLenum channels, const std::vector<TextureLevel>& levels) {
   GLuint texture = 0;
   glGenTextures(1, &texture);

@@ -259,7 +259,7 @@ bool ExactHit::not_after(const Rational& t) const {
   if (t < begin) return false;
   if (at_begin || t >= end) return true;
   const Rational s = t - begin, f = (a * s + b) * s + c;
-  // A cup falls at its lower root, a cap at its upper one.
+  // A parabola that opens upwards falls at its lower root, one that opens downwards at its upper root.
   if (a > 0) return f <= 0 || 2 * a * s + b >= 0;
   if (a < 0) return f <= 0 && 2 * a * s + b <= 0;
   return f <= 0;

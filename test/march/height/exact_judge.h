@@ -30,7 +30,7 @@ struct ExactHit {
 
 struct ExactAnswer {
   HitStatus status = HitStatus::miss;
-  std::vector<ExactHit> hits;  ///< in the order of t
+  std::vector<ExactHit> hits;  ///< in order of t
 };
 
 /// All hits of a ray, whose range is finite where the field wraps round.

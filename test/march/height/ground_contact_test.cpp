@@ -61,13 +61,13 @@ Moving random_sweep(const HeightField& field, const std::vector<JudgedTriangle>&
 void expect_no_tunnelling(Surface surface, int parts) {
   Random random(11);
   int contacts = 0, starts = 0;
-  // The time of judging is proportional to the number of triangles.
+  // The judge's time is proportional to the number of triangles.
   const int fewer = parts * parts;
   for (int round = 0; round < cases(400, 60, 12); ++round) {
     const HeightField field = rugged(random, 9, 2, round % 3 ? 0 : 0.2, {.surface = surface});
     const MaxPyramid pyramid(field);
     const auto triangles = bench::all_triangles(field, parts);
-    // Both the judge's and the sweep's triangles are off a bilinear surface.
+    // The triangles of both the judge and the sweep deviate from a bilinear surface.
     const double cell = std::min(field.settings().cell_x, field.settings().cell_y);
     const double off = parts == 1 ? 0 : 2.0 / (parts * parts) + 0x1p-21 * cell;
     for (int i = 0; i < cases(400, 100, 40) / fewer; ++i) {
@@ -83,7 +83,7 @@ void expect_no_tunnelling(Surface surface, int parts) {
       ASSERT_NEAR(length(found->normal), 1, kRounding);
       ASSERT_TRUE(field.cell_heights(found->cell));
       if (found->t == 0) continue;
-      // The point is on the capsule at its position then, and the normal is against the motion.
+      // The point is on the capsule at its position at that time, and the normal opposes the motion.
       const double rounding = judged.rounding() + off;
       ASSERT_NEAR(bench::to_segment(found->point, capsule.a + found->t * motion, capsule.b + found->t * motion),
                   capsule.radius, rounding);
@@ -114,7 +114,7 @@ TEST(Sweep, StopsAtThePlane) {
   EXPECT_DOUBLE_EQ(ball->t, 0.5);
   EXPECT_EQ(ball->normal, dvec3(0, 0, 1));
   EXPECT_NEAR(length(ball->point - dvec3(4, 4, 1)), 0, kRounding);
-  // From below, its lower side.
+  // From below, the plane's lower side is hit.
   EXPECT_EQ(sweep(target, {{4, 4, -3}, {4, 4, -3}, 1}, {0, 0, 6})->normal, dvec3(0, 0, -1));
   // An upright capsule, and a lying one.
   EXPECT_DOUBLE_EQ(sweep(target, {{4, 4, 3}, {4, 4, 9}, 0.5}, {0, 0, -3})->t, 0.5);
@@ -123,7 +123,7 @@ TEST(Sweep, StopsAtThePlane) {
   EXPECT_FALSE(sweep(target, {{-1, 4, 3}, {-1, 4, 3}, 0.5}, {0, 0, -9}));
   EXPECT_TRUE(sweep(target, {{-0.4, 4, 3}, {-0.4, 4, 3}, 0.5}, {0, 0, -9}));
   EXPECT_FALSE(sweep(target, {{4, 4, 3}, {4, 4, 3}, 0.5}, {0, 0, -1.4}));
-  // It is at rest.
+  // Capsules that touch the plane from the start.
   EXPECT_EQ(sweep(target, {{4, 4, 1.5}, {4, 4, 1.5}, 0.5}, {1, 0, 0})->t, 0);
   EXPECT_EQ(sweep(target, {{4, 4, 1.2}, {4, 4, 1.2}, 0.5}, dvec3(0.0))->t, 0);
   EXPECT_FALSE(sweep(target, {{4, 4, 2}, {4, 4, 2}, 0.5}, dvec3(0.0)));
@@ -144,7 +144,7 @@ TEST(ClosestOf, HandlesNearlyParallelSegments) {
     const dvec3 p(uniform(random, -1, 1), uniform(random, -1, 1), 0), e = uniform(random, 0.5, 2) * (d + across);
     const dvec3 q = p + uniform(random, -1, 1) * d + std::pow(10, uniform(random, -12, 0)) * direction(random);
     const ClosestPair pair = closest_of_segments(p, d, q, e);
-    // The distance of a point of the first to the second is convex along the first.
+    // The distance from a point of the first segment to the second segment is convex along the first.
     double low = 0, high = 1;
     for (int step = 0; step < 100; ++step) {
       const double x = (2 * low + high) / 3, y = (low + 2 * high) / 3;

@@ -77,7 +77,7 @@ TEST_P(HeightMarchesOnDevice, SampleTheSamePointsAsTheCpu) {
   EXPECT_LE(others, kRaysAlongHills / 200);
 }
 
-// Beyond the highest sample there is nothing.
+// Above the highest sample there is nothing to hit.
 TEST_P(HeightMarchesOnDevice, StopAboveTheHighestSampleOnRequest) {
   const HeightField field = test::hills(kHillsSide, kHillsSide, Surface::bilinear);
   std::vector<Ray> rays = rays_along(field);
@@ -108,7 +108,7 @@ TEST_P(HeightMarchesOnDevice, StopAboveTheHighestSampleOnRequest) {
     EXPECT_EQ(clipped_hits[i].status, hits[i].status);
     if (!hits[i]) continue;
     ++met;
-    // Rounding at the border is like that of a different end.
+    // Rounding at the border has the same effect as a slightly different end.
     EXPECT_NEAR(clipped_hits[i].t, hits[i].t, 1e-3);
   }
   EXPECT_EQ(clipped_costs[0].steps, 0u);

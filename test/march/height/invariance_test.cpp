@@ -47,7 +47,7 @@ Hit closest(const Case& c) {
   return hit;
 }
 
-// As those of the exact judge's test: powers of two, sums of dx + dy as well, so that no sign is rounded.
+// As in the exact judge's test: powers of two, as are the sums dx + dy, so that no sign is rounded.
 Case any_case(Random& random, Surface surface, Wrap wrap) {
   Case c;
   c.cols = whole(random, 2, 9), c.rows = whole(random, 2, 9);

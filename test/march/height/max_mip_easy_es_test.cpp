@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy as pasted into a shader: the installed text over two textures, run as GLSL ES 3.0, by the bound of its
-// C++ text.
+// max-mip-easy as pasted into a shader: the installed text over two textures, run as GLSL ES 3.0, judged by the bound
+// of its C++ text.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy: the shader text as C++ and the row of the table, by its documented bound.
+// max-mip-easy: the shader text as C++ and the listed march, judged by their documented bound.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -105,14 +105,14 @@ TEST(MaxMipEasy, MatchesARayDisplacedByTheBound) {
   RecordProperty("worst_share_of_delta", fmt::format("{}", worst));
 }
 
-// With the statuses, walls and rays from the surface that a shader does not have.
+// The listed march also has statuses, walls and rays from the surface, which a shader lacks.
 TEST(MaxMipEasy, ListedMarchMatchesARayDisplacedByTheBound) {
   int from_surface = 0;
   for_each_ray([&](const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, const std::string& words) {
     const HeightTarget target{&field, &pyramid};
     const Hit hit = easy_march().cpu(target, ray, {}, nullptr);
     ASSERT_EQ(easy_march().occluded(target, ray, {}), static_cast<bool>(hit)) << words;
-    // From the beginning of the range, in lengths of a direction that is 1 to 2.
+    // Measured from the beginning of the range, in lengths of a direction that is 1 to 2.
     GridRay local = field.grid_from_world(ray);
     const dvec3 d = local.direction;
     const int exponent = std::ilogb(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The vectors answer as the scalar walk does, bit for bit: every kind of field and ray of the oracle's suite, on every
-// instruction set that this machine has, in batches of odd sizes, with each optimisation disabled.
+// Vectors return the answers of the scalar walk, bit for bit: over every kind of field and ray of the oracle's suite,
+// on every instruction set that this machine has, in batches of odd sizes, with each optimisation disabled.
 #include "scarp/march/height/max_mip_simd.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ testing::AssertionResult identical(const Hit& a, const Hit& b) {
                                      << b.cell.col << " " << b.cell.row;
 }
 
-// All of the batch, in parts of `size`.
+// The whole batch, in parts of `size`.
 void compare(const HeightTarget& target, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
              std::size_t size, const VectorOptions& options, const std::string& what) {
   std::vector<Hit> hits(rays.size());
@@ -95,7 +95,7 @@ TEST(MaxMipSimd, MatchesTheScalarWalkBitForBit) {
   }
 }
 
-// A field with room to walk in, steep and gentle, as floats and as integers, with holes or without.
+// A field that is large enough for long walks, steep and gentle, as floats and as integers, with holes or without.
 enum class Kind { plain, holes, endless };
 template <class T>
 HeightField hills(Surface surface, Kind kind, Random& random) {
@@ -238,7 +238,7 @@ TEST(MaxMipSimd, HandlesStartsBesideTheirCell) {
   }
 }
 
-// Nearly level rays through the highest node: within rounding they are as high as it is long before.
+// Nearly level rays through the highest node: within rounding, they are as high as this node long before they reach it.
 TEST(MaxMipSimd, TouchesTheHighestSample) {
   Random random(77);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
@@ -261,7 +261,8 @@ TEST(MaxMipSimd, TouchesTheHighestSample) {
 }
 
 // A shadow map's rays: from nodes, points of edges and others, slightly above the ground or in it, along diagonals,
-// axes and other ways, over ground that is rough from sample to sample: parabolas that dip between the ends of a cell.
+// axes and other directions, over ground that is rough from sample to sample: parabolas that dip between the ends of a
+// cell.
 TEST(MaxMipSimd, StartsJustAboveRoughGround) {
   Random random(79);
   for (const double relief : {0.5, 40.0, 4000.0}) {
@@ -362,7 +363,7 @@ TEST(MaxMipSimd, HandlesRaysFromNearTheGroundInVectors) {
     closest_hits_max_mip_simd(target, rays, hits, options);
     return static_cast<double>(take_vector_stats().handed_over) / static_cast<double>(rays.size());
   };
-  // Per two queries of each ray. Rays that hit in the first cell are left to the scalar walk.
+  // Counts cover two queries of each ray. Rays that hit in the first cell are left to the scalar walk.
   const double in_floats = handed_over({.doubles = false}), in_doubles = handed_over({});
   EXPECT_GT(in_floats, 1.0);
   EXPECT_LT(in_doubles, in_floats / 2);
@@ -392,7 +393,7 @@ TEST(MaxMipSimd, HandlesWrappedFields) {
   compare(target, rays, scalar(target, rays), rays.size(), {}, "seams");
   const VectorStats stats = take_vector_stats();
   EXPECT_GT(stats.block_steps, rays.size());
-  // Per two queries of each ray: rays along an axis and next to corners are in doubt.
+  // Counts cover two queries of each ray: rays along an axis and next to corners are in doubt.
   EXPECT_LT(stats.handed_over, rays.size());
 }
 
@@ -436,7 +437,7 @@ TEST(MaxMipSimd, StartsNextToASeam) {
   EXPECT_EQ(bits(hit.u), bits(march_max_mip(plain_target, at_border).u));
 }
 
-// Rays of a camera that looks down at the field: 8 x 8 pixels after one another.
+// Rays of a camera that looks down at the field, in blocks of 8 x 8 pixels.
 std::vector<Ray> tiles_of_a_camera(const HeightField& field, Random& random) {
   const dvec3 eye{uniform(random, -200, field.width() + 200), uniform(random, -200, field.depth() + 200),
                   uniform(random, 300, 900)};
@@ -477,12 +478,13 @@ TEST(MaxMipSimd, BeamsLoseNoHits) {
       }
     }
   }
-  // Otherwise there was nothing to lose.
+  // Otherwise there were no hits to lose.
   for (const auto& [name, rays] : in_beams) EXPECT_GT(rays, 0u) << name;
 }
 
-// Fans of rays from one place: through nodes and along lines of cells, parallel to an axis, almost so, across it and
-// across the border, narrow and wide, with other rays between, with ends, from places over rough and smooth ground.
+// Fans of rays from one point: through nodes and along lines of cells, parallel to an axis, almost so, across it and
+// across the border, narrow and wide, with other rays in between, with finite ends, from points over rough and smooth
+// ground.
 std::vector<Ray> fans(const HeightField& field, Random& random) {
   std::vector<Ray> rays;
   const auto pick = [&](double low, double high) {
@@ -592,7 +594,7 @@ TEST(MaxMipSimd, HandlesUnusualNumbers) {
   }
 }
 
-// Otherwise the vectors could hand over all rays and still be right.
+// Otherwise the vectors could hand over all rays to the scalar walk and still be right.
 TEST(MaxMipSimd, HandsOverFewRays) {
   Random random(73);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
@@ -610,7 +612,7 @@ TEST(MaxMipSimd, HandsOverFewRays) {
   EXPECT_LT(take_vector_stats().handed_over, rays.size() / 2);
 }
 
-// Nor those that end in their first cell, which floats can decide on gentle ground.
+// Nor do they hand over many rays that end in their first cell, which floats can decide on gentle ground.
 TEST(MaxMipSimd, HandsOverFewRaysThatEndInTheirFirstCell) {
   Random random(74);
   constexpr int kSide = 33;

@@ -79,7 +79,7 @@ TEST(MaxMip, HitsEveryNodeFromAnyDirectionAbove) {
 }
 
 TEST(MaxMip, ReportsATouchOfACrestAsAHit) {
-  // A ridge along the column 3; the ray is level with it and crosses.
+  // A ridge along column 3; the ray is level with it and crosses it.
   std::vector<float> samples(64, 0);
   for (int row = 0; row < 8; ++row) samples[static_cast<std::size_t>(8 * row + 3)] = 5;
   const Terrain ridge{HeightField::own(samples, 8, 8)};
@@ -210,8 +210,8 @@ TEST(MaxMip, DoesNotHitThePlaneARayStartsOn) {
 }
 
 TEST(MaxMip, LocatesDescentFromAGridLineAccurately) {
-  // On a line between cells, which by rounding it has left before its start, and falling by 10^-9 per metre: a height
-  // 10^-11 ahead of the clamped position would make the hit millimetres late. From the run of 10^9 rays.
+  // The ray starts on a line between cells, has already left this line by rounding, and falls by 10^-9 per metre: a
+  // height 10^-11 ahead of the clamped position would make the hit millimetres late. Found in the run of 10^9 rays.
   std::vector<float> samples;
   for (int row = 0; row < 48; ++row) {
     for (int col = 0; col < 64; ++col)
@@ -309,8 +309,8 @@ RC_GTEST_PROP(MaxMip, LaterStartNeitherFindsEarlierHitsNorLosesAny, ()) {
 }
 
 TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
-  // An odd number of rows: the last blocks are narrower than their fellows. Towards lower rows and through a node of
-  // the seam, at which the ray also comes into the next column. The cell behind it must not be skipped.
+  // An odd number of rows: the last blocks are narrower than the others. Towards lower rows and through a node of the
+  // seam, at which the ray also enters the next column. The cell behind it must not be skipped.
   constexpr int kSide = 7;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     std::vector<float> samples(kSide * kSide, 0);
@@ -351,7 +351,7 @@ TEST(MaxMip, DoesNotReportAnExitAtANode) {
 }
 
 RC_GTEST_PROP(MaxMip, RespectsTMaxAroundTheHit, ()) {
-  // Cut short before the hit, the ray misses; cut right behind it, it hits at the same place.
+  // Cut short before the hit, the ray misses; cut just after it, it hits at the same position.
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);
   const Hit hit = terrain.cast(ray);

@@ -191,7 +191,7 @@ class Judge {
     return side == 0 || (side < 0) == (status == HitStatus::below);
   }
 
-  // Coordinates up to which the ray is computed, in metres.
+  // A bound on the coordinates in the ray's computation, in metres.
   double span() const {
     double far = std::max({std::abs(ray_.origin.x), std::abs(ray_.origin.y), std::abs(ray_.origin.z)});
     // A ray over copies of the field does not end at a border.

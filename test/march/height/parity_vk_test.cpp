@@ -32,7 +32,7 @@
 namespace scarp::test {
 namespace {
 
-// Two fields of each kind, and as many rays of each kind over them; the judge takes most of the time.
+// Number of rays of each kind per field, and number of fields of each kind; the judge takes most of the time.
 const int kRaysPerKind = cases(200, 50, 25);
 constexpr int kFieldsPerKind = 2;
 
@@ -139,10 +139,11 @@ TEST_F(QueriesOnDevice, HitBelowGroundWithALargeShrinkFactor) {
 }
 
 // A ray that does not move along an axis, or hardly, on the rim of a hole: it hits ground on either side of the line.
-TEST_F(QueriesOnDevice, HitHoleRimsThatRaysRunAlong) {
+TEST_F(QueriesOnDevice, HitHoleRimsParallelToTheRay) {
   constexpr int kNodes = 24;
   constexpr double kRelief = 5, kLeastFall = 0.1;
-  // Floats place a hit to 2^-18 of a cell (max_mip_lean.glsl.h), over which the ground rises by the relief at most.
+  // Floats position a hit to within 2^-18 of a cell (max_mip_lean.glsl.h); the ground rises by at most the relief per
+  // cell.
   constexpr double kOff = 0x1p-18 * kRelief / kLeastFall;
   Random random(6);
   std::vector<float> samples(kNodes * kNodes);
@@ -215,7 +216,7 @@ TEST_F(QueriesOnDevice, AreUnaffectedBySlicing) {
   DeviceQueries sliced(device(), find_height_march("max-mip"), {}, {.rays_at_once = 77});
   whole.closest_hits({&field, &ground}, rays, hits, costs);
   sliced.closest_hits({&field, &ground}, rays, other, none);
-  // 13 slices; a second pass each, if rays in it start below the ground.
+  // 13 slices, each with a second pass if any of its rays starts below the ground.
   EXPECT_LE(whole.passes().size(), 2u);
   EXPECT_GE(sliced.passes().size(), 13u);
   EXPECT_LE(sliced.passes().size(), 26u);
@@ -265,7 +266,7 @@ TEST_F(QueriesOnDevice, AreUnaffectedByInterruptions) {
     for (auto& [march, whole] : at_once) {
       DeviceQueries& in_pieces = interrupted.at(march);
       whole.closest_hits(target, rays, hits, costs);
-      // Two where a ray was left to the second pass.
+      // Two passes where a ray was left to the second pass.
       EXPECT_LE(whole.passes().size(), 2u);
       in_pieces.closest_hits(target, rays, other, other_costs);
       more_runs += in_pieces.passes().size() > 1;
@@ -284,8 +285,8 @@ TEST_F(QueriesOnDevice, AreUnaffectedByInterruptions) {
   EXPECT_GT(more_runs, 5);
 }
 
-// Longer than lavapipe's limit for loops: over a slope along the ray, just above it for 100,000 cells, then against a
-// wall. One hole, far from the ray, makes `lipschitz` climb through all levels at each step.
+// Exceeds lavapipe's loop limit: the ray runs just above a slope for 100,000 cells, then hits a wall. One hole, far
+// from the ray, makes `lipschitz` climb through all levels at each step.
 TEST_F(QueriesOnDevice, FinishLongMarches) {
   constexpr int kCols = 100'001;
   constexpr float kNodata = -1;
@@ -302,7 +303,7 @@ TEST_F(QueriesOnDevice, FinishLongMarches) {
   const HeightField field = HeightField::own(samples, kCols, 4, holes);
   const DeviceGround ground(device(), field);
   const DeviceTarget target{&field, &ground, slope_bound(field)};
-  // In the row of cells between heights of 4 and 0, where the ground is 1.
+  // In the row of cells between heights of 4 and 0, where the ground is at height 1.
   const Ray ray{{10.5, 2.25, 1.5}, {1, 0, 0}};
   // Steps are no shorter than the spacing of floats at 100,000 metres, and hits are reported at a smaller clearance
   // than that.

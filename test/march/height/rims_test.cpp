@@ -92,7 +92,7 @@ TEST_F(RimsOfHoles, AreHitByRaysAlongGridLines) {
   EXPECT_GT(met, 300);
 }
 
-// Where the ground touches a ray in a node alone.
+// Where the ground touches a ray only at a node.
 TEST_F(RimsOfHoles, AreHitAtTheirNodes) {
   Random random(4);
   int met = 0;

@@ -114,8 +114,8 @@ TEST(Sides, BelowMatchesAboveOfTheInvertedField) {
     const Hit hit = march_max_mip_by_rules(target, ray, HitRules{.sides = Sides::below});
     const Hit expected = upside_down(march_max_mip(upside, upside_down(ray)));
     if (hit != expected) {
-      // Levels of a pyramid decide at the rims of holes: at the time of which line of a node the ray hits it, and
-      // whether a graze within rounding is a touch.
+      // At the rims of holes, pyramid levels decide which line through a node gives the time of the hit, and whether a
+      // graze within rounding is a touch.
       ASSERT_GT(field->nodata_count(), 0);
       const GridRay local = field->grid_from_world(ray);
       if (hit && expected) {
@@ -148,7 +148,7 @@ TEST(Sides, BothReturnsTheEarlierHit) {
   EXPECT_GT(from_above, 0);
 }
 
-// From hit to hit a ray passes the surface in turn from above and from below.
+// The hits of a ray are alternately from above and from below.
 TEST(Sides, BothAlternatesBetweenSides) {
   Random random(8);
   const HeightField field = test::hills(65, 65, Surface::bilinear);
@@ -165,7 +165,7 @@ TEST(Sides, BothAlternatesBetweenSides) {
     for (const Hit& hit : above) expected.push_back(hit.t);
     for (const Hit& hit : below) expected.push_back(hit.t);
     std::sort(expected.begin(), expected.end());
-    // Grazes are crossings or touches by rounding.
+    // By rounding, grazes are crossings or touches.
     const double near = 1e-9;
     bool grazes = false;
     for (std::size_t j = 1; j < expected.size(); ++j) grazes = grazes || expected[j] - expected[j - 1] < near;

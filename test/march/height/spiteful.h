@@ -40,13 +40,13 @@ const std::vector<RayKind>& spiteful_rays();
 /// Rays over wide fields: over long distances, through nodes and along lines where tiles meet.
 const std::vector<RayKind>& rays_across_tiles();
 
-/// Heights at random up to `most` above or below 0, in 2 to most_side samples per side and cells of 0.3 to 2 m; some of
-/// the samples are holes. `settings` except for the cells.
+/// Random heights up to `most` above or below 0, in 2 to most_side samples per side and cells of 0.3 to 2 m; some of
+/// the samples are holes. Takes all `settings` except the cell sizes.
 HeightField rugged(Random& random, int most_side, double most, double hole_share, HeightFieldSettings settings);
 
 /// Hills of several widths: rays along the ground go far before they hit, and any-hit looks ahead.
 HeightField hills(int cols, int rows, Surface surface);
-/// A ray along them, from their surface or within some metres of it.
+/// A ray along such hills, from their surface or within some metres of it.
 Ray along_hills(const HeightField& field, Random& random, bool from_surface);
 
 /// Rays with NaN, infinite, tiny and huge numbers, which queries need not accept, in every member of a ray.

@@ -51,7 +51,7 @@ class SteepRays {
   // No hit, with any status.
   void expect_none(const Ray& ray) { expect_hit(ray, -1); }
 
-  // Runs all queries; at most `off` away in t.
+  // Runs all queries; each hit may be up to `off` away in t.
   void check(double off = kOff) const {
     std::vector<Hit> batch(rays_.size()), all;
     std::vector<std::uint8_t> blocked(rays_.size());
@@ -119,7 +119,7 @@ TEST(SteepRims, StartsOnTheBorderFarBelowGroundHitNothing) {
   }
 }
 
-TEST(SteepRims, IgnoreNegligibleLeans) {
+TEST(SteepRims, IgnoreNegligibleTilts) {
   const HeightField flat = HeightField::own(std::vector<float>(81), 9, 9);
   SteepRays rays(flat);
   for (const double lean : leans()) {
@@ -151,7 +151,7 @@ TEST(SteepRims, HitAllBordersAtTheirEdgeHeight) {
         for (const double lean : leans()) {
           const int row = whole(random, 0, kRows - 2), col = whole(random, 0, kCols - 2);
           const double share = uniform(random, 0.01, 0.99), high = uniform(random, 10, 20);
-          // On the border, and far enough in front of it that it is there when it reaches the ground.
+          // On the border, or so far in front of it that the ray is there when it reaches the ground.
           for (const bool before : {false, true}) {
             for (const bool far : {false, true}) {
               const auto add = [&](dvec3 p, dvec3 d, double ground) {
@@ -205,7 +205,7 @@ TEST(SteepRims, HitHoleRimsAtTheirEdgeHeight) {
         const bool solid = cell == 0.7;
         const HeightField field = with_hole(samples, kSide, cell, surface, solid, wrapped);
         SteepRays rays(field);
-        // The last column and row of ground before the hole, and the first behind it.
+        // The last column and row of ground before the hole, and the first after it.
         const int first = wrapped ? kSide - 3 : kSide / 3 - 1, last = wrapped ? 3 : 2 * kSide / 3 + 1;
         for (const double lean : leans()) {
           for (const int line : {first, last}) {
@@ -251,8 +251,8 @@ TEST(SteepRims, AreHitByRaysAlongThem) {
   }
 }
 
-// From the ground into the hole, not so steep that they are followed all the way: rounding may let them pass the line
-// above the ground through which they sink behind it.
+// From the ground into the hole, not steep enough to be followed all the way: by rounding, such rays may cross the line
+// above the ground and sink through its height behind it.
 TEST(SteepRims, AreHitByRaysThatLeaveTheGround) {
   constexpr int kSide = 24;
   Random random(9);
@@ -271,7 +271,7 @@ TEST(SteepRims, AreHitByRaysThatLeaveTheGround) {
         const dvec3 d(std::ldexp(uniform(random, 0.5, 1) * cell, -whole(random, 4, 12)), 0, -(high - ground));
         rays.expect_hit({.origin = p - d, .direction = d, .t_max = 2}, 1);
       }
-      // They may be quick (rounding.h), and fall by 5 at least.
+      // These rays may cross the rim quickly (rounding.h), and they fall by at least 5.
       rays.check(kQuickRim * HeightField::rounding_of_line(kSide, kSide) * kMostRelief / 5);
     }
   }
@@ -387,7 +387,7 @@ TEST(SteepRims, HitsCornersNextToEmptyBlocksForAnyRangeEnd) {
   }
 }
 
-// Rays beside the border, over a hole that ends there: they sink below the ground before they come to the next cell.
+// Rays beside the border, over a hole that ends there: they sink below the ground before they reach the next cell.
 TEST(SteepRims, MissHolesThatReachTheBorder) {
   const std::vector<float> samples{1, 2, 3, 4, 5, 6, 7, 8, kNone};
   for (const double cell : {1.0, 0.1, 7.7}) {
@@ -428,7 +428,7 @@ TEST(SteepRims, FollowRaysThatEmergeAlongTheBorder) {
   }
 }
 
-// Where the range ends changes no hit, and a hit at its end counts: at nodes, edges and borders, from everywhere.
+// The end of the range changes no hit, and a hit at the end counts: at nodes, edges and borders, from all directions.
 TEST(SteepRims, KeepHitsAtTheEndOfTheRange) {
   Random random(12);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
@@ -515,7 +515,7 @@ Ray ray_at_node(const HeightField& field, Random& random) {
   return ray;
 }
 
-// Where the range ends changes no hit: it counts at its end, and none comes before it, in every query.
+// The end of the range changes no hit: a hit at the end counts, and no query finds an earlier one.
 void expect_same_hit_for_any_range(const HeightTarget& target, Ray ray, double longest) {
   SCOPED_TRACE(testing::Message() << "from " << ray.origin.x << ", " << ray.origin.y << ", " << ray.origin.z
                                   << " along " << ray.direction.x << ", " << ray.direction.y << ", " << ray.direction.z
@@ -547,7 +547,7 @@ void expect_same_hit_for_any_range(const HeightTarget& target, Ray ray, double l
   if (ray.t_max >= ray.t_min) ASSERT_FALSE(occluded_max_mip(target, ray));
 }
 
-TEST(SteepRims, HitTheSamePlaceWhereverTheRangeEnds) {
+TEST(SteepRims, HitTheSamePointWhereverTheRangeEnds) {
   Random random(14);
   for (int i = 0; i < cases(3000, 600, 60); ++i) {
     const bool wraps = i % 4 == 0;
@@ -564,8 +564,8 @@ TEST(SteepRims, HitTheSamePlaceWhereverTheRangeEnds) {
   }
 }
 
-// Rays over a hole come to its rim after 10^307 units of t, far above or below all ground.
-TEST(SteepRims, MissWhatOverflows) {
+// Rays over a hole reach its rim after 10^307 units of t, far above or below all ground.
+TEST(SteepRims, MissWhenNumbersOverflow) {
   constexpr int kSide = 24;
   Random random(15);
   std::vector<float> samples(kSide * kSide);
@@ -584,7 +584,7 @@ TEST(SteepRims, MissWhatOverflows) {
 }
 
 // Rays that pass a node of the border by less than the distance at which placed fields meet, rising and falling.
-TEST(SteepRims, TouchNodesOfTheBorderAlikeInAllQueries) {
+TEST(SteepRims, TouchBorderNodesAlikeInAllQueries) {
   Random random(13);
   int hits = 0;
   for (const int side : {3, 5, 40}) {
@@ -643,7 +643,7 @@ TEST(SteepRims, HitLevelGroundOnWhichTheyStart) {
   }
 }
 
-// Rays that come to the height of the rim just where they cross it.
+// Rays that reach the height of the rim just where they cross it.
 TEST(SteepRims, KeepTouchesAtTheEndOfTheRange) {
   Random random(62);
   int hits = 0;

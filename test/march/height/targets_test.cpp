@@ -14,7 +14,7 @@
 namespace scarp::test {
 namespace {
 
-TEST(Targets, MissingAPartAreRejectedByEveryQuery) {
+TEST(Targets, WithMissingPartsAreRejectedByEveryQuery) {
   const HeightField field = HeightField::own(std::vector<float>(25, 1.0f), 5, 5);
   const MaxPyramid pyramid(field);
   std::vector<Ray> rays(40, Ray{{1.5, 1.5, 9}});

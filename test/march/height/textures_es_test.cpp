@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The installed text for WebGL 2, run as GLSL ES 3.0 by EGL without a window: rays of floats (scarp_ray_from), closest
-// hit and any hit over textures, judged as those of the same text in C++. ES has no word for `precise`: the bound holds
-// as long as the driver's compiler does not change the arithmetic, which is tested here.
+// hit and any hit over textures, judged like those of the same text in C++. GLSL ES lacks the qualifier `precise`: the
+// bound holds as long as the driver's compiler does not change the arithmetic, which is tested here.
 #include <gtest/gtest.h>
 
 #include <cmath>

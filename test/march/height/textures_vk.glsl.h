@@ -9,7 +9,8 @@
 
 SCARP_GLSL_BEGIN
 
-// The specialisation constant of the march; which of the sampled ones is another, ScarpSampling::march.
+// The specialisation constant that selects max-mip or the sampling marches; ScarpSampling::march selects one of the
+// latter.
 const int kTexturesSampled = 0;
 const int kTexturesMaxMip = 1;
 
@@ -19,7 +20,7 @@ struct TexturesPush {
   ScarpField field;
   float nodata;
   uint count;
-  ScarpSampling settings;  // of all but max-mip
+  ScarpSampling settings;  // for all marches except max-mip
 };
 
 SCARP_GLSL_END

@@ -53,7 +53,7 @@ Loads loads_of_ground(std::span<const std::uint32_t> spirv) {
     } else if (code == kLoad && member_of_chain.contains(words[3]) && member_of_chain[words[3]] != levels) {
       ++(loops.empty() ? loads.elsewhere : loads.in_loops);
     }
-    // Operations with a type and a result have them first; of others this means nothing.
+    // Operations with a result type and a result have these first; for others these words mean nothing.
     if (words.size() > 2) type_of[words[2]] = words[1];
   });
   return loads;

@@ -31,7 +31,7 @@ void split(const dvec3& value, glsl::vec3& high, glsl::vec3& low) {
   low = glsl::vec3(value - dvec3(high));
 }
 
-// Two floats for a time, which is brought to a range that floats have.
+// A time as two floats, limited to the range of the shader's floats.
 glsl::ScarpTwoFloat two_floats(double t, int exponent) {
   const double time = std::min(std::ldexp(t, exponent), double{glsl::kScarpNever});
   return {static_cast<float>(time), static_cast<float>(time - static_cast<double>(static_cast<float>(time)))};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// 5 x 5 nodes, 1 m apart, 10 m high, solid, with a hole in the middle: the cells round the node (2, 2) are missing.
+// 5 x 5 nodes, 1 m apart, 10 m high, solid, with a hole in the middle: the cells around the node (2, 2) are missing.
 class Walls : public testing::Test {
  protected:
   Walls() : field_(make()), pyramid_(field_) {}

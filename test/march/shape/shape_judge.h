@@ -39,7 +39,7 @@ inline std::string shape_objection(const DistanceField& shape, const Ray& ray, d
   }
   const Hit truth = march_sphere_trace(shape, ray);
   if (!truth || (hit && hit.t <= truth.t)) return {};
-  // A ray that starts inside leaves where it is farther than delta.
+  // A ray that starts inside has left the solid only where it is farther than delta outside.
   if (hit.status == HitStatus::below) {
     bool outside = false;
     for (int i = 0; i <= 1000; ++i)

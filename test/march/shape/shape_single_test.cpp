@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Distance fields in single precision: the shaders' text, compiled as C++, against doubles.
+// Distance fields in single precision: the shader text, compiled as C++, against doubles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -161,7 +161,7 @@ TEST(ShapesInShaders, RaysEscapeTheSurface) {
       ray.start = RayStart::on_surface;
       const auto prepared = device_shape_ray(field, rounding, ray);
       const double r = most_off(rounding, prepared.ray);
-      // Out of the shape's box, so of the shape.
+      // Outside the shape's box, hence outside the shape.
       if (!prepared.marches) {
         ++left;
         continue;

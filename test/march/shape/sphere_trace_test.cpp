@@ -30,7 +30,7 @@ dvec3 anywhere(FunctionRandom& random, double reach) {
   return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
 }
 
-// From outside, at positions about the origin; some graze the surface that is nearest to a point.
+// Rays from outside, aimed at positions around the origin; some graze the surface at the point nearest to a position.
 Ray random_ray(const DistanceField& field, FunctionRandom& random) {
   Ray ray;
   double reach = 20;
@@ -109,7 +109,7 @@ TEST(SphereTrace, LosesNoHits) {
     // Enough of either kind to make the test meaningful.
     EXPECT_GE(counts.crossings, kRays / 40) << named.name;
     EXPECT_GE(counts.clear, kRays / 40) << named.name;
-    // Not only conservative, but right.
+    // Not only conservative, but correct.
     EXPECT_LE(counts.exhausted, 1 + kRays / 200) << named.name;
     EXPECT_LE(counts.early + counts.inexact, 1 + kRays / 200) << named.name;
   }
@@ -222,7 +222,7 @@ TEST(SphereTrace, RaysFromInsideHitLaterSurfaces) {
 
 TEST(SphereTrace, RaysFromInsideContinueThroughSeams) {
   const auto block = [](double half, double z) { return make_shape(Moved{make_shape(Box{{1, 1, half}}), {0, 0, z}}); };
-  // Two that touch, or nearly do, from z = 1 to 3, and one from -3 to -1.
+  // Two blocks that touch, or nearly do, from z = 1 to 3, and one block from -3 to -1.
   for (const double gap : {-1e-3, 0.0, 1e-13, 1e-11, 1e-9, 1e-8, 1e-6, 1e-4}) {
     const DistanceField field(make_shape(Union{{block(0.5, 2.5 + gap), block(0.5, 1.5), block(1, -2)}}));
     const Ray down{{0.1, 0.2, 2.5}, {0.1, 0.05, -1}};
@@ -330,7 +330,7 @@ TEST(SphereTrace, RaysFromConcavitiesHitTheOtherSide) {
       make_shape(Subtraction{make_shape(Box{{4, 4, 2}}), make_shape(Moved{make_shape(Sphere{3}), {0, 0, 2}})}));
   FunctionRandom random(24);
   for (int i = 0; i < kRays; ++i) {
-    // From a place of the bowl's inside to another: a chord of the sphere.
+    // From one point on the inside of the bowl to another: a chord of the sphere.
     const auto inside = [&] {
       const double z = -random.between(0.2, 1), a = random.between(0, 6.28), r = std::sqrt(1 - z * z);
       return dvec3(0, 0, 2) + 3.0 * dvec3(r * std::cos(a), r * std::sin(a), z);
@@ -341,7 +341,7 @@ TEST(SphereTrace, RaysFromConcavitiesHitTheOtherSide) {
     chord.start = RayStart::on_surface;
     const Hit hit = march_sphere_trace(bowl, chord);
     ASSERT_TRUE(hit);
-    // At a flat angle the end is less sharp.
+    // At a flat angle the position of the hit is less accurate.
     ASSERT_NEAR(hit.t, 1, 1e-9 / length(to - from));
   }
 }

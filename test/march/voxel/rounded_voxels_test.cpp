@@ -60,7 +60,7 @@ TEST(RoundedVoxels, SingleVoxelIsABall) {
 // enough to the inner box, by bisection; the distance to a box is convex along a line.
 struct Judged {
   double t = std::numeric_limits<double>::infinity();
-  bool close = false;  // from passing to hitting, or vice versa
+  bool close = false;  // near the boundary between hit and miss
 };
 
 bool solid(const VoxelGrid& grid, const ivec3& v) { return grid.box().contains(v) && grid.solid(v); }
@@ -175,7 +175,7 @@ TEST(RoundedVoxels, WallsStayFlat) {
   EXPECT_FALSE(first(grid, ray, {0.25, true}));
 }
 
-// A wall of voxels that touch at edges stops the same rays as cubes.
+// A wall of voxels that touch at edges stops the same rays as it would with plain cubes.
 TEST(RoundedVoxels, EdgeContactsStayClosed) {
   VoxelGrid grid(ivec3(8));
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
@@ -198,7 +198,7 @@ TEST(RoundedVoxels, RaysDoNotHitTheVoxelTheyLeave) {
   VoxelGrid grid(ivec3(2, 1, 1));
   grid.set({0, 0, 0}, 1);
   VoxelRay ray;
-  // From the ball's upper right, where the cube would continue: upwards, free.
+  // Starts at the ball's upper right, where a cube would extend further; going up, the ray hits nothing.
   ray.origin = dvec3(0.5) + 0.5 * normalize(dvec3(1, 0, 1));
   ray.direction = {1, 0, 0.25};
   const ivec3 from(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shaders' text of voxel marches, compiled as C++, on the adversarial grids and rays of the oracle: the same voxel,
+// The shader text of voxel marches, compiled as C++, on the adversarial grids and rays of the oracle: the same voxel,
 // face and t as the CPU's, to the bit, with 64-bit integers and with words. Its quotients are compared with those of
 // doubles.
 #include <fmt/format.h>
@@ -206,7 +206,7 @@ TEST(VoxelShaders, ComputeVoxelsAhead) {
   }
 }
 
-// A long way through the largest box: distances are rebased 64 times.
+// A long path through the largest box: distances are rebased 64 times.
 TEST(VoxelShaders, MatchAtTheLargestSize) {
   constexpr int kHeight = 256;  // less memory
   VoxelGrid grid({VoxelGrid::kMaxSide, VoxelGrid::kMaxSide, kHeight}, 1);

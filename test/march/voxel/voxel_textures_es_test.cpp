@@ -115,7 +115,8 @@ std::string objection(const Made& made, const VoxelRay& ray, const VoxelBox& box
   const double path = longest_of(ray.origin) + longest_of(dvec3(box.high));
   const double bound = kBound * (1 + longest_of(ray.origin) + path);
   if (!made.met) {
-    // It misses the box, or enters it by no more than that; both ends of its path in the box are off by as much.
+    // The ray may miss the box, or enter it by no more than the bound; both ends of its path in the box are off by as
+    // much.
     double t_in = 0, t_out = HUGE_VAL;
     for (int i = 0; i < 3; ++i) {
       const double low = box.low[i] + bound, high = box.high[i] - bound;
@@ -140,7 +141,7 @@ std::string objection(const Made& made, const VoxelRay& ray, const VoxelBox& box
         kBound)
       return "wrong direction";
     if (made.ray.direction.speed[k] == 0) continue;
-    // That of this axis, and that of the longest one.
+    // The error along this axis, and the error along the longest axis.
     if (std::abs(ray.origin[i] + way * slope[i] - made.place(i)) > 2 * bound) return "wrong place";
   }
   return {};

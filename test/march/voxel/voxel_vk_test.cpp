@@ -26,7 +26,7 @@ namespace {
 const int kGrids = cases(40, 8, 2);          // of a kind
 const int kRaysOfKind = cases(200, 40, 10);  // per grid
 
-// A grid with all accelerators, of which one march uses one.
+// A grid with all accelerators; each march uses one of them.
 struct Model {
   VoxelGrid grid;
   VoxelBox box;
@@ -94,7 +94,7 @@ struct Asked {
   }
 };
 
-// Numbers of failures are limited: one mistake makes thousands.
+// The number of reported failures is limited: one mistake can cause thousands.
 int judge(DeviceVoxelQueries& queries, const DeviceVoxelObjects& objects, const Asked& asked, bool any,
           const std::string& what) {
   std::vector<Hit> hits(asked.rays.size());

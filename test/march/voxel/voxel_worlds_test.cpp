@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The marches for large grids against the exhaustive one in boxes of 16,384 voxels a side: long rays whose planes are
+// The marches for large grids against the exhaustive one in boxes of 16,384 voxels per side: long rays whose planes are
 // crossed at once, or nearly so, at the far end; and the same rays in vectors.
 #include <gtest/gtest.h>
 
