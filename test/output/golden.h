@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compares a picture with an approved one. After an intended change, run the tests with SCARP_NEW_GOLDEN=1, which
-// replaces the old pictures by the new ones, and look at them.
+// replaces the old pictures with the new ones, and review these.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,13 +20,13 @@ namespace scarp::test {
 
 /// A byte may round the other way where the mathematical library's pow, exp, sin or cos differs in its last bit.
 inline constexpr int kByteRounding = 2;
-/// A ray may also pass a crest or a shadow's edge on its other side: that changes one of a pixel's four samples, at
+/// A ray may also pass a crest or a shadow's edge on the other side: that changes one of a pixel's four samples, at
 /// most from white to black, and only in few pixels. With one sample per pixel it changes the whole pixel.
 inline constexpr int kMaxDifference = 140, kAnyDifference = 255;
 inline constexpr double kMaxShare = 0.001;
 
-/// Expects that no byte of the PNG `picture` differs by more than `most` from the PNG `golden`, and few by more than
-/// kByteRounding. If they do, `failed` + "_now.png" and "_difference.png" show it.
+/// Expects that no byte of the PNG `picture` differs by more than `most` from the PNG `golden`, and that few differ by
+/// more than kByteRounding. If this fails, `failed` + "_now.png" and "_difference.png" show it.
 inline void expect_golden(const std::string& picture, const std::filesystem::path& golden_path, int most,
                           const std::string& failed) {
   namespace fs = std::filesystem;

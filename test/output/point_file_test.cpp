@@ -253,7 +253,7 @@ TEST_F(PointFiles, WritesLasAsPublished) {
   }
 }
 
-TEST_F(PointFiles, EmptyFilesAreWhole) {
+TEST_F(PointFiles, EmptyFilesAreValid) {
   EXPECT_EQ(written("e.csv", {}).all(), "time,column,channel,azimuth,elevation,range,x,y,z,object\n");
   EXPECT_NE(written("e.npy", {}).all().find("'shape': (0,)"), std::string::npos);
   EXPECT_NE(written("e.ply", {}).all().find("\nelement vertex 0\n"), std::string::npos);
@@ -264,7 +264,7 @@ TEST_F(PointFiles, EmptyFilesAreWhole) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(las.at<double>(179 + 8 * i), 0);
 }
 
-TEST_F(PointFiles, LasStepsHoldTheBox) {
+TEST_F(PointFiles, LasStepsCoverTheBox) {
   const double most = 0x1p31 - 1;
   const struct {
     dvec3 low, high, millimetre, scale;
@@ -285,7 +285,7 @@ TEST_F(PointFiles, LasStepsHoldTheBox) {
   }
 }
 
-TEST_F(PointFiles, ErrorsNameTheFileAndLeaveNothing) {
+TEST_F(PointFiles, ErrorsNameTheFileAndLeaveNoFile) {
   std::vector<ScanPoint> points = some_points(10);
   EXPECT_EQ(test::refusal([&] { PointFile file(path("p.laz")); }),
             path("p.laz") +
@@ -301,7 +301,7 @@ TEST_F(PointFiles, ErrorsNameTheFileAndLeaveNothing) {
   EXPECT_TRUE(empty());
 }
 
-TEST_F(PointFiles, FullDisksLeaveNothing) {
+TEST_F(PointFiles, FullDiskLeavesNoFile) {
   const std::vector<ScanPoint> points = some_points(100000);
   for (const char* name : {"p.csv", "p.npy", "p.ply", "p.las"}) {
     const test::FullDisk full(1 << 20);

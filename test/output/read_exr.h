@@ -30,7 +30,7 @@ struct Exr {
   std::map<std::string, Imath::M44f> matrices;
 };
 
-/// Throws what the library throws.
+/// Throws the exceptions of the library.
 inline Exr read_exr(const std::string& path) {
   Imf::InputFile file(path.c_str());
   const Imf::Header& header = file.header();
@@ -41,7 +41,7 @@ inline Exr read_exr(const std::string& path) {
   exr.compression = header.compression();
   const std::size_t pixels = static_cast<std::size_t>(exr.width) * static_cast<std::size_t>(exr.height);
   const auto width = static_cast<std::size_t>(exr.width);
-  // Halves come as floats; both have 4 bytes as uint has.
+  // Halves are read as floats; floats and uints have 4 bytes.
   std::map<std::string, std::vector<std::uint32_t>> bits;
   Imf::FrameBuffer buffer;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {

@@ -12,7 +12,7 @@
 
 namespace scarp::test {
 
-/// Rows from the top, 3 bytes a pixel.
+/// Rows from the top, 3 bytes per pixel.
 struct Rgb {
   int width = 0;
   int height = 0;

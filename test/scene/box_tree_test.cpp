@@ -191,7 +191,7 @@ TEST(BoxTree, BeamsFindEveryBox) {
     for (Ray& ray : rays) {
       ray.direction = along + wide * point(random, length(along));
       if (i % 32 == 1) ray.direction = along;
-      // A corner of a box is touched by some.
+      // Some rays touch a corner of a box.
       ray.origin = (i % 2 ? target.low : target.high) - away * ray.direction;
       if (i % 3 == 0) ray.origin += point(random, 0.1 * spread);
       if (i % 5 == 0) ray.t_max = uniform(random, 0, 2) * away;
@@ -217,7 +217,7 @@ TEST(BoxTree, BeamsFindEveryBox) {
   EXPECT_LT(visits, possible / 3);
 }
 
-// The beam ends with its rays: at the one that ends last.
+// The beam ends where the last of its rays ends.
 TEST(BoxTree, BeamsEndWithTheirRays) {
   std::vector<WorldBox> row;
   for (int i = 0; i < 1000; ++i) row.push_back({dvec3(10.0 * i, 0, 0), dvec3(10.0 * i + 1, 1, 1)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras, scanners and fans over a terrain hit where cast() does.
+// cast_from() with cameras, scanners and fans over a terrain has the hits of cast().
 #include "scarp/scene/cast_from.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Terrain terrain(const HeightFieldSettings& settings = {.cell_x = 10, .cell_y = 8
   return Terrain::own(waves(201, 150), 201, 150, settings);
 }
 
-// direction(column, row): those of the answers.
+// direction(column, row): the directions of the answers.
 template <class Direction>
 void expect_as_cast(const Terrain& ground, const FanAnswers& answers, const dvec3& eye, double t_max,
                     const Direction& direction) {
@@ -138,7 +138,7 @@ TEST(CastFrom, GivesNormalsOnRequest) {
   EXPECT_GT(walls, 10);
 }
 
-TEST(CastFrom, TakesDirectionsOfTheCallerOnAllThreads) {
+TEST(CastFrom, AcceptsCallerDirectionsOnAllThreads) {
   const Terrain ground = terrain();
   const int columns = 333, rows = 64;
   FanAnswers answers(columns, rows);
@@ -161,7 +161,7 @@ TEST(CastFrom, TakesDirectionsOfTheCallerOnAllThreads) {
   expect_as_cast(ground, answers, fan.origin, fan.t_max, direction);
 }
 
-// There the width of the seam decides.
+// Beside the border, the width of the seam decides whether a ray hits.
 TEST(CastFrom, EyesBesideTheBorderHitWhereTheirRaysDo) {
   int hits = 0;
   for (const double cell : {10.0, 7.7, 0.1}) {
@@ -191,7 +191,7 @@ TEST(CastFrom, EyesBesideTheBorderHitWhereTheirRaysDo) {
   EXPECT_GT(hits, 5000);
 }
 
-TEST(CastFrom, RefusesWhatIsUnsound) {
+TEST(CastFrom, RejectsInvalidInput) {
   const Terrain ground = terrain(), endless = terrain({.wrap = Wrap::periodic});
   PinholeCamera camera{.eye = {100, 100, 50}, .columns = 4, .rows = 3};
   FanAnswers answers(4, 3);

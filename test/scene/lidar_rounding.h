@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far the answers of a scanner may be off its geometry: what rounds is derived here, once.
+// How far the answers of a scanner may be off its geometry: the only derivation of these rounding errors.
 #pragma once
 
 #include <cmath>
@@ -9,29 +9,29 @@
 
 namespace scarp::test {
 
-/// Radians by which a direction of length 1 is turned: its three components are floats, off by 2^-25 each.
+/// Radians by which a direction of length 1 is rotated: its three components are floats, each off by up to 2^-25.
 constexpr double kTurnOfDirection = 0x1p-23;
-/// The share of a range by which fans may be off (doc/dev/numerics.md, "The tolerance"); batches are nearer.
+/// The fraction of a range by which fans may be off (doc/dev/numerics.md, "The tolerance"); batches are more accurate.
 constexpr double kOfTheWay = 0x1p-20;
 
-/// Metres from a hit on a plain, along the ray or beside it. A ray that is turned meets the plane farther on, by the
-/// turn times range / tan(elevation).
+/// Error of a hit on a plain, in metres, along the ray or across it. A rotated ray meets the plane farther away, by the
+/// rotation times range / tan(elevation).
 inline double room_on_plain(double range, double elevation) {
   return range * (kOfTheWay + kTurnOfDirection * (1 + 1 / std::tan(std::abs(elevation))));
 }
-/// Radians of an angle that is a float, off by half a unit of 4 to 8, of a ray with this elevation. Elevations
-/// themselves: 0.
+/// Error of an angle, in radians, for a ray with this elevation: angles are floats, off by half a unit in the last
+/// place of numbers from 4 to 8. For elevations themselves, pass 0.
 inline double room_of_angle(double elevation = 0) { return kTurnOfDirection / std::cos(elevation) + 0x1p-22; }
 
-/// Metres by which a hit at this range may be above or below the ground: the share of a clearance by which fans may be
-/// off (as above) times what it is a share of. `edge` is the greatest difference of height along an edge of a cell,
-/// holes as the lowest sample, `cell` the shorter side of a cell.
+/// Metres by which a hit at this range may be above or below the ground: the relative error of a clearance in fans (as
+/// above) times the quantity that it is relative to. `edge` is the greatest height difference along an edge of a
+/// cell, with holes as the lowest sample; `cell` is the shorter side of a cell.
 inline double room_above(double range, double edge, double cell) {
   return 0x1p-18 * (range + (range / cell + 12) * edge);
 }
 
-/// Whether two answers to a ray are one hit: at one place of the way, or along the ground from one to the other.
-/// `height(x, y)` is the ground's, if there is any.
+/// Whether two answers to a ray are the same hit: at the same position along the ray, or with the ray along the ground
+/// between them. `height(x, y)` is the height of the ground, if there is any.
 template <class Height>
 bool is_one_hit(const dvec3& a, const dvec3& b, double range, double room, const Height& height) {
   if (length(b - a) <= 2 * kOfTheWay * range) return true;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays of a scanner that stands or moves: ranges and positions by formulas of their own, and one answer by fans and
-// batches.
+// Rays of a stationary or moving scanner: ranges and positions match independent formulas, and fans and batches agree.
 #include "scarp/scene/lidar.h"
 #include "scene/lidar_rounding.h"
 
@@ -44,7 +43,7 @@ Lidar scanner(int columns, std::vector<double> elevations_deg) {
   return lidar;
 }
 
-// The greatest difference of height along an edge of a cell, holes as the lowest sample.
+// The greatest height difference along an edge of a cell, with holes as the lowest sample.
 double steepest_edge(const Terrain& ground) {
   const HeightField& field = ground.field();
   const auto at = [&](int col, int row) {
@@ -61,7 +60,7 @@ double steepest_edge(const Terrain& ground) {
   return most;
 }
 
-// Metres by which a hit of a fan may be above or below the ground, by its range.
+// Metres by which a hit of a fan may be above or below the ground, for its range.
 auto room_over(const Terrain& ground) {
   const HeightFieldSettings& settings = ground.field().settings();
   return [edge = steepest_edge(ground), cell = std::min(settings.cell_x, settings.cell_y)](double range) {
@@ -185,7 +184,7 @@ TEST(LidarScan, FansAndBatchesAgreeOnEveryKindOfTerrain) {
   }
 }
 
-TEST(LidarScan, SceneOfSeveralFieldsAnswersAsItsTerrain) {
+TEST(LidarScan, SceneOfSeveralFieldsMatchesItsTerrain) {
   const Terrain ground = hills();
   const Scene both = combine({{ground}, {plain(-500)}});
   Lidar lidar = scanner(60, {-5, -15, -30});
@@ -209,7 +208,7 @@ TEST(LidarScan, OrientationsAreAppliedInOrder) {
   const double heading = 0.5, pitch = 0.15, roll = -0.25;
   lidar.path[0] = {0, {10000, 10000, 100}, heading, pitch, roll};
   lidar.mounting.forward = 2, lidar.mounting.right = 3, lidar.mounting.up = 5;
-  // The axes of the body, by turning one after another.
+  // The axes of the body, from one rotation after another.
   dvec3 right(std::cos(heading), -std::sin(heading), 0), forward(std::sin(heading), std::cos(heading), 0), up(0, 0, 1);
   const dvec3 level_forward = forward;
   forward = std::cos(pitch) * level_forward + std::sin(pitch) * up;
@@ -237,7 +236,7 @@ TEST(LidarScan, OrientationsAreAppliedInOrder) {
   }
 }
 
-// Yaw, pitch and roll of the mounting do the same to the scanner as those of the body.
+// Yaw, pitch and roll of the mounting rotate the scanner as those of the body do.
 TEST(LidarScan, MountingTurnsAsThePoseDoes) {
   const Terrain ground = plain();
   Lidar body = scanner(16, {-30, -60});
@@ -253,7 +252,7 @@ TEST(LidarScan, MountingTurnsAsThePoseDoes) {
   }
 }
 
-TEST(LidarScan, NorthTurnsHeadingsAndNotTheAzimuthsThatAreReported) {
+TEST(LidarScan, NorthRotatesHeadingsButNotReportedAzimuths) {
   const Terrain ground = plain();
   Lidar lidar = scanner(8, {-45});
   lidar.path[0].position = {10000, 10000, 100};
@@ -309,7 +308,7 @@ TEST(LidarScan, TurnsTheShorterWayAtConstantSpeed) {
         << answer.time;
 }
 
-TEST(LidarScan, ChannelsFireFromTheirOwnPlaces) {
+TEST(LidarScan, ChannelsFireFromTheirOwnPositions) {
   const Terrain ground = plain();
   Lidar lidar = scanner(1, {-90, -90, -90});
   lidar.azimuth_step = 1e-9;
@@ -326,7 +325,7 @@ TEST(LidarScan, ChannelsFireFromTheirOwnPlaces) {
   }
 }
 
-TEST(LidarScan, HeightsAboveGroundFollowIt) {
+TEST(LidarScan, HeightsAboveGroundFollowTheGround) {
   const Terrain ground = hills();
   Lidar lidar = scanner(1, {-90});
   lidar.azimuth_step = 1e-9;
@@ -353,7 +352,7 @@ TEST(LidarScan, HeightsAboveGroundFollowIt) {
             0u);
 }
 
-TEST(LidarScan, NearSurfacesBlockAndFarOnesAreNotSeen) {
+TEST(LidarScan, NearSurfacesBlockAndFarOnesAreNotMeasured) {
   const Terrain ground = plain();
   Lidar lidar = scanner(4, {-90, -30, -2});
   lidar.path[0].position = {10000, 10000, 10};
@@ -402,7 +401,7 @@ TEST(LidarScan, NoiseIsNormalAndRepeatable) {
   EXPECT_LT(same, 20);
 }
 
-TEST(LidarScan, RefusesWhatCannotBeScanned) {
+TEST(LidarScan, RejectsInvalidScans) {
   const Terrain ground = plain();
   const Lidar good = scanner(4, {-10, -20});
   EXPECT_NO_THROW(LidarScan(ground, good));

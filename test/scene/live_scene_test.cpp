@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Edited scenes: the answers of new scenes after any edits, numbers of objects, edits during queries, which see whole
-// epochs. Run under the thread sanitizer, too.
+// Edited scenes: after any edits the answers equal those of a new scene, objects keep their numbers, and queries during
+// edits see whole epochs. Also run under the thread sanitizer.
 #include "scarp/scene/live_scene.h"
 
 #include <gtest/gtest.h>
@@ -186,7 +186,7 @@ TEST(LiveScene, MatchesANewSceneAfterEdits) {
   }
 }
 
-// Hits, and objects queried per ray, as in a new scene of the same objects.
+// Hits, and the number of objects queried per ray, match a new scene of the same objects.
 void expect_good_tree(LiveScene& live, Random& random, double side) {
   const auto reading = live.read();
   const Scene& scene = reading.scene();
@@ -245,7 +245,7 @@ TEST(LiveScene, KeepsItsHierarchyEfficient) {
   EXPECT_TRUE(cast(live.read().scene(), {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}));
 }
 
-// Cubes side by side at places that are rounded; Ray::room depends on where all of them are.
+// Cubes side by side at rounded positions; Ray::room depends on where all of them are.
 TEST(LiveScene, ClosesSeamsOfMovedVoxels) {
   VoxelGrid grid({1, 1, 1});
   grid.fill(grid.box(), 1);

@@ -45,7 +45,7 @@ class HeightFieldShape : public testing::TestWithParam<Surface> {
     ASSERT_EQ(judge.closest_hit(slanted).status == HitStatus::hit, occluded(terrain, slanted));
     if (!height) return;
     ASSERT_NEAR(1000 - hit.t, *height, 1e-9);
-    // It supports objects: a falling ball touches no lower than its radius above the position.
+    // The ground supports objects: a falling ball does not sink below its radius above the position.
     const auto contact = scene.query({}).sweep({{x, y, 100}, {x, y, 100}, 0.25}, {0, 0, -200});
     ASSERT_TRUE(contact);
     ASSERT_GE(100 - 200 * contact->t, *height + 0.25 - 1e-5);

@@ -180,7 +180,7 @@ TEST(SceneContacts, MatchPerObjectContacts) {
       SceneObject object{static_cast<std::uint32_t>(random.below(6)), 0, random.place(side), 1u << random.below(3)};
       object.placement.origin += away;
       objects.push_back(object);
-      // Others in the same place, touched at the same time.
+      // Other objects at the same position, touched at the same time.
       if (i % 3 == 0) objects.push_back({object.field, 0, object.placement, 1u << random.below(3)});
     }
     const Scene scene(all_kinds(random), objects);

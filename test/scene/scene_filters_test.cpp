@@ -155,7 +155,7 @@ TEST(Filters, PassSeamsAndGrazes) {
   const Scene scene(scene_shape(DistanceField(make_shape(shape::Union{{left, right, far}}))));
   expect_hits(scene, {.origin = {-5, 0.2, 0.3}, .direction = {1, 0, 0}, .t_max = 20},
               {3, 11 - std::sqrt(1 - 0.04 - 0.09)});
-  // Along a face, and past a ball: apart from touches, the ray ends in nothing else.
+  // Along a face, and past a ball: apart from touches, the ray has no hits.
   for (const dvec3& from : {dvec3(-5, 0, 1), dvec3(-5, 1, 0), dvec3(-5, 1, 1)}) {
     HitStatus last;
     all_hits(scene, {.origin = from, .direction = {1, 0, 0}, .t_max = 20}, last);

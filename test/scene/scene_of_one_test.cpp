@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Fields, SceneOfOne,
                                          HeightFieldSettings{.wrap = Wrap::periodic}));
 
 TEST(SceneOfOneField, MatchesItselfBesideAnEmptyField) {
-  // An empty field besides it leads to the other code path of the scene.
+  // An empty field beside it leads to the other code path of the scene.
   const SceneFieldPtr field = scene_heights(waves());
   const Scene one(field),
       two({field, scene_heights(HeightField::own(std::vector<float>(1), 1, 1))}, {SceneObject{0}, SceneObject{1}});

@@ -38,8 +38,8 @@ Scene terrain_and_hills() {
 }
 
 TEST_F(ScenesOnDevice, FindTheNearestHit) {
-  // Over these fields single precision is right to some millimetres: 4 times 2^-17 of twice 20 m, and 32 units of 200 m
-  // in height and way for the height field; 4 times 48 of 100 m for the ring (doc/dev/numerics.md).
+  // Over these fields single precision is accurate to some millimetres: 4 times 2^-17 of twice 20 m, and 32 units of
+  // 200 m in height and distance, for the height field; 4 times 48 units of 100 m for the ring (doc/dev/numerics.md).
   constexpr double kDelta = 0.01;
   const Scene cpu = terrain_and_hills(), on_device = scene_on(device(), cpu);
   std::mt19937_64 random(4);
@@ -93,7 +93,7 @@ TEST_F(ScenesOnDevice, FindTheNearestHit) {
   EXPECT_GT(met[0], 100u);
   EXPECT_GT(met[1], 500u);
   EXPECT_GT(met[2], 20u);
-  // To the sun, from the surface: the function's shadow has one octave less, and starts on its own surface.
+  // To the sun, from the surface: the function's shadow has one octave fewer, and starts on its own surface.
   std::vector<std::uint8_t> shaded(suns.size()), on_cpu(suns.size());
   on_device.occluded(suns, shaded, from);
   cpu.occluded(suns, on_cpu, from);

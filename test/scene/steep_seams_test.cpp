@@ -232,8 +232,9 @@ TerrainTiles tiles_with_holes(Random& random, double cell, int side) {
   return terrain.read();
 }
 
-// Where the range ends changes no hit, in tiles and where they are placed: it counts at its end, and none comes before.
-TEST(SteepSeams, HitTheSamePlaceWhereverTheRangeEnds) {
+// The end of the range changes no hit, in tiles and wherever they are placed: a hit at the end counts, and none comes
+// before.
+TEST(SteepSeams, HitTheSamePointWhereverTheRangeEnds) {
   Random random(13);
   int hits = 0;
   for (int i = 0; i < 400; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tiles that act as one field: against one large field, over seams of levels, while tiles are loaded and unloaded; and
-// errors. Run under the thread sanitizer, too.
+// Tiles that act as one field: against one large field, across seams between levels, while tiles are loaded and
+// unloaded; and errors. Also run under the thread sanitizer.
 #include "scarp/scene/tiled_terrain.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ std::vector<float> samples(Random& random, double hole_share) {
   return all;
 }
 
-// A tile of them, at a level.
+// A tile of this terrain, at a level.
 HeightField tile(const std::vector<float>& all, TilePlace place, HeightFieldSettings settings, int level = 0) {
   std::vector<float> own;
   const int step = 1 << level, side = (kCells >> level) + 1;
@@ -71,8 +71,8 @@ Ray ray_through(Random& random, const dvec3& box, const std::vector<float>& all,
 // A distance in metres far larger than rounding and seams, and far smaller than a cell.
 constexpr double kFar = 0x1p-20;
 
-// Whether neighbouring rays on all sides have the same answer: then every engine must have it. Others touch the ground,
-// or a rim, within rounding.
+// Whether neighbouring rays on all sides have the same answer: then every engine must have it. Other rays touch the
+// ground, or a rim, within rounding.
 bool is_certain(const HeightField& field, const Ray& ray, const Hit& answer) {
   for (const dvec3 shift :
        {dvec3(1, 0, 0), dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, -1, 0), dvec3(0, 0, 1), dvec3(0, 0, -1)}) {
@@ -141,7 +141,7 @@ TEST(TiledTerrain, MatchesOneField) {
 
 // A ray from above all ground to below it, within the terrain, hits. Samples near 1000 are rounded to 2^-14, so
 // stitched ones are off their line.
-TEST(TiledTerrain, LosesNoRayAtSeamsOfLevels) {
+TEST(TiledTerrain, LosesNoRayAtSeamsBetweenLevels) {
   for (const auto surface : {Surface::bilinear, Surface::triangles}) {
     Random random(5);
     const HeightFieldSettings settings{.cell_x = 0.3, .cell_y = 0.3, .surface = surface};

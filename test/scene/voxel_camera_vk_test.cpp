@@ -205,7 +205,7 @@ TEST_F(VoxelCameraOnDevice, ResolvesObjectsAtEqualDepth) {
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same(scene, camera, looking({0.1, 0.2, 6}, {0, 0, -1}), "at one depth");
   EXPECT_GT(camera.tied(), 100U);
-  // Far apart, no ray is traced again.
+  // Far apart, no ray is traced a second time.
   const Scene alone = touching("voxel-bricks", 1);
   VoxelCamera other(device(), alone, {.rays_at_once = 8192});
   expect_same(alone, other, looking({0.3, 0.7, 6}, {0.02, 0.01, -1}, 0.002), "one face");

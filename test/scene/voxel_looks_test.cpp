@@ -98,12 +98,12 @@ TEST(CoarseVoxels, PreserveCoverage) {
     const VoxelGrid wall = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21; });
     EXPECT_EQ(solid_after(wall, 1), 32 * 32);
     EXPECT_EQ(solid_after(wall, 3), 8 * 8);
-    // Every second of a thread's 32 blocks remains.
+    // Every second block of a thread's 32 remains.
     const VoxelGrid thread = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21 && v[other] == 33; });
     EXPECT_EQ(solid_after(thread, 1), 16);
   }
   EXPECT_EQ(solid_after(grid_where(ivec3(64), [](const ivec3&) { return true; }), 2), 16 * 16 * 16);
-  // Single voxels in each 8 x 8 x 8: 4,096, of which a quarter stays, give or take five standard errors of as many
+  // Single voxels in each 8 x 8 x 8: 4,096, of which a quarter stays, give or take five standard errors of that many
   // draws; a pattern in step with theirs would keep all or none.
   const VoxelGrid dust =
       grid_where(ivec3(128), [](const ivec3& v) { return v.x % 8 == 3 && v.y % 8 == 6 && v.z % 8 == 1; });

@@ -45,7 +45,7 @@ VoxelObjects crowd(Random& random, int count) {
   return VoxelObjects({models, places});
 }
 
-// A camera's rays, 8 x 8 pixels after 8 x 8 pixels; with spread 1 they go in any direction.
+// A camera's rays, in blocks of 8 x 8 pixels; with spread 1 they go in any direction.
 std::vector<Ray> rays_from(const dvec3& eye, const dvec3& towards, double spread, std::size_t count, Random& random) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < count; ++i) {

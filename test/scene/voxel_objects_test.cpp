@@ -42,7 +42,7 @@ glm::dmat3 turned(Random& random, double scale) {
   return glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), direction(random))) * scale;
 }
 
-// Each object separately, by the march that tests every voxel on the way.
+// Each object separately, by the march that tests every voxel along the ray.
 Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std::vector<VoxelPlace>& places,
                const Ray& ray) {
   for (auto& model : models)
@@ -384,7 +384,7 @@ TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
   }
 }
 
-// All turns of an odd and an even side: a model stays within half a voxel of its pivot, voxel by voxel.
+// All rotations of a model with odd and even sides: it stays within half a voxel of its pivot, voxel by voxel.
 TEST(FromVox, PlacesRotatedVoxels) {
   for (int bits = 0; bits < 128; ++bits) {
     VoxFile file;
@@ -457,7 +457,7 @@ TEST(FromVox, RejectsExcessiveFilesEarly) {
   }
   pile.nodes.front().content = all;
   EXPECT_NE(test::refusal([&] { placed_voxels_from(pile); }).find("models overlap too much"), std::string::npos);
-  // 2^18 instances of a voxel at one position, each group twice the next one: one of them remains.
+  // 2^18 instances of a voxel at one position, each group containing the next twice: one remains.
   constexpr int kGroups = 18;
   VoxFile heap = canvases(1, {{0, 0, 0, 1}});
   heap.nodes.clear();
@@ -466,9 +466,9 @@ TEST(FromVox, RejectsExcessiveFilesEarly) {
   EXPECT_EQ(placed_voxels_from(heap).places.size(), 1u);
 }
 
-// Instances of one voxel side by side, in planes across each axis: more pairs than are examined, without the other
-// axes. There are 2^kDoublings along either axis of a plane. In debug builds they are so few that no axis would be
-// rejected: these only check memory accesses.
+// Instances of one voxel side by side, in planes across each axis. By some axes alone there are more pairs than are
+// examined. A plane has 2^kDoublings instances along either axis. In debug builds they are so few that no axis would be
+// rejected: these builds only check memory accesses.
 #ifdef NDEBUG
 constexpr int kDoublings = 9;
 #else

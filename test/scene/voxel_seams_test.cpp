@@ -52,7 +52,7 @@ VoxelPlace place_at(const dvec3& low, const glm::dmat3& turn, const ivec3& size)
 bool blocks(const VoxelObjects& objects, const Ray& ray) {
   const bool blocked = static_cast<bool>(objects.closest_hit(ray));
   EXPECT_EQ(blocked, objects.occluded(ray));
-  // Batches take turns: vectors are a hundred times slower with sanitizers.
+  // Batches are tested in turn: vectors are a hundred times slower with sanitizers.
   static int asked = 0;
   if (++asked % test::cases(1, 1, 32) != 0) return blocked;
   const std::vector<Ray> rays(64, ray);
@@ -113,7 +113,7 @@ TEST(VoxelSeams, BlockRaysNearlyInTheSharedPlane) {
           ray.origin = dvec3(-from * ray.direction.x, 1.5, 10);
           if (std::abs(ray.origin.x) > 3) continue;
           ASSERT_TRUE(blocks(objects, ray)) << power << ' ' << way << ' ' << from;
-          // Not inside, after the top was passed.
+          // The hit is not inside, after the top was passed.
           EXPECT_NEAR(objects.closest_hit(ray).t, 6, 1) << power << ' ' << way << ' ' << from;
         }
       }

@@ -62,7 +62,7 @@ TEST_F(DamagedFiles, RejectsOtherFiles) {
   expect_says(read_error(write_bytes("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
 }
 
-// The advice that is right, and nothing that only GDAL's developers understand.
+// The correct advice, and nothing that only GDAL's developers understand.
 void expect_advice(const std::string& text) {
   expect_says(text, "fetch or copy it again");
   for (const char* riddle : {"4294967295", "0x", "No such file", "Success"})

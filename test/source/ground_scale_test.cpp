@@ -95,7 +95,7 @@ TEST(GroundScale, ProjectionsMatchGeodesics) {
   expect_like_geodesics("EPSG:3035", "EPSG:4258", 6378137, 1 / 298.257222101, 3000000, 4000000, 1);
 }
 
-TEST(GroundScale, MapsInFeetCountFeet) {
+TEST(GroundScale, MapsInFeetMatchGeodesics) {
   expect_like_geodesics("EPSG:2225", "EPSG:4269", 6378137, 1 / 298.257222101, 6600000, 1900000, 1200.0 / 3937);
 }
 

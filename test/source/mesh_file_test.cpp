@@ -31,7 +31,7 @@ class MeshFiles : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return (folder_ / name).string();
   }
-  // The message about it, without its name.
+  // The error message, without the file name.
   std::string refusal(const std::string& name, const std::string& bytes) const {
     const std::string path = write(name, bytes);
     try {
@@ -165,7 +165,7 @@ TEST_F(MeshFiles, RejectsBadGltf) {
   EXPECT_EQ(with([](json& d) { d["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
             "requires the extension KHR_draco_mesh_compression, which is not supported");
   EXPECT_NE(with([](json& d) { d["buffers"][0]["uri"] = "gone.bin"; }), "read");
-  // Textures alone.
+  // A file with textures only.
   EXPECT_EQ(refusal("empty.gltf",
                     R"({"asset": {"version": "2.0"}, "images": [{"uri": "x.png"}], "textures": [{"source": 0}]})"),
             "no triangles");

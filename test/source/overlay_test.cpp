@@ -29,7 +29,7 @@ Georeference ground() {
 
 class OverlayTest : public Files {
  protected:
-  // Bands of red, green, blue and opacity; `map` of its pixels' edges.
+  // Writes bands for red, green, blue and opacity; `map` is the geotransform of the pixel edges.
   std::string write_rgba(const std::string& name, int cols, int rows, const std::vector<std::uint8_t>& rgba,
                          std::array<double, 6> map, int epsg = 32610) const {
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");

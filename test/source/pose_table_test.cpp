@@ -36,7 +36,7 @@ TEST(PoseTable, ReadsDegreesAndHeightsAboveGround) {
   EXPECT_EQ(table.rows.at(0).pitch, 3);
 }
 
-TEST(PoseTable, ErrorsNameTheLineAndWhatIsExpected) {
+TEST(PoseTable, ErrorsNameTheLineAndTheExpectedValue) {
   const std::string header = "time,x,y,z,heading\n";
   const struct {
     std::string text, fragment;

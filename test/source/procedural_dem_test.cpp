@@ -59,7 +59,7 @@ TEST(ProceduralDemHeights, DoNotDependOnTilesAndThreads) {
       EXPECT_EQ(whole, generate_dem(settings));
     }
     std::vector<float> tiled(whole.size());
-    // From the last tile to the first, of an odd size.
+    // Tiles of an odd size, from the last to the first.
     for (int row = 150 / 37 * 37; row >= 0; row -= 37) {
       for (int col = 201 / 29 * 29; col >= 0; col -= 29) {
         fill_rectangle(settings, col, row, std::min(29, 201 - col), std::min(37, 150 - row),

@@ -36,7 +36,7 @@ class RasterPlaceTest : public Files {
   }
 };
 
-TEST_F(RasterPlaceTest, SamplesStandAtPixelCentres) {
+TEST_F(RasterPlaceTest, SamplesAreAtPixelCentres) {
   const Georeference geo = read(placed({500000, 30, 0, 5000000, 0, -20}, "EPSG:32610")).georeference;
   EXPECT_TRUE(geo.present);
   EXPECT_EQ((std::array<double, 6>{500015, 30, 0, 4999990, 0, -20}), geo.map_from_node);
@@ -88,7 +88,7 @@ TEST_F(RasterPlaceTest, SouthUpIsFlipped) {
   EXPECT_TRUE(has_note(raster, "south to north"));
 }
 
-TEST_F(RasterPlaceTest, WindowOfASouthUpFileCountsInTheFile) {
+TEST_F(RasterPlaceTest, WindowOfASouthUpFileUsesTheRowsOfTheFile) {
   RasterOptions options;
   options.window = {0, 1, 3, 1};
   const Raster raster = read(placed({500000, 30, 0, 4999960, 0, 20}, "EPSG:32610"), options);

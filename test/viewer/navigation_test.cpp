@@ -52,7 +52,7 @@ TEST_F(Navigation, OrbitKeepsItsPivot) {
   const Pose& pose = navigator.pose();
   EXPECT_LT(length(pose.eye + pose.distance * forward_of(pose) - dvec3(20, 50, 0)), 1e-6);
   EXPECT_GT(length(pose.eye - dvec3(20, 5, 30)), 1.0);
-  // A drag to the right brings the scene along: the eye goes to the left.
+  // A drag to the right moves the scene along: the eye goes to the left.
   Navigator other = at(scene, {20, 5, 30}, {20, 50, 0});
   other.turn({10, 0}, kSize);
   EXPECT_LT(other.pose().eye.x, 20);
@@ -65,7 +65,7 @@ TEST_F(Navigation, OrbitDoesNotFlip) {
   EXPECT_NO_THROW(navigator.camera(80, 60));
 }
 
-TEST_F(Navigation, WheelApproachesAndShiftKeepsTheDistance) {
+TEST_F(Navigation, WheelApproachesAndPanKeepsTheDistance) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   const double before = navigator.pose().distance;
   navigator.wheel(1, {400, 300}, kSize);
@@ -115,7 +115,7 @@ TEST_F(Navigation, WalkerStandsOnTheGroundAndStopsAtWalls) {
     EXPECT_LT(navigator.pose().eye.x, 50) << "through the wall";
     EXPECT_GT(navigator.pose().eye.x, 45);
   }
-  // Nor over the border.
+  // Nor does the walker cross the border.
   navigator.key(MoveKey::forward, false);
   for (int i = 0; i < 600; ++i) {
     navigator.key(MoveKey::back, true);

@@ -101,7 +101,7 @@ TEST_F(Worker, RunsAllPasses) {
 TEST_F(Worker, SidesHaveTheirOwnSizes) {
   const auto worker = make();
   ViewRequest both = request(false, 1, 0);
-  std::vector<dvec2> cameras;  // of the worker's thread, until it has converged
+  std::vector<dvec2> cameras;  // accessed only by the worker thread until it converges
   PictureSettings large;
   large.look = Look::comanche;
   large.width = 40, large.height = 30, large.aa = 1;
@@ -131,7 +131,7 @@ TEST_F(Worker, SkipsIdenticalPasses) {
 // Rays of a picture: each sample has one, plus the requested numbers to the sun and to the sky.
 double cost_of(const PictureSettings& settings) { return settings.aa * settings.aa * (1 + 2.0 * settings.samples); }
 
-TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
+TEST_F(Worker, EarlierPassesAddAboutAThirdOfTheCost) {
   for (const auto& [aa, samples] : {std::pair{1, 0}, {2, 0}, {4, 64}, {3, 5}, {16, 0}, {1, 4096}}) {
     PictureSettings settings;
     settings.aa = aa, settings.samples = samples;
@@ -144,7 +144,7 @@ TEST_F(Worker, RefinementReachesTheRequestForAThirdMore) {
       before_the_last += cost_of(passes[i]);
       EXPECT_GT(cost_of(passes[i + 1]), 3 * cost_of(passes[i]));
     }
-    // For 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
+    // For 4^k samples: 1 + sum(1 + 2 * 4^j, j = 1..k-1) = (1 + 2 * 4^k) / 3 + k - 3.
     EXPECT_LE(before_the_last, cost_of(passes.back()) / 3 + 3) << aa << ' ' << samples;
   }
   PictureSettings counted;
@@ -163,7 +163,7 @@ TEST_F(Worker, CompletesBothSides) {
   ASSERT_TRUE(last);
   EXPECT_EQ(last->sides.size(), 2u);
   const std::scoped_lock lock(mutex_);
-  // Moving: both. At rest: (1, 0), the counts once, (1, 4), (1, 16), (2, 16), (4, 16).
+  // Moving: both. At rest: (1, 0), the step-count side once, (1, 4), (1, 16), (2, 16), (4, 16).
   ASSERT_EQ(asked_.size(), 8u);
   EXPECT_EQ(asked_[3].samples, 16);
   EXPECT_EQ(asked_[5].samples, 16);

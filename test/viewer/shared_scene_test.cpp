@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One scene for two threads, as in the window: the worker renders it, with coarser voxels, and the window's thread
-// queries the point under the cursor. For the thread sanitizer.
+// queries the point under the cursor. Also run under the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <chrono>

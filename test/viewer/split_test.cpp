@@ -30,7 +30,7 @@ TEST(Split, ShowsEachPictureOnItsSide) {
 TEST(Split, ScalesByNearestPixel) {
   Image image(3, 2);
   for (int i = 0; i < 6; ++i) std::fill_n(image.pixel(i % 3, i / 3), 3, static_cast<std::uint8_t>(10 * i));
-  // Middles of 7 pixels over 3, and of 4 over 2.
+  // Centres of 7 pixels mapped to 3 columns, and of 4 mapped to 2 rows.
   constexpr int kColumns[] = {0, 0, 1, 1, 1, 2, 2}, kRows[] = {0, 0, 1, 1};
   const Image to = stretched(image, 7, 4);
   ASSERT_EQ(to.width, 7);

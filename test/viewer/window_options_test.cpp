@@ -121,7 +121,7 @@ TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
   EXPECT_TRUE(water.may_rest && water.rests);
   EXPECT_NEAR(water.least, 0, 0.1);
   EXPECT_NEAR(water.most, 30, 0.2);
-  // Options that need others, or have an effect on others, have no control.
+  // Options that need others, or affect others, have no control.
   EXPECT_FALSE(has_control(controls, "--waves"));
   EXPECT_FALSE(has_control(controls, "--naive-step-factor"));
   EXPECT_FALSE(has_control(controls, "--frame"));

@@ -99,7 +99,7 @@ TEST_F(Compute, RunDeliversItsReads) {
 }
 
 TEST_F(Compute, CopiesMoreThanTheRingHolds) {
-  // Three pieces of the ring and a bit, at an offset.
+  // Slightly more than three pieces of the ring, at an offset.
   const Words words = numbers((48 << 18) + 12345);
   DeviceBuffer buffer(device(), 4 * (words.size() + 3), "large");
   upload(buffer, 12, words.data(), 4 * words.size());

@@ -231,8 +231,8 @@ TEST_F(OpenDevice, RejectsDrawingWithoutGraphics) {
   EXPECT_EQ(refusal([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), expected);
 }
 
-// Silence of the tests would mean nothing without validation: two copies to one position without a barrier between
-// them, and one beyond the end of a buffer.
+// Without validation, the absence of messages would prove nothing. This test makes two copies to one position without a
+// barrier between them, and a copy beyond the end of a buffer.
 TEST_F(OpenDevice, ReportsValidationMessages) {
   if (!test::tests_validate()) GTEST_SKIP() << "SCARP_TEST_VALIDATION=off";
   const Device watched({.validation = true});

@@ -23,7 +23,7 @@ inline void add_offset(std::uint32_t code, std::span<const std::uint32_t> words,
   offsets[words[2]] = words[4];
 }
 
-/// The offsets of the members of each struct, in their order; names do not survive optimisation.
+/// The offsets of the members of each struct, in member order; names do not survive optimisation.
 inline std::vector<Offsets> struct_offsets(std::span<const std::uint32_t> spirv) {
   std::map<std::uint32_t, Offsets> structs;
   each_operation(spirv,
@@ -47,9 +47,9 @@ inline bool has_struct(std::span<const std::uint32_t> spirv, const Offsets& offs
   return std::find(structs.begin(), structs.end(), offsets) != structs.end();
 }
 
-/// Whether C++ and the shader lay out T, whose text they share, alike. Both put its members in the order of the text
-/// and without gaps: C++ because no member is aligned to more than its four bytes or smaller than that; the shader if
-/// this finds its structs so, and one of T's size among them.
+/// Whether C++ and the shader, which share the source of T, lay it out alike. Both put its members in source order and
+/// without gaps: C++ because no member is aligned to more than its four bytes or smaller than that; the shader if all
+/// its structs are found to be so, and one of them has the size of T.
 template <class T>
 bool is_laid_out_like(std::span<const std::uint32_t> spirv) {
   static_assert(alignof(T) == 4 && sizeof(T) % 4 == 0);

@@ -105,7 +105,7 @@ TEST(Camera, FramingFitsAllCornersTightly) {
   }
 }
 
-TEST(Camera, StandsAtTheAzimuthOfTheView) {
+TEST(Camera, IsAtTheAzimuthOfTheView) {
   // The grid's north points to the compass azimuth of 10 degrees.
   const double grid_north = glm::radians(10.0);
   const Camera camera = Camera::framed(kBox, {.azimuth_deg = 100, .elevation_deg = 0}, grid_north, 400, 400);
@@ -120,12 +120,12 @@ TEST(Camera, DistanceIsRelativeToTheFramedView) {
   const ViewSettings near{.distance = 1}, far{.distance = 3};
   const dvec3 a = Camera::framed(kBox, near, 0, 400, 400).eye(), b = Camera::framed(kBox, far, 0, 400, 400).eye();
   const dvec3 forward = Camera::framed(kBox, near, 0, 400, 400).forward();
-  // Both lie on one axis; on it, distances count from the place beside the box's middle.
+  // Both eyes are on one axis; along it, distances are measured from the point beside the box's middle.
   EXPECT_NEAR(length(cross(b - a, forward)), 0, 1e-6);
   EXPECT_NEAR(dot(kBox.middle() - b, forward) / dot(kBox.middle() - a, forward), 3, 1e-9);
 }
 
-// The focus stays at its position in the picture, and the eye ends there.
+// The focus stays at its position in the picture, and the eye approaches it.
 TEST(Camera, NearerViewsApproachTheirFocus) {
   // Rounding of metres and pixels: some dozen roundings of coordinates below 2^17 m are 2^-53 * 2^17 * 2^6 or less than
   // 2^-30.
@@ -185,7 +185,7 @@ TEST(Camera, RejectsSettingsOutOfRange) {
   EXPECT_THROW(Camera::look_at({1, 2, 4}, {1, 2, 3}, 0, 100, 100), Error);
 }
 
-TEST(Compass, AzimuthsCountClockwiseFromTrueNorth) {
+TEST(Compass, AzimuthsAreClockwiseFromTrueNorth) {
   const auto near = [](const dvec3& a, const dvec3& b) { return length(a - b) < 1e-12; };
   const double quarter = glm::radians(90.0), turn = glm::radians(10.0);
   EXPECT_TRUE(near(towards(0, 0, 0), {0, 1, 0}));

@@ -31,7 +31,7 @@ TEST(Depth, MatchesProjectedPoints) {
       const glm::dvec4 clip = projection * p;
       return clip.z / clip.w;
     };
-    // Numbers below 1 from differences of ones no larger than 3: a few units of 2^-52.
+    // Numbers below 1, from differences of numbers no larger than 3: a few units of 2^-52.
     EXPECT_NEAR(device_depth(z, range), (depth(opengl) + 1) / 2, 1e-14);
     EXPECT_NEAR(device_depth(z, range), depth(vulkan), 1e-14);
     EXPECT_NEAR(device_depth(z, reversed), depth(turned), 1e-14);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Camera rays of pictures, by fans: the hits of single rays, to the bit.
+// Camera rays of pictures, answered by fans: the hits of single rays, to the bit.
 #include "scarp/render/film/camera_fan.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ HeightField hills(bool hole) {
   return HeightField::own(std::move(samples), cols, rows);
 }
 
-// Asks for the middles of a tile and compares.
+// Queries the rays of a tile and compares the hits with those of single rays.
 class Compared final : public TileWork {
  public:
   Compared(const Scene& scene, const Camera& camera, const PixelTile& tile, int aa, const CameraSights* sights,
@@ -58,7 +58,7 @@ class Compared final : public TileWork {
   bool asked_ = false;
 };
 
-TEST(CameraFan, HitsAreThoseOfSingleRays) {
+TEST(CameraFan, HitsMatchSingleRays) {
   for (const bool hole : {false, true}) {
     const HeightField field = hills(hole);
     for (const bool plinth : {false, true}) {
@@ -82,7 +82,7 @@ TEST(CameraFan, HitsAreThoseOfSingleRays) {
   }
 }
 
-TEST(CameraFan, PaysOnlyForPerspectiveOverHeightsByMaxMip) {
+TEST(CameraFan, PaysOnlyInPerspectiveAboveHeightsWithMaxMip) {
   const HeightField field = hills(false);
   const Scene scene = test::terrain(field);
   const Camera camera = Camera::look_at({30, 30, 45}, {90, 90, 0}, 60, 64, 64);

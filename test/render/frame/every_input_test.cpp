@@ -116,7 +116,7 @@ TEST_P(EveryInput, HasNoErrorsWithExactMarches) {
   EXPECT_EQ(errors.contradictions, 0);
 }
 
-// Ground below the level is under water, whose surface is seen; ground above it does not change.
+// Ground below the level is under water, whose surface is visible; ground above it does not change.
 TEST_P(EveryInput, SupportsWater) {
   constexpr double kWater = 3.25;  // between two faces of voxels
   const Scene scene = GetParam().make();
@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryInput,
                                          Kind{"shape", shape}, Kind{"terrain_with_a_ball", terrain_with_a_ball}),
                          [](const auto& kind) { return kind.param.name; });
 
-// Only a plinth is seen.
+// Only a plinth is visible.
 TEST(PlinthInScene, CastsNoShadowAndIsNotGround) {
   const Scene bare = heights(), scene = with_plinth(bare);
   EXPECT_LT(scene.box().low.z, bare.box().low.z);

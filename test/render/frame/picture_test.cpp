@@ -86,8 +86,8 @@ TEST(Picture, ShadowsHaveTheRightLength) {
   EXPECT_EQ(brightness_at(13.8, 0, false), lit) << "hill shade only";
 }
 
-TEST(Picture, SunAzimuthCountsFromTrueNorth) {
-  // The raster's up is compass south, so the compass's west is its east.
+TEST(Picture, SunAzimuthIsMeasuredFromTrueNorth) {
+  // Up in the raster is true south, so true west is its east.
   const double upside_down = glm::radians(180.0);
   const int lit = brightness_at(3, upside_down, true);
   EXPECT_LT(brightness_at(6.2, upside_down, true), 0.8 * lit);
@@ -104,7 +104,7 @@ TEST(Picture, SunlitLevelGroundHasItsRampColour) {
   EXPECT_EQ(int{image.pixel(20, 20)[2]}, 0x74);
 }
 
-TEST(Picture, LightSamplesKeepSunlitLevelGround) {
+TEST(Picture, LightSamplesDoNotChangeSunlitLevelGround) {
   const HeightField field = field_of(5, 30, nothing);
   PictureSettings settings = map_settings(field);
   settings.ramp = "hypsometric";
@@ -138,8 +138,8 @@ TEST(Picture, SamplesDependOnlyOnPixelAndSeed) {
 }
 
 TEST(Picture, SamplesOfAPixelUseDifferentPoints) {
-  // Where half of a wide sun is visible, a single ray finds it or not. With the same ray for all four samples of a
-  // pixel, half of the pixels would be dark; with separate, well distributed rays, none is.
+  // Where half of a wide sun is visible, a single ray either hits it or misses it. With the same ray for all four
+  // samples of a pixel, half of the pixels would be dark; with separate, well distributed rays, none is.
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
   settings.ramp = "viridis";
@@ -181,7 +181,7 @@ TEST(Picture, HolesShowTheSky) {
       9, 30, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(4 * side + 4)] = kNaN; });
   const Image image = map_of(field, map_settings(field)).image;
   EXPECT_NE(red(image, 40, 40), red(image, 10, 10));
-  // Outside of the field, in a wider picture, is the same sky.
+  // Outside the field, a wider picture shows the same sky.
   PictureSettings wide = map_settings(field);
   wide.width *= 2;
   const Image beside = map_of(field, wide).image;
@@ -238,7 +238,7 @@ TEST(Picture, LevelsShowTheMaximaOfTheirNodes) {
         for (int r = r0; r <= std::min(r0 + side, 5); ++r) {
           for (int c = c0; c <= std::min(c0 + side, 7); ++c) most = std::max(most, (r * 8 + c) * 29 % 48 * 1.0);
         }
-        // A code of the pyramid is a 65535th of the range.
+        // A step of the pyramid's code is 1/65535 of the range.
         EXPECT_NEAR(red(image, 10 * col + 4, 10 * row + 6), 1 + 254 * most / 47, 0.51) << col << " " << row;
       }
     }
@@ -321,7 +321,7 @@ MarchSettings coarse_naive() {
   return coarse;
 }
 
-// With the ramp grey the ground is grey, and the sky is blue.
+// With the grey ramp the ground is grey, and the sky is blue.
 TEST(Picture, SkyShowsWhereNaiveLosesTheGround) {
   const Image right = spike(Look::shaded, "max-mip").image, naive = spike(Look::shaded, "naive", coarse_naive()).image;
   const ErrorCounts counts = spike(Look::error, "naive", coarse_naive()).errors.value();

@@ -38,8 +38,8 @@ constexpr double kSideways = 0x1p-10;  // of a cell: the largest sideways error 
 
 bool same(const Hit& a, const Hit& b) { return a.status == b.status && (!a || (a.wall == b.wall && a.cell == b.cell)); }
 
-// delta of any ray over a field of one tile, of metres: from the base of a frame neither the ray's height, nor its
-// fall, nor a sample is farther than the relief; sideways a ray goes over all cells of either axis.
+// delta of any ray over a field of one tile, in metres: neither the ray's height, nor its fall, nor a sample is farther
+// from the base of a frame than the relief; sideways, a ray crosses all cells along either axis.
 double delta_of(const HeightField& field) {
   constexpr double kRoundings = 16, kUnit = 0x1p-24;
   const double relief = field.max_height() - field.min_height();

@@ -53,7 +53,7 @@ enum class Holes { none, one, many };
 
 constexpr int kSide = 64;
 
-// Holes inside of the field, next to one another, at borders and corners, and islands among them.
+// Holes inside the field, next to one another, at borders and corners, and islands among them.
 bool in_many_holes(int col, int row) {
   const bool corner = col > 54 && row > 50, border = row < 3 && col > 25 && col < 40;
   const bool ring = col >= 34 && col < 52 && row >= 34 && row < 48 && !(col > 38 && col < 48 && row > 37 && row < 45);
@@ -422,7 +422,7 @@ class TerrainFrame : public OnDevice {};
 TEST_F(TerrainFrame, ResumesWhereItWasInterrupted) {
   Row row = rows()[1];
   for (const bool stepped : {true, false}) {
-    // Under sanitizers the shorter one of the two.
+    // Under sanitizers, only the shorter of the two runs.
     if (stepped && test::cases(1, 1, 0) == 0) continue;
     row.march = stepped ? "fixed-step" : "max-mip";
     const HeightField field = hills(row.field);
@@ -513,7 +513,7 @@ TEST_F(TerrainFrame, RendersInParts) {
   EXPECT_GT(ground, 1000);
 }
 
-TEST_F(TerrainFrame, ReportsWhatItsRaysHit) {
+TEST_F(TerrainFrame, ReportsTheHitsOfItsRays) {
   const Row row = rows()[6];
   const HeightField field = hills(row.field);
   const PictureSettings settings = settings_of(row);
@@ -554,7 +554,7 @@ TEST_F(TerrainFrame, ReportsWhatItsRaysHit) {
   for (const int kind : {0, 1, 3}) EXPECT_GT(kinds[static_cast<std::size_t>(kind)], 100) << kind;
 }
 
-// Grey levels are heights to within half a level; rays that just hit or miss a crest may differ.
+// Grey levels match heights to within half a level; rays that just hit or miss a crest may differ.
 TEST_F(TerrainFrame, MatchesTheHeightsOfSteps) {
   Row row = rows()[2];
   ASSERT_EQ(row.name, "by_view");

@@ -92,7 +92,7 @@ TEST(SkyOcclusion, MatchesTheHorizonAtTheFootOfAWall) {
     const LightPoint point = point_at(scene, 33 - d, kLength / 2);
     const double hidden = mean_of_pixels(
         kPixels, kCount, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); });
-    // Past the ends of the wall look the azimuths within atan(d / half its length) of its line.
+    // Azimuths within atan(d / half its length) of the wall's line look past its ends.
     const double past_the_ends = std::atan(d / (kLength / 2)) / std::numbers::pi;
     EXPECT_NEAR(hidden, (1 - std::cos(std::atan(height / d))) / 2, four_sigma(kPixels, kCount) + past_the_ends)
         << height << " m at " << d;

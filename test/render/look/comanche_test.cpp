@@ -32,8 +32,8 @@ HeightField endless() {
   return HeightField::own(rough(), kPeriod, kPeriod, settings);
 }
 
-// The same ground, laid out kCopies times each way. Row 0 is the northern one: the south-west sample of both is the
-// same.
+// The same ground, repeated kCopies times along each axis. Row 0 is the northern one: both fields have the same
+// south-west sample.
 HeightField tiled() {
   const std::vector<float> tile = rough();
   std::vector<float> samples;

@@ -82,7 +82,7 @@ TEST(Ramp, BytesRoundTripThroughLinearLight) {
   }
 }
 
-// srgb_byte() uses a table; all floats around the beginnings of bytes, and some of the others.
+// srgb_byte() uses a table: tests all floats near the thresholds between bytes, and some other floats.
 TEST(Ramp, BytesMatchTheShaders) {
   const auto expect_same = [](float linear) { ASSERT_EQ(srgb_byte(linear), glsl::scarp_srgb_byte(linear)) << linear; };
   for (std::uint32_t bits = 0; bits < 0x40000000; bits += 4001) expect_same(std::bit_cast<float>(bits));

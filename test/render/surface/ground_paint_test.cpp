@@ -14,7 +14,7 @@ namespace {
 
 const dvec3 kSun = normalize(dvec3(-1, 0, 1));
 
-// Paint of ground of 10 x 10 cells of 10 m, from 0 to 100 m.
+// Paint for ground of 10 x 10 cells of 10 m, with heights from 0 to 100 m.
 class Paint {
  public:
   explicit Paint(const GroundPaintSettings& settings)

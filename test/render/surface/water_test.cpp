@@ -105,7 +105,7 @@ TEST(Water, ReflectsTheVisibleSky) {
   const Scene scene = test::terrain(flat(0), "max-mip");
   PictureSettings settings = plain(64, 48);
   settings.water->level = 50;
-  settings.water->turbidity = 1e6;  // no bottom to be seen
+  settings.water->turbidity = 1e6;  // no visible bottom
   const Camera camera = Camera::look_at({4000, 100, 300}, {4000, 3000, 0}, 50, 64, 48);
   const PictureLayers layers = render_layers(scene, camera, settings);
   const vec3 deep = Water(*settings.water, scene).deep();

@@ -39,7 +39,7 @@ TEST(FileVoxels, KeepTheModelsCoordinates) {
   file.version = 200;
   file.models = {{{10, 12, 9}, {{5, 6, 7, 3}}}};
   EXPECT_EQ(hit_voxel(placed_voxels_from(file)), ivec3(5, 6, 7));
-  // Turned by a quarter about x, and moved.
+  // Rotated by a quarter turn about x, and moved.
   file.nodes = {{0, {}, VoxTransform{1, -1, -1, {{{"_r", "40"}, {"_t", "7 8 9"}}}}}, {1, {}, VoxShape{}}};
   EXPECT_EQ(hit_voxel(placed_voxels_from(file)), ivec3(5, 6, 7));
 }

@@ -34,7 +34,7 @@ std::string scanner_text(const std::string& elevations = R"("elevations": [2, -1
 
 std::string with_more(const std::string& more) { return scanner_text().insert(scanner_text().size() - 1, ", " + more); }
 
-TEST(ScannerFile, ReadsAScannerThatStands) {
+TEST(ScannerFile, ReadsAStationaryScanner) {
   const ScannerFile file = parse_scanner(R"({
     "about": "test",
     "elevations": {"from": 2, "to": -24, "count": 27},
@@ -115,7 +115,7 @@ TEST(ScannerFile, ReadsAPath) {
   EXPECT_EQ(file.places.at(1), "/path/1");
 }
 
-TEST(ScannerFile, ReadsThePathOfATableBesideTheFile) {
+TEST(ScannerFile, ReadsThePathFromATableBesideTheFile) {
   std::string name = (fs::temp_directory_path() / "scarp-scanner-XXXXXX").string();
   const fs::path folder = ::mkdtemp(name.data());
   std::ofstream(folder / "drive.csv") << "time,lon,lat,z,heading\n0,10,0,5,350\n1,10.1,0,5,10\n";

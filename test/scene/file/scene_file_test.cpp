@@ -121,7 +121,7 @@ TEST_F(SceneFiles, SupportWaterAndFog) {
   EXPECT_FALSE(plain.water->srgb || plain.water->waves || plain.water->reflection || plain.fog->visibility);
 }
 
-// Voxels by name of their looks: a rounded cube lacks its corner, and has a smooth normal next to it.
+// The looks of voxels, by name: a rounded cube lacks its corner, and has a smooth normal next to it.
 TEST_F(SceneFiles, SupportVoxelLooks) {
   Binvox cube;
   cube.size = ivec3(2);
@@ -144,7 +144,7 @@ TEST_F(SceneFiles, SupportVoxelLooks) {
   EXPECT_EQ(surface.openness, 1);
 }
 
-// A cube of 4 voxels, without a cube of 2 in its upper corner, which is turned and moved, and of another colour.
+// A cube of 4 voxels minus a cube of 2 voxels in its upper corner, which is rotated, moved, and of another colour.
 TEST_F(SceneFiles, CombineVoxels) {
   for (const int side : {2, 4}) {
     Binvox cube;
@@ -177,7 +177,7 @@ TEST_F(SceneFiles, CombineVoxels) {
   const SceneFile both = read(combined("union", "[6.5, 0, 3]"));
   EXPECT_EQ(height(both, 2, 1), 8);
   EXPECT_EQ(height(both, 10, 1), 10);
-  // Combinations are parts of others; an empty result is a note.
+  // Combinations can be parts of others; an empty result causes a note.
   const SceneFile nested = read(R"({"objects": [{"shape": {"sphere": {"radius": 1}}}, {"voxels": {"centred": true,
     "subtract": [{"union": [{"file": "cube2.binvox"}, {"file": "cube2.binvox", "at": [2, 0, 0]}]},
                  {"file": "cube4.binvox"}]}}]})");

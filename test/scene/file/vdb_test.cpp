@@ -178,7 +178,8 @@ TEST_F(VdbFiles, RejectsOversizedOrSkewedGrids) {
 
 TEST_F(VdbFiles, RejectsTruncatedFiles) {
 #ifndef NDEBUG
-  // OpenVDB allocates as much memory as the rest of such a file states. The address sanitizer stops the program there.
+  // OpenVDB allocates as much memory as the rest of such a file declares. The address sanitizer stops the program
+  // there.
   GTEST_SKIP() << "OpenVDB under the address sanitizer";
 #endif
   nanovdb::io::writeGrid(path("ball.nvdb"), nanovdb::openToNanoVDB(*ball()));

@@ -328,7 +328,7 @@ TEST(SceneMesh, AppliesItsPlacement) {
   EXPECT_NEAR(hit.t, 10, 1e-5);
   EXPECT_NEAR(length(scene.surface(down, hit).normal - dvec3(0, 0, 1)), 0, 1e-15);
   EXPECT_TRUE(scene.occluded(down));
-  // Clockwise: what points east points south then.
+  // Clockwise: a vector to the east then points south.
   EXPECT_NEAR(length(place.turn * dvec3(1, 0, 0) - dvec3(0, -1, 0)), 0, 1e-15);
 
   const auto refuse = [&](const MeshPlacement& wrong, const char* what) {
