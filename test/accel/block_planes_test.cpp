@@ -104,8 +104,8 @@ TEST(BlockPlanes, StayTightOnGentleGroundBesideACliff) {
   EXPECT_LT(pyramid.planes().steepest() * step, mean + 2 * step);
 }
 
-// Planes follow a slope, maxima cannot. On each level slopes are rounded by half a step at most, over half the block
-// along both axes, the depth by one step, and codes by less than two.
+// Planes follow a slope, while maxima cannot. On each level, slopes are rounded by at most half a step, over half the
+// block along both axes, the depth by one step, and codes by less than two steps.
 TEST(BlockPlanes, FollowASlope) {
   for (const auto& [east, south] : {std::pair{40.0, 0.0}, {0.0, -40.0}, {31.0, 17.0}, {-25.0, 38.0}}) {
     const HeightField field = field_of<float>(slope(129, 129, east, south), 129, 129);

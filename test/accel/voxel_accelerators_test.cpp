@@ -142,8 +142,8 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
   return name;
 });
 
-// Rows shorter than a vector, of one and of several vectors, and beyond the longest run that counts; along each axis;
-// before and after edits.
+// Rows shorter than a vector, as long as one or several vectors, and beyond the longest run that counts; along each
+// axis; before and after edits.
 TEST(VoxelAccelerators, MatchTheirDefinitionsForRowsOfAnyLength) {
   Random random(14);
   for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),

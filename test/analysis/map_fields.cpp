@@ -136,7 +136,7 @@ std::vector<SunDirection> map_suns() {
   std::vector<SunDirection> suns;
   for (const double azimuth : {0, 45, 90, 135, 180, 225, 270, 315}) suns.push_back({azimuth * kDegree, 30 * kDegree});
   for (const double azimuth : {1, 63, 200, 333}) suns.push_back({azimuth * kDegree, 5 * kDegree});
-  // A ray that falls by exactly one metre per metre, where grazing counts.
+  // Rays that fall by exactly one metre per metre, where grazing counts.
   suns.push_back({90 * kDegree, std::atan(1.0)});
   suns.push_back({2.5, 89 * kDegree});
   suns.push_back({2.5, std::numbers::pi / 2});

@@ -48,7 +48,7 @@ class Cli : public testing::Test {
     EXPECT_EQ(scratch_.files(), before);
   }
 
-  // Waits until there is a file besides the one that the test made.
+  // Waits until there is a file other than the one that the test made.
   void wait_for_output() const {
     for (int i = 0; i < 2000 && scratch_.files().size() < 2; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -599,7 +599,7 @@ TEST_P(Interrupt, EndsBlockedReads) {
   const int second = GetParam() == SIGINT ? SIGTERM : SIGINT;
   test::Program program(waiting, nullptr, pipe);
   begun(program);
-  // If two are pending at once, the system chooses which comes first.
+  // If two signals are pending at once, the system chooses which comes first.
   const std::string status = fmt::format("/proc/{}/status", program.pid());
   for (int i = 0; i < 2000 && test::text_of(status).find("\nShdPnd:\t0000000000000000\n") == std::string::npos; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -206,7 +206,7 @@ TEST(Overlay, IsPlacedByItsGeoreference) {
   }
 }
 
-// The mirror image of the red half is next to it, over the border.
+// The mirror image of the red half is next to it, across the border.
 TEST(Overlay, IsMirroredWithTheGround) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), image = scratch.path("red.png");

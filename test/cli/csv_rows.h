@@ -14,7 +14,7 @@
 
 namespace scarp::test {
 
-/// Values by column.
+/// Values by column name.
 using Row = std::map<std::string, std::string>;
 
 /// Returns the number in a column; 0 for an empty field.

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::kAnyDifference, test::kMaxDifference;
 
-// The picture as a file of the tests, `name`.png, against the golden one; `where` names its origin.
+// Compares the picture with the golden file `name`.png; `where` names its origin.
 void expect_golden(const std::string& picture, const std::string& name, int most, const std::string& where = "") {
   if (!where.empty() && std::getenv("SCARP_NEW_GOLDEN")) return;  // the golden pictures are the CPU's
   test::expect_golden(picture, fs::path(SCARP_SOURCE_DIR) / "test" / "golden" / (name + ".png"), most,

@@ -327,7 +327,7 @@ TEST_F(MapsCli, LosWritesCsvAndGeoJson) {
   EXPECT_EQ(json["features"][2]["properties"]["part"], "blocked");
   EXPECT_EQ(json["features"][1]["geometry"]["coordinates"][1], json["features"][2]["geometry"]["coordinates"][0]);
   EXPECT_NEAR(json["features"][0]["geometry"]["coordinates"][0][0].get<double>(), 15, 0.01);
-  // Its own output is a table of lines.
+  // Its own output is also a valid table of lines.
   ASSERT_EQ(run(on_dem("los") + places + Names{"-o", path("l.geojson")}).status, 0);
   const auto again = run(on_dem("los") + Names{"--lines", path("l.geojson"), "--heights", "sea", "--cc", "0"});
   ASSERT_EQ(again.status, 0) << again.err;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Runs `scarp` on a spiteful file and judges mechanically what any user may expect:
 //
-//   always    ends by itself, soon, within the memory that its file is worth
+//   always    ends by itself, soon, with memory in proportion to its file
 //   refused   one line on stderr that names the file, says what is wrong and what to do; no file written
 //   shown     the requested output; a picture with voxels on 0.5 % of its pixels, or a warning that says why not
 //   nothing   no voxel to see: `info` may describe the file, `render` and `voxelise` refuse it, others may do either

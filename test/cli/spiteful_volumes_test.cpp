@@ -54,7 +54,7 @@ TEST(SpitefulBinvox, Headers) {
 
 TEST(SpitefulBinvox, Runs) {
   const auto of = [](const std::vector<std::pair<int, int>>& runs) { return binvox("dim 4 4 4\n", runs); };
-  // A floor of 128 x 128 under much air: y fastest, then z. 63 runs of 255 and one of 191 are 127 rows.
+  // A floor of 128 x 128 below a large empty space: y fastest, then z. 63 runs of 255 and one of 191 are 127 rows.
   std::string floor = "#binvox 1\ndim 128 128 128\ndata\n";
   for (int column = 0; column < 128; ++column) {
     floor += bytes({1, 128});
@@ -202,7 +202,7 @@ TEST(SpitefulOthers, Kv6) {
 }
 
 TEST(SpitefulOthers, Vxl) {
-  // 60 to 61 of 64 are coloured, below them it is solid: 4 layers.
+  // Layers 60 and 61 of 64 are coloured, and the layers below are solid: 4 layers.
   const std::string map = vxl_columns(512 * 512, 60, 61);
   check_all(
       {

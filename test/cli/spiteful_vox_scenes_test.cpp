@@ -103,7 +103,7 @@ TEST(SpitefulScene, AllRotationBytes) {
              {"a rotation that is a word", once({{{"_r", "four"}}}), refused("rotation")}});
 }
 
-// A model of 2 x 3 x 4 turned a quarter about z, and about x.
+// A model of 2 x 3 x 4, rotated by a quarter turn about z, and about x.
 TEST(SpitefulScene, RotationsTurnTheModel) {
   const auto turned = [](int byte) {
     return scene(moved(0, 1, {{{"_r", std::to_string(byte)}}}) + shape(1), block({2, 3, 4}));

@@ -80,7 +80,8 @@ TEST(SpitefulVox, Sizes) {
   });
 }
 
-// Canvases of 256^3 with dots in two corners: a few kilobytes that state gigabytes, side by side and in one another.
+// Canvases of 256^3 with dots in two corners: a few kilobytes that declare gigabytes, side by side and inside one
+// another.
 TEST(SpitefulVox, ManyNearlyEmptyModels) {
   constexpr int kModels = 300;
   const auto file = [](int step) {

@@ -197,7 +197,7 @@ struct Holds {
     return squared(p.x) + squared(p.y) <= squared(c.radius + (c.top - c.radius) * p.z / c.height);
   }
   bool operator()(const Torus& t) const {
-    // A spindle is filled: within it the quartic changes sign a second time.
+    // A spindle torus is filled: inside it, the quartic changes sign a second time.
     const double r = std::sqrt(squared(p.x) + squared(p.y));
     return squared(r - t.radius) + squared(p.z) <= squared(t.tube);
   }

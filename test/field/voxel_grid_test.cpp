@@ -163,7 +163,7 @@ TEST(VoxelGrid, PacksEntriesOfEveryWidth) {
   }
 }
 
-// More pages than one, so that some are stored before.
+// More than one page, so that some are stored before the edit fails.
 TEST(VoxelGrid, StaysConsistentAfterAThrowingEdit) {
   VoxelGrid grid({48, 32, 16}, 4);
   grid.set({20, 20, 8}, 5);
@@ -174,7 +174,8 @@ TEST(VoxelGrid, StaysConsistentAfterAThrowingEdit) {
   EXPECT_THROW(grid.set(placed), Error);
   before.expect(grid);
 
-  // Overlapping itself, with an entry that does not fit: when it fills, and when it clears.
+  // An edit of all voxels that fails midway: by an entry that does not fit while it fills, and by an exception while it
+  // clears.
   const auto edit = [&](const VoxelGrid::Voxel& to, const std::function<VoxelGrid::Voxel()>& last) {
     int asked = 0;
     grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) { return ++asked == 20'000 ? last() : to; });
@@ -199,8 +200,8 @@ TEST(VoxelGrid, RejectsSizesOutOfRange) {
   EXPECT_THROW(grid.unite(VoxelGrid({4, 4, 5})), Error);
 }
 
-// Pages that the source knows, and full ones that share their masks, have the same content as voxels set one by one,
-// also after edits.
+// Pages that the source describes, and full pages that share their masks, have the same content as voxels set one by
+// one, also after edits.
 TEST(VoxelGrid, BuildsWorldsPageByPage) {
   for (const ivec3& size : {ivec3(300, 20, 24), ivec3(256, 16, 20), ivec3(70, 33, 50)}) {
     const auto height = [](int x, int y) { return 12 + (x / 40 + y / 5) % 4 - (y >= 4 && y < 8 ? 9 : 0); };

@@ -122,7 +122,7 @@ TEST(Lipschitz, NeverPassesTheSurface) {
             const double reach = std::abs(p.z) + length(ray.origin) + field.width() + field.depth();
             return ground && p.z < *ground - 0x1p-48 * reach * (1 + target.slope);
           };
-          // From below the ground it may pass a short stretch above it.
+          // A ray from below the ground may pass a short stretch above it.
           const double later = oracle.t + 0x1p-10 * cell;
           EXPECT_FALSE(is_under(later) && later < before.t_max && !is_under(oracle.t - 0x1p-10 * cell))
               << fields.name << ", " << rays.name << ": passed t = " << oracle.t << ", got "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Marches over terrain functions against proofs by interval arithmetic: the conservative ones lose nothing.
+// Marches over terrain functions against proofs by interval arithmetic: conservative marches lose no hits.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -55,7 +55,8 @@ TEST(ClosestPoint, StaysWithinItsBoundOnBilinearCells) {
   for (int round = 0; round < 12; ++round) {
     const HeightField field = rugged(random, 20, 3, round % 3 ? 0.05 : 0, {.offset = 10});
     const MaxPyramid pyramid(field);
-    // Pieces of a cell are this far from it: a quarter of their twist, which is at most 4 times the relief of 6 m.
+    // The pieces of a cell deviate from it by this much: a quarter of their twist, which is at most 4 times the relief
+    // of 6 m.
     const double off = 0.25 * 24 / (kParts * kParts),
                  bound = 0x1p-20 * std::min(field.settings().cell_x, field.settings().cell_y);
     for (int i = 0; i < 20; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles against Embree on the same triangles: the same rays, bit-identical in float32, to two engines.
+// Compares Scarp with Embree on the same triangles: both engines trace the same rays, bit-identical in float32.
 //
 // Embree computes in float32: in the coordinates of a vertex, in the edge functions and in t. If L is the largest input
 // coordinate, each clearance of its planes is off by some 2^-24 L, of which 32 are allowed (vertices minus origin, two
@@ -91,7 +91,7 @@ class EmbreeScene {
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
     rtcIntersect1(scene_, &context, &query);
     _mm_setcsr(before);
-    // The normal of a triangle that is walked anticlockwise seen from above points up.
+    // The normal of a triangle whose corners are anticlockwise, seen from above, points up.
     const double facing =
         query.hit.Ng_x * ray.direction.x + query.hit.Ng_y * ray.direction.y + query.hit.Ng_z * ray.direction.z;
     return {query.hit.geomID != RTC_INVALID_GEOMETRY_ID, query.ray.tfar, facing > 0};

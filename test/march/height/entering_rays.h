@@ -100,7 +100,7 @@ inline void expect_entering_rays_go_on(const HeightMarchEntry& march, const Cast
           EXPECT_EQ(lost + late, 0);
         }
         EXPECT_LE(lost + early + late, judged / 30);
-        // After a hole `lipschitz` cannot decide, and gives up.
+        // Behind a hole `lipschitz` cannot decide, and gives up.
         if (march.name == "lipschitz" && pierced && !solid) continue;
         EXPECT_GE(right, judged * 9 / 10)
             << lost << " lost, " << early << " early, " << late << " late, " << gave_up << " gave up";

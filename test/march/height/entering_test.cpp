@@ -42,7 +42,7 @@ TEST_P(EnteringRays, ContinueIntoTheField) {
 INSTANTIATE_TEST_SUITE_P(Marches, EnteringRays, testing::ValuesIn(marches_that_go_on()),
                          [](const auto& of) { return test_name(std::string(of.param.name)); });
 
-// The shaders' text, as C++.
+// The shader text, as C++.
 TEST(EnteringRays, ContinueInSinglePrecision) {
   for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
     expect_entering_rays_go_on(
@@ -61,7 +61,7 @@ TEST(EnteringRays, ContinueInSinglePrecision) {
   }
 }
 
-// A tolerance that grows with the distance does not hide the exit.
+// A tolerance that grows with the distance does not hide where the ray leaves the ground.
 TEST(EnteringRays, ContinueFromFarAway) {
   const HeightField field = bowl_field(false, false);
   const MaxPyramid pyramid(field);

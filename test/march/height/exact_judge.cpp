@@ -102,7 +102,7 @@ class Caster {
       const auto tx = x_.next(), ty = y_.next();
       const bool through_x = tx && (!ty || *tx <= *ty);
       const auto line = through_x ? tx : ty;
-      // The range is closed: where it ends on a line, the next cell is touched.
+      // The range is closed: if it ends on a line, the ray touches the next cell.
       const bool ends = !line || *line > *t_end_ || (*line == *t_end_ && (strict_ || t_max_ != line));
       const Rational out = line ? std::min(*t_end_, *line) : *t_end_;
       choose_side_of_line();
@@ -133,7 +133,7 @@ class Caster {
     if (!h) return {};
     return Corners{Rational(h->h00), Rational(h->h10), Rational(h->h01), Rational(h->h11)};
   }
-  // A ray along a line belongs to the cells on both sides: to one with ground, if there is any.
+  // A ray along a line is over the cells on both sides; a cell with ground takes precedence.
   void choose_side_of_line() {
     const auto sides = [&](Axis& axis) {
       const bool along = !strict_ && !axis.moves() && floor_of(axis.origin) == axis.origin;
@@ -152,7 +152,7 @@ class Caster {
     }
   }
 
-  // Ground may touch the ray in a node, or where it starts on a rim.
+  // Ground may touch the ray at a node, or where the ray starts on a rim.
   void touch_around(const Rational& t) {
     const Rational x = x_.at(t), y = y_.at(t);
     const auto beside = [](const Rational& place) {

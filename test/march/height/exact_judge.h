@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The hits of a ray in rational arithmetic: no rounding, so ties are exact. For small fields.
+// The hits of a ray in rational arithmetic: nothing is rounded, so ties are exact. For small fields.
 //
-// The chain of cells, what counts as a hit and the order of ties are those that ray.h, height_field.h and
-// doc/dev/numerics.md state; nothing here is shared with the marches. Signs are exact. An irrational root is not
-// computed: it is compared with rationals, by signs.
+// The chain of cells, the definition of a hit and the order of ties are those of ray.h, height_field.h and
+// doc/dev/numerics.md; nothing here is shared with the marches. Signs are exact. An irrational root is not computed: it
+// is compared with rationals, by signs.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -24,7 +24,7 @@ struct ExactHit {
 
   /// Whether the hit is at t or before.
   bool not_after(const Rational& t) const;
-  /// Whether it is within `tolerance` > 0 of t.
+  /// Whether the hit is within `tolerance` > 0 of t.
   bool is_at(double t, double tolerance) const;
 };
 
@@ -33,7 +33,7 @@ struct ExactAnswer {
   std::vector<ExactHit> hits;  ///< in order of t
 };
 
-/// All hits of a ray, whose range is finite where the field wraps round.
+/// All hits of a ray. Its range must be finite if the field wraps.
 ExactAnswer cast_exactly(const HeightField& field, const Ray& ray);
 
 }  // namespace scarp::test

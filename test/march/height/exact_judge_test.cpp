@@ -168,7 +168,7 @@ TEST_P(Exact, BreaksTiesAsDocumented) {
       }
     }
   }
-  // The rays are aimed so that both occur.
+  // The rays are aimed so that both hits and misses occur.
   EXPECT_GT(hits_seen, kRays / 10 * (bad == 0));
 }
 
@@ -176,8 +176,8 @@ TEST_P(Exact, BreaksTiesAsDocumented) {
 TEST(Exact, FindsASecondHitInTheCellOfATouch) {
   const HeightField field = HeightField::own<float>({0, 1, 2, 0}, 2, 2);
   const MaxPyramid pyramid(field);
-  // Along the diagonal from the north-east the ground is at 1 - 2 s + 3 s^2, the ray at 1: on the surface again at s =
-  // 2/3.
+  // Along the diagonal from the north-east the ground is at 1 - 2 s + 3 s^2, and the ray at 1, so the ray is on the
+  // surface again at s = 2/3.
   const Ray ray{{2, 2, 1}, {-1, -1, 0}};
   const ExactAnswer exact = cast_exactly(field, ray);
   ASSERT_EQ(exact.hits.size(), 2u);

@@ -37,7 +37,7 @@ struct Moving {
   dvec3 motion;
 };
 
-// Between random positions around the field, some of them aimed at nodes, sides and grazes.
+// Capsules move between random positions around the field; some of them are aimed at nodes, sides and grazes.
 Moving random_sweep(const HeightField& field, const std::vector<JudgedTriangle>& triangles, Random& random) {
   const auto about = [&] {
     return dvec3(uniform(random, -2, field.width() + 2), uniform(random, -2, field.depth() + 2),
@@ -116,7 +116,7 @@ TEST(Sweep, StopsAtThePlane) {
   EXPECT_NEAR(length(ball->point - dvec3(4, 4, 1)), 0, kRounding);
   // From below, the plane's lower side is hit.
   EXPECT_EQ(sweep(target, {{4, 4, -3}, {4, 4, -3}, 1}, {0, 0, 6})->normal, dvec3(0, 0, -1));
-  // An upright capsule, and a lying one.
+  // A vertical capsule, and a horizontal one.
   EXPECT_DOUBLE_EQ(sweep(target, {{4, 4, 3}, {4, 4, 9}, 0.5}, {0, 0, -3})->t, 0.5);
   EXPECT_DOUBLE_EQ(sweep(target, {{2, 4, 3}, {6, 4, 3}, 0.5}, {0, 0, -3})->t, 0.5);
   // Outside of the field, at its border, and too short.
@@ -168,7 +168,7 @@ TEST(Sweep, StaysPreciseOverLongDistances) {
   EXPECT_NEAR((from + hit->t * motion).z, 0.25, judged.rounding());
 }
 
-// The part of a triangle in a box: cut by one side after the other.
+// The part of a triangle inside a box, clipped by one side after another.
 bool cut_by_box(const JudgedTriangle& triangle, const TurnedBox& box, double wider) {
   std::vector<dvec3> part;
   for (const dvec3& corner : triangle) part.push_back(glm::transpose(box.turn) * (corner - box.centre));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The sampling marches on a Vulkan device, compared with their text as C++: the same points, also along rays that are
-// clipped at the highest sample.
+// The sampling marches on a Vulkan device, compared with their text as C++: they sample the same points, also along
+// rays that are clipped at the highest sample.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Answers must not depend on the orientation of the field, its scale, the length of the direction, or the splitting of
-// a range. Coordinates are round enough that signs are exact, so ties must be equal, too.
+// a range. Coordinates have so few digits that signs are exact, so ties must be equal, too.
 //
 // Mirroring flips the diagonals of triangles, so over triangles only half a turn and the transpose apply.
 #include <gtest/gtest.h>
@@ -175,7 +175,7 @@ TEST_P(Invariance, PowerOfTwoScalesAreBitIdentical) {
 
 TEST_P(Invariance, TScalesExactlyWithTheDirection) {
   for_each_case([](const Case& c, const Hit& hit, Random& random) {
-    // Far enough for the lengths that marches rescale.
+    // Scales large enough for the lengths that marches rescale.
     const int power = whole(random, -700, 700);
     Case longer = c;
     longer.direction = c.direction * std::ldexp(1.0, power);
@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Invariance,
                                   (kind.param.wrap == Wrap::none ? "" : "_periodic");
                          });
 
-// Where all cells are planes, both surfaces are one.
+// If all cells are planar, both surfaces are identical.
 TEST(Surfaces, AgreeOnPlanarCells) {
   Random random(7);
   int hits = 0;

@@ -179,7 +179,7 @@ TEST(MaxMipEasy, NoRayIsLostBetweenCells) {
   EXPECT_EQ(wrong, 0);
 }
 
-// Closed: a ray that does not move along the axis on the last line is over the last cell.
+// The border is closed: a ray on the last line that does not move along the axis is over the last cell.
 TEST(MaxMipEasy, IncludesTheBorder) {
   const HeightField field = HeightField::own(std::vector<float>(7 * 5, 2.0f), 7, 5);
   const MaxPyramid pyramid(field);
@@ -198,7 +198,7 @@ TEST(MaxMipEasy, IncludesTheBorder) {
   EXPECT_FALSE(ground.max_mip_easy({2, -0.001f, 9}, {0, 0, -1}, 1e9f, false).hit);
 }
 
-// Over a plane no ray along it or up from it is in the shadow of its own start.
+// Above a plane, no ray along it or up from it is blocked where it starts.
 TEST(MaxMipEasy, NeverHitsWhereARayStarts) {
   Random random(6);
   constexpr int kCols = 300, kRows = 200, kPlanes = 10;
@@ -259,7 +259,7 @@ TEST(MaxMipEasy, NormalsMatchTheSurface) {
   }
 }
 
-// Rays that enter below the ground stop at once.
+// Rays that enter below the ground stop immediately.
 TEST(MaxMipEasy, StopsRaysFromBelow) {
   for (const bool solid : {false, true}) {
     const HeightField field = bowl_field(false, solid);
@@ -294,7 +294,7 @@ TEST(MaxMipEasy, RejectsUnsupportedFields) {
   EXPECT_EQ(refused(6, {.wrap = Wrap::periodic}), takes + "wraps (use max-mip)");
 }
 
-// The text is meant for pasting.
+// The shader text is meant for pasting.
 TEST(MaxMipEasy, SourceIsShortAndSelfContained) {
   std::ifstream file(SCARP_SOURCE_DIR "/scarp/march/height/max_mip_easy.glsl.h");
   int lines = 0;

@@ -207,7 +207,7 @@ TEST(MaxMipSimd, HandlesVeryLongFields) {
   }
 }
 
-// Starts outside of their stated cell, by much and by less than a millionth of a cell: over ground above and below 0,
+// Starts outside their stated cell, far outside or by less than a millionth of a cell: over ground above and below 0,
 // because a wrong start looks right if 0 is below the ground.
 TEST(MaxMipSimd, HandlesStartsBesideTheirCell) {
   Random random(76);
@@ -398,7 +398,8 @@ TEST(MaxMipSimd, HandlesWrappedFields) {
 }
 
 // Rays that fall or climb so steeply that they hit in front of a seam when a rounded position is already behind it: the
-// ray below is through the ground at t = 7.75 and at the seam at t = 8. And at u = -0, which equals 0 and stays -0.
+// ray below passes through the ground at t = 7.75 and reaches the seam at t = 8. Also rays at u = -0, which equals 0
+// and stays -0.
 TEST(MaxMipSimd, StartsNextToASeam) {
   Random random(79);
   const int side = 128;
@@ -495,7 +496,7 @@ std::vector<Ray> fans(const HeightField& field, Random& random) {
     const double beside = fan % 8 == 7 ? 3 : 0;
     dvec3 eye{pick(-beside, field.width() + beside), pick(-beside, field.depth() + beside), 0};
     eye.z = field.height(eye.x, eye.y).value_or(400) + std::exp2(uniform(random, -20, 6));
-    // Level rays slightly below a peak: only an exact maximum does not let them pass.
+    // Level rays slightly below a peak: only an exact maximum stops them.
     const bool level = fan % 8 == 5;
     dvec3 peak = eye;
     if (level) {
@@ -568,7 +569,7 @@ TEST(MaxMipSimd, CoherentRaysLoseNoHits) {
   for (const auto& [name, rays] : together) EXPECT_GT(rays, 10'000u * kFans / 120) << name;
 }
 
-// Each among rays that fall in from outside, which form beams.
+// Each ray is among rays that come down from outside, which form beams.
 TEST(MaxMipSimd, HandlesUnusualNumbers) {
   const HeightField field = test::hills(129, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);

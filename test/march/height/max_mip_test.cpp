@@ -63,7 +63,8 @@ TEST(MaxMip, MeasuresTInLengthsOfTheDirection) {
 }
 
 TEST(MaxMip, HitsEveryNodeFromAnyDirectionAbove) {
-  // Rays aimed at nodes slip through engines that test triangles one by one. Here each must hit, at the node.
+  // Rays aimed at nodes pass between the triangles in engines that test triangles one by one. Here each ray must hit,
+  // at the node.
   const Terrain terrain = hills();
   Random random(3);
   for (int i = 0; i < 20'000; ++i) {
@@ -183,7 +184,7 @@ TEST(MaxMip, PassesThroughHoles) {
 }
 
 TEST(MaxMip, DoesNotHitThePlaneARayStartsOn) {
-  // Any direction in a tilted plane, from any point of it: rounding must not look like ground.
+  // Any direction within a tilted plane, from any of its points: rounding must not look like ground.
   std::vector<float> samples;
   for (int row = 0; row < 40; ++row) {
     for (int col = 0; col < 40; ++col) samples.push_back(static_cast<float>(0.5 * col + 0.25 * row));
@@ -292,8 +293,8 @@ RC_GTEST_PROP(MaxMip, LaterStartNeitherFindsEarlierHitsNorLosesAny, ()) {
   const double rounding = 16 * 0x1p-53 * (2 * 60 + 4 * (257 + 193) * 30);
   if (first && first.t > ray.t_min) {
     // Whether the ray starts outside of the field, above the ground or below it (and rises before that hit), the hit is
-    // still ahead. Only if it starts on the ground within the rounding of two clearances, that here and the march's, it
-    // may be on either side.
+    // still ahead. Only if it starts on the ground within the rounding of two clearances, the test's and the march's,
+    // may it be on either side.
     const dvec3 start = ray.at(ray.t_min);
     const std::optional<double> ground = terrain.field.height(start.x, start.y);
     if (!ground || std::abs(start.z - *ground) > 2 * rounding) RC_ASSERT(later);
@@ -351,7 +352,7 @@ TEST(MaxMip, DoesNotReportAnExitAtANode) {
 }
 
 RC_GTEST_PROP(MaxMip, RespectsTMaxAroundTheHit, ()) {
-  // Cut short before the hit, the ray misses; cut just after it, it hits at the same position.
+  // A ray that is cut before the hit misses; a ray that is cut just after it hits at the same position.
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);
   const Hit hit = terrain.cast(ray);

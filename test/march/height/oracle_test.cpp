@@ -7,9 +7,9 @@
 // must be on the surface and not on the way out of the ground. The use of neighbours is counted, so that it cannot
 // become a loophole.
 //
-// Lists of all hits are judged alike: equal ones are right; where they differ, each hit must be at a possible position,
-// and between one hit and the next none may be passed that all neighbours have. The lists may thus differ in touches,
-// and in whether a touch counts as passing through twice.
+// Lists of all hits are judged alike: equal lists are right; where they differ, each hit must be at a possible
+// position, and between one hit and the next the march may pass no hit that all neighbours have. The lists may thus
+// differ in touches, and in whether a touch counts as passing through twice.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -36,7 +36,7 @@ namespace {
 // Eight fields per pair under the sanitizers, which check memory accesses; these repeat with each ray.
 const int kRaysPerPair = cases(100'000, 10'000, 700);
 constexpr int kRaysPerField = 250;
-// Marches without a guarantee must only stay in the ray's range.
+// For marches without a guarantee, hits must only be in the ray's range.
 constexpr int kRaysPerApproximation = 20;
 
 // Unit roundoff, and the number of roundings that numerics.md counts on the way from a world coordinate to a sign.
@@ -121,14 +121,14 @@ class Judge {
  private:
   double slack(double t) const { return kRoundings * kUnit * (std::abs(t) + span() / length(ray_.direction)); }
 
-  // `expected` is the judge's and scaled.
+  // `expected` is the judge's hit, scaled.
   bool agree(const Hit& hit, const Hit& expected) const {
     if (hit.status != expected.status || hit.wall != expected.wall) return false;
     const double t = std::ldexp(hit.t, exponent_);
     return hit.status != HitStatus::hit || std::abs(t - expected.t) <= slack(t);
   }
 
-  // In a cell, and there on the surface or on a wall.
+  // The hit is in a cell, and there on the surface or on a wall.
   bool is_somewhere(const Hit& hit, double t) const {
     return is_in_its_cell(hit) && (hit.wall ? is_on_wall(hit, t) : is_on_surface(hit, t));
   }
@@ -331,7 +331,7 @@ class Judge {
         if (d != 0) t = std::max(t, std::min(-o / d, (size[axis] - o) / d));
       }
     }
-    // A few steps further in, to be certainly over it.
+    // A few steps further in, so that the ray is certainly over the field.
     t += 4 * (t - just_before(t));
     const dvec3 p = ray_.at(t);
     return t <= ray_.t_max && !is_at_rim(p) && !is_at_rim(ray_.at(std::max(ray_.t_min, t - 8 * (t - just_before(t)))))

@@ -18,7 +18,7 @@
 namespace scarp::test {
 namespace {
 
-// Bit for bit; exhaustive has no t, NaN, for directions of extreme length.
+// Bit for bit; for directions of extreme length, the t of exhaustive is NaN.
 bool identical(const Hit& a, const Hit& b) {
   const auto same = [](double x, double y) { return x == y || (x != x && y != y); };
   return same(a.t, b.t) && a.cell == b.cell && same(a.u, b.u) && same(a.v, b.v) && same(a.height, b.height);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rims of holes, borders and nodes belong to the ground for rays in any direction; and the end of a ray changes no hit.
+// Rims of holes, borders and nodes belong to the ground for rays in any direction; and cutting a ray does not change
+// its hits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -112,7 +113,7 @@ TEST_F(RimsOfHoles, AreHitAtTheirNodes) {
   EXPECT_GT(met, 500);
 }
 
-// t_max is inclusive: cut at the t of its hit, a ray has the same hit, and cut at any earlier t none.
+// t_max is inclusive: a ray that is cut at the t of its hit has the same hit, and no hit if it is cut earlier.
 TEST(Ends, DoNotChangeHits) {
   Random random(5);
   int hits = 0;

@@ -314,12 +314,12 @@ std::string RoundingJudge::objection(const Hit& hit) const {
     return fmt::format("row {} is off by {}, bound {}", place[1], place[1] - row - hit.v, off);
   const double f = clearance(col, row, t), d = kCertain * delta(col, row, t);
   if (hit.wall ? f > d : std::abs(f) > d) return fmt::format("clearance {} there, bound {}", f, d);
-  // Just before: the gap is smaller than the bounds.
+  // Just before the hit: the gap is smaller than the bounds.
   const double speed = std::max(std::abs(direction_.x), std::abs(direction_.y));
   if (strict_ && !hit.wall && speed > 0 && !comes_below(t, off / speed)) return "hits what it starts on";
   const Beliefs before = follow(speed > 0 ? t - off / speed : t);
   if (hit.wall && !before.unknown && !events_.empty() && t > begin_ + off / speed) return "a wall where there is none";
-  // It may have left the ground since.
+  // The ray may have left the ground since then.
   bool rises = false;
   for (const Event& event : events_) {
     rises = rises || (event.what == Event::ground && event.clearance > 0 && std::abs(event.t - t) * speed <= off);

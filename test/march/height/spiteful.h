@@ -17,7 +17,7 @@ using Random = std::mt19937_64;
 double uniform(Random& random, double low, double high);
 int whole(Random& random, int low, int high);  // both ends included
 
-/// Features of a field, and targets of a kind of rays: a sum of these.
+/// Features of a field, or of fields that a kind of rays targets: a sum of these.
 enum Feature : unsigned { kPlain = 0, kHoles = 1, kTriangles = 2, kWraps = 4 };
 
 struct FieldKind {

@@ -54,7 +54,7 @@ bool on_surface(const HeightField& f, Random& r, Ray& ray, const Place& place) {
     const auto h = f.cell_heights(cell);
     if (!h) continue;
     const double z = height_in_cell(f.settings().surface, *h, at.x - cell.col, at.y - cell.row);
-    // In a field that wraps round, in any copy.
+    // In a wrapped field, in any copy.
     const int reach = f.wraps() ? 3 : 0;
     ray.origin = f.world_from_grid(at.x + whole(r, -reach, reach) * f.cell_cols(),
                                    at.y + whole(r, -reach, reach) * f.cell_rows(), z);
@@ -179,7 +179,7 @@ const std::vector<RayKind>& endless_rays() {
          const dvec3 to = whole(r, 0, 1) ? node(f, r) : anywhere_in(f, r);
          const double azimuth = uniform(r, 0, 6.2832), rise = uniform(r, 0, 0.3);
          Ray ray = towards(to + 1e7 * dvec3(std::cos(azimuth), std::sin(azimuth), rise), to);
-         // Between the two there is nothing, or one copy after the other.
+         // Between the two points there is nothing, or one copy of the field after another.
          if (f.wraps()) ray.t_min = 1 - 4e-7 * period(f), ray.t_max = 1 + 4e-7 * period(f);
          return ray;
        }},
@@ -243,7 +243,7 @@ const std::vector<RayKind>& endless_rays() {
        kTriangles},
       {"at a hole's rim",
        [](const HeightField& f, Random& r) {
-         // The rim runs one sample off; its corners are off both ways.
+         // The rim is one sample away; its corners are one sample away along both axes.
          const dvec2 at = hole(f, r);
          const auto rim = [&](double along_it) {
            const double off = whole(r, 0, 1) ? 1 : -1;

@@ -17,7 +17,7 @@ struct Pair {
   std::size_t field, ray;
 };
 
-/// All rays over all fields that have their targets.
+/// All pairs of rays and fields in which the field has the features that the rays target.
 inline std::vector<Pair> pairs() {
   std::vector<Pair> pairs;
   for (std::size_t field = 0; field < spiteful_fields().size(); ++field) {

@@ -40,7 +40,7 @@ std::vector<double> leans() {
   return all;
 }
 
-// Rays over one field and their hits.
+// Rays over one field, and their expected hits.
 class SteepRays {
  public:
   explicit SteepRays(const HeightField& field, double seam = 0)

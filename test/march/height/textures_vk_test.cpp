@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The marches over textures, as WebGL has them, on a Vulkan device: the answers are those over buffers, bit for bit,
-// because it is the same text on the same numbers. parity_vk_test.cpp judges those over buffers.
+// The marches over textures, as WebGL has them, on a Vulkan device: the answers match those over buffers, bit for bit,
+// because the same source runs on the same numbers. parity_vk_test.cpp judges the answers over buffers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays that shaders compute in two floats per number, and slopes of the ground for shading: the text as C++.
+// Rays that shaders compute in two floats per number, and slopes of the ground for shading: the shader text, as C++.
 #include "scarp/march/height/two_float_ray.glsl.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, i
   prepared.marches = sent.marches != 0;
   glsl::ScarpHit answer = glsl::scarp_no_hit();
   if (prepared.marches) {
-    // In pieces, for drivers with limits.
+    // In pieces, for drivers that limit the length of a loop.
     glsl::ScarpWalk walk;
     if (glsl::scarp_begin_walk(ground, sent.ray, walk, answer)) {
       while (!glsl::scarp_go_on(ground, sent.ray, false, turns, walk, answer)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// sphere-trace against proofs by interval arithmetic and against closed forms: it loses nothing.
+// sphere-trace against proofs by interval arithmetic and against closed forms: it loses no hits.
 #include "scarp/march/shape/sphere_trace.h"
 
 #include <fmt/format.h>
@@ -106,7 +106,7 @@ TEST(SphereTrace, LosesNoHits) {
     fmt::print("{}: {} crossings, {} clear, {} undecided, {} exhausted, {} early, {} inexact, {:.1f} steps\n",
                named.name, counts.crossings, counts.clear, counts.undecided, counts.exhausted, counts.early,
                counts.inexact, counts.steps / kRays);
-    // Enough of either kind to make the test meaningful.
+    // Enough rays of either kind to make the test meaningful.
     EXPECT_GE(counts.crossings, kRays / 40) << named.name;
     EXPECT_GE(counts.clear, kRays / 40) << named.name;
     // Not only conservative, but correct.

@@ -41,7 +41,7 @@ TEST(RoundedVoxels, SingleVoxelIsABall) {
     ray.direction = point(random, 0.9, 2.1) - ray.origin;
     const dvec3 d = normalize(ray.direction);
     const double nearest = length(cross(middle - ray.origin, d)), inside = length(ray.origin - middle);
-    // The quantised ray is within 2^-17 of this one in each axis.
+    // The quantised ray is within 2^-17 of this ray along each axis.
     if (std::abs(nearest - 0.5) < 1e-4 || std::abs(inside - 0.5) < 1e-4) continue;
     const bool ahead = dot(middle - ray.origin, d) > 0;
     const VoxelHit hit = first(grid, ray, {0.5, false});

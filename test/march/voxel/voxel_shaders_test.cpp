@@ -245,7 +245,7 @@ TEST(VoxelShaders, MatchAtTheLargestSize) {
   EXPECT_GT(hits, 100);
 }
 
-// Estimates that are off by some units, like those of drivers, must not matter: the text starts from the correct
+// Estimates that are off by some units, like those of drivers, must not matter: the shader code starts from the correct
 // quotient here, so its corrections are tested from both sides of it.
 TEST(VoxelShaders, DivideAsTheCpu) {
   Random random(4);
