@@ -4,7 +4,7 @@
 # 1. A header is public if README.md, doc/user or doc/library names it, an example or test/house/outside includes it, or
 #    another public header does. All others are private.
 # 2. At most 120 headers are public. scarp/version.h, which the build generates, is not counted.
-# 3. Of the private headers, app/ and bench/ include those of APP_HEADERS, and each of these in at least one place.
+# 3. app/ and bench/ include only those private headers that are in APP_HEADERS, and each of these at least once.
 # Names of shader texts, *.glsl.h, do not count: share/scarp/glsl has them. house.rules checks that public headers and
 # examples include only public headers. Before it judges the checkout, the check proves itself on a planted tree.
 cmake_minimum_required(VERSION 3.25)

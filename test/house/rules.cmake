@@ -1,10 +1,10 @@
 # The rules of the repository, checked on the text of its sources:
 #   cmake -D ROOT=<checkout> -D PUBLIC_HEADERS=<file with one header per line> -P rules.cmake
 # The list of the private headers for app/ and bench/ is beside it, in app_headers.txt (public_headers.cmake checks both).
-# 1. Includes go one way along the stations.        2. scarp::core includes neither GDAL, PROJ, libpng nor OpenEXR.
-# 3. Of the library, scene/mesh alone includes Embree.
+# 1. Stations include one another in one direction.  2. scarp::core includes neither GDAL, PROJ, libpng nor OpenEXR.
+# 3. In the library, only scene/mesh includes Embree.
 # 4. examples/ includes only public headers; so do the public headers themselves. app/ and bench/ include these and the
-#    headers listed for them. bench/simt_trace.cpp runs the text of shaders, as tests do.
+#    headers listed for them. bench/simt_trace.cpp runs shader texts, as tests do.
 # 5. No file above 700 lines.                        6. Each C++ file names its licence in its first line.
 # 7. The oracles share no code with the marches that they judge.
 # 8. In march/, only the tables and the queries include the tables: a technique does not depend on the others.
@@ -30,7 +30,7 @@ set(sees_output base output)
 set(sees_door base source field accel march scene scene_file analysis render output door)
 set(stations base vk source field accel march scene scene_mesh scene_file analysis render output door)
 set(core_stations base vk field accel march scene)
-# scarp.h and all that it includes.
+# scarp.h and everything that it includes.
 set(door_stations base field accel march scene door)
 set(foreign_headers "^(gdal|ogr|cpl_|proj|png|OpenEXR|Imath)")
 set(foreign_to_door "${foreign_headers}|^(vulkan|embree|cairo|tiny|nlohmann|valijson|CLI)")
@@ -96,8 +96,8 @@ function(check_scripts root result)
   set(${result} "${breaches}" PARENT_SCOPE)
 endfunction()
 
-# check_rooms(ARROWS RESULT): the rooms in cycles, as one line; ARROWS: a list of FROM>TO. Rooms that include no other one are
-# taken away until none is left, or only cycles and what includes them.
+# check_rooms(ARROWS RESULT): the rooms in cycles, as one line; ARROWS: a list of FROM>TO. Removes rooms that include no other
+# room, until none are left, or only cycles and the rooms that include them.
 function(check_rooms arrows result)
   list(REMOVE_DUPLICATES arrows)
   set(gone TRUE)

@@ -1,4 +1,4 @@
-# The voxel models in examples/scenes are, byte for byte, those that village_models writes:
+# The voxel models in examples/scenes equal the output of village_models, byte for byte:
 #   cmake -D ROOT=<checkout> -D PROGRAM=<village_models> -D WORK=<folder> -P village_models.cmake
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})

@@ -1,4 +1,4 @@
-# The easy texts over functions, and the complete shaders of examples/shaders that they are pasted into, compile:
+# The easy texts over functions compile, and so do the complete shaders of examples/shaders that contain them:
 #   cmake -D ROOT=<checkout> -D WORK=<folder> -D VALIDATOR=<glslangValidator> -D FLAT=<folder of max_mip_easy.glsl, ...>
 #         -P easy_shaders.cmake
 cmake_minimum_required(VERSION 3.25)
@@ -9,7 +9,7 @@ foreach(name IN LISTS texts)
   file(READ ${ROOT}/scarp/march/sampling/${name}_easy.glsl ${name})
 endforeach()
 
-# check(NAME TEXT GOOD [OPTION...]): compiles a fragment shader, or what the options name.
+# check(NAME TEXT GOOD [OPTION...]): compiles a fragment shader, or the stage that the options name.
 function(check name text good)
   file(WRITE ${WORK}/${name}.frag "${text}")
   execute_process(COMMAND ${VALIDATOR} ${ARGN} ${WORK}/${name}.frag WORKING_DIRECTORY ${WORK}
@@ -40,7 +40,7 @@ float4 frag() : SV_Target { float t; int status = ${call_${name}}; return float4
         -D -V -e frag)
 endforeach()
 
-# All of them in one shader, with the other texts for pasting.
+# All marches in one shader, with the other texts for pasting.
 file(READ ${FLAT}/max_mip_easy.glsl max_mip)
 file(READ ${FLAT}/height_marches.glsl over_heights)
 check(all "#version 300 es\n${begin}${ground}
@@ -55,7 +55,7 @@ void main() {
   colour = vec4(t, status, 0.0, 0.0);
 }\n" TRUE)
 
-# The shader of the user's document, with what it says is to be pasted.
+# The shader of the user document, with the texts pasted as the document says.
 file(READ ${ROOT}/doc/user/shaders-easy.md document)
 string(REGEX MATCH "\n```glsl\n(#version 300 es\n[^`]*)```\n" ignored "${document}")
 set(shader "${CMAKE_MATCH_1}")
@@ -66,7 +66,7 @@ endif()
 string(REPLACE "${mark}" "${${CMAKE_MATCH_1}}" shader "${shader}")
 check(document "${shader}" TRUE)
 
-# example(FILE MARCH RESULT): the text of an example, which has the text of its march.
+# example(FILE MARCH RESULT): the source of an example, which must contain the text of its march.
 function(example file march result)
   file(READ ${ROOT}/examples/shaders/${file} text)
   string(FIND "${text}" "${${march}}" at)
@@ -104,7 +104,7 @@ string(REPLACE "shader_type canvas_item;\n" "" shader "${text}")
 check(godot "#version 330
 in vec2 UV;\nuniform float TIME;\nout vec4 COLOR;\n${shader}\nvoid main() { fragment(); }\n" TRUE)
 
-# Of UnityCG.cginc this shader uses two names.
+# This shader uses two names from UnityCG.cginc.
 example(unity.shader fixed_step text)
 string(REGEX MATCH "HLSLPROGRAM\n(.*)ENDHLSL" ignored "${text}")
 string(REPLACE "#include \"UnityCG.cginc\"\n"

@@ -2,7 +2,7 @@
 #   cmake -D ROOT=<checkout> -D WORK=<folder> -D VALIDATOR=<glslangValidator> -D FLAT=<folder of max_mip.glsl, ...> -P glsl_es.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# check(FILE GOOD): compiles a fragment shader with all that it includes.
+# check(FILE GOOD): compiles a fragment shader with everything that it includes.
 function(check file good)
   execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${ROOT} -D FILES=${file} -D OUT=${WORK}/flat.frag
                           -P ${ROOT}/cmake/FlattenGlsl.cmake COMMAND_ERROR_IS_FATAL ANY)
@@ -16,7 +16,7 @@ endfunction()
 
 check(${ROOT}/test/march/height/textures_es.frag TRUE)
 
-# paste(TEXT MARK NAMES OUT): TEXT with the installed texts of those names, one after the other, in the place of MARK.
+# paste(TEXT MARK NAMES OUT): TEXT with MARK replaced by the installed texts of these names, one after another.
 function(paste text mark names out)
   string(FIND "${text}" "${mark}" at)
   if(at EQUAL -1)
@@ -31,7 +31,7 @@ function(paste text mark names out)
   file(WRITE ${out} "${whole}")
 endfunction()
 
-# The shader of the user's document, with what it says is to be pasted, in its order.
+# The shader of the user document, with the texts pasted as the document says, in its order.
 file(READ ${ROOT}/doc/user/glsl.md document)
 string(REGEX MATCH "\n```glsl\n(.*\n)```\n" ignored "${document}")
 set(shader "${CMAKE_MATCH_1}")
@@ -41,7 +41,7 @@ if(NOT mark)
 endif()
 paste("${shader}" "${mark}" "${CMAKE_MATCH_1};${CMAKE_MATCH_2}" ${WORK}/pasted.frag)
 check(${WORK}/pasted.frag TRUE)
-# The library's document: the easy text in its shader, for WebGL 2 and for desktops.
+# The library document: the easy text in its shader, for WebGL 2 and for desktops.
 file(READ ${ROOT}/doc/library/glsl.md document)
 string(REGEX MATCH "\n```glsl\n(#version 300 es\n[^`]*)```\n" ignored "${document}")
 set(shader "${CMAKE_MATCH_1}")

@@ -112,7 +112,7 @@ TEST(Figure, ScaleBarAndLegendDoNotOverlap) {
 TEST(Figure, ScaleBarHasItsStatedLength) {
   Canvas canvas;
   canvas.draw({.scale = FigureScale{200, "", {{0, ""}, {1, ""}}}});
-  // One piece, black: the longest run of black pixels in any row, the outline's half a line at either end included.
+  // One piece, black: the longest run of black pixels in any row, including half an outline at either end.
   int longest = 0;
   for (int y = 0; y < canvas.height; ++y) {
     int run = 0;
@@ -174,7 +174,7 @@ TEST(Figure, BesideLayoutKeepsThePicture) {
   while (canvas.at(left, top) != kGround) ++top;
   EXPECT_EQ(canvas.box_of_others(kGround, left, top, left + 640, top + 480)[2], -1);
   EXPECT_NE(canvas.at(left - 1, top), kGround);
-  // Title above, the rest below, nothing cut off.
+  // The title is above, everything else below, and nothing is cut off.
   EXPECT_LT(canvas.box_of_others(kPaper, 0, 0, 1 << 20, top - 3)[3], top);
   EXPECT_GT(canvas.box_of_others(kPaper, 0, top + 484)[2], canvas.width / 2);
   const auto all = canvas.box_of_others(kPaper);
@@ -184,7 +184,7 @@ TEST(Figure, BesideLayoutKeepsThePicture) {
   EXPECT_LE(all[3], canvas.height - 3);
 }
 
-// A meridian at either border: half of its label is beyond it.
+// A meridian at either border: half of its label is outside the border.
 TEST(Figure, BesideLayoutKeepsGraticuleLabelsWhole) {
   for (const double x : {1.0, 639.0}) {
     Canvas canvas;
@@ -262,7 +262,7 @@ TEST(Figure, TitlesWrapOrAreRejected) {
   EXPECT_FALSE(is_figure_text("\xff\xfe"));
 }
 
-// Bytes of the page: its size in points, and text as text in the system's font.
+// Content of the page: its size in points, and labels as text in the system's font.
 TEST(Pdf, HasThePageSizeAndText) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("scarp-figure-" + std::to_string(::getpid()) + ".pdf");

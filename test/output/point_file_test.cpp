@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Point files, read back byte by byte: by the offsets of the published formats, not by the writers' structures.
+// Point files, read back byte by byte, with the offsets of the published formats instead of the writers' structures.
 #include "scarp/output/point_file.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes of one terrain for tests of pictures.
+// Scenes with one terrain, for picture tests.
 #pragma once
 
 #include <string_view>

@@ -55,7 +55,7 @@ void expect_as_cast(const Terrain& ground, const FanAnswers& answers, const dvec
   EXPECT_GT(hits, answers.columns * answers.rows / 4);
 }
 
-TEST(CastFrom, ACameraHitsWhereItsRaysDo) {
+TEST(CastFrom, CameraMatchesItsRays) {
   const Terrain ground = terrain();
   for (const int columns : {1, 16, 77}) {
     PinholeCamera camera{.eye = {1003, 597, 45}, .forward = {0.3, 1, -0.4}, .columns = columns, .rows = 41};
@@ -71,7 +71,7 @@ TEST(CastFrom, ACameraHitsWhereItsRaysDo) {
   }
 }
 
-TEST(CastFrom, AScannerHitsWhereItsRaysDo) {
+TEST(CastFrom, ScannerMatchesItsRays) {
   const Terrain ground = terrain();
   Scanner scanner{.eye = {1003, 597, 40}, .columns = 100, .first_azimuth = 0.1, .azimuth_step = 2 * kPi / 100};
   for (int row = 0; row < 30; ++row) scanner.elevations.push_back(0.1 - 0.02 * row);
@@ -162,7 +162,7 @@ TEST(CastFrom, AcceptsCallerDirectionsOnAllThreads) {
 }
 
 // Beside the border, the width of the seam decides whether a ray hits.
-TEST(CastFrom, EyesBesideTheBorderHitWhereTheirRaysDo) {
+TEST(CastFrom, EyesBesideTheBorderMatchTheirRays) {
   int hits = 0;
   for (const double cell : {10.0, 7.7, 0.1}) {
     const Terrain ground = terrain({.cell_x = cell, .cell_y = cell});

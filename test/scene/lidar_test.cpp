@@ -237,7 +237,7 @@ TEST(LidarScan, OrientationsAreAppliedInOrder) {
 }
 
 // Yaw, pitch and roll of the mounting rotate the scanner as those of the body do.
-TEST(LidarScan, MountingTurnsAsThePoseDoes) {
+TEST(LidarScan, MountingRotatesLikeThePose) {
   const Terrain ground = plain();
   Lidar body = scanner(16, {-30, -60});
   body.path[0] = {0, {10000, 10000, 100}, 0.4, 0.1, 0.2};
@@ -300,7 +300,7 @@ TEST(LidarScan, TurnsTheShorterWayAtConstantSpeed) {
                 test::room_of_angle(kPi / 4) + lidar.azimuth_step)
         << answer.time;
   }
-  // Orientations between two about the same axis turn about it, too.
+  // Orientations between two rotations about the same axis are rotations about this axis, too.
   lidar.path[0].heading = lidar.path[1].heading = 0;
   lidar.path[0].pitch = -30 * kDegree, lidar.path[1].pitch = 20 * kDegree;
   for (const LidarReturn& answer : all_of(LidarScan(ground, lidar)))

@@ -122,7 +122,7 @@ TEST(LiveScene, MatchesANewSceneAfterEdits) {
     const std::vector<SceneFieldPtr> fields{
         ball(1), ball(3), waves(),
         scene_heights(HeightField::own(std::vector<float>(25, 2.0f), 5, 5, {.solid = true}))};
-    // The last two have been edited since.
+    // The last two objects have been edited since then.
     const auto field = [&](int i) {
       return i < 4   ? fields[static_cast<std::size_t>(i)]
              : i < 5 ? scene_heights(loose)
@@ -215,12 +215,12 @@ TEST(LiveScene, KeepsItsHierarchyEfficient) {
     });
   }
   expect_good_tree(live, random, 9);
-  // To other positions, far from their neighbours, a few at a time.
+  // Objects move to other positions, far from their neighbours, a few at a time.
   for (std::uint32_t i = 0; i < kBalls; ++i) {
     live.edit([&](auto& editor) { editor.move(i * 7 % kBalls, {.origin = random.inside(20)}); });
     if (i % 250 == 100) expect_good_tree(live, random, 20);
   }
-  // All to one position, one far away and back, and in a row of a million metres.
+  // All objects to one position, then one of them far away and back, then all in a row of a million metres.
   live.edit([&](auto& editor) {
     for (std::uint32_t i = 0; i < kBalls; ++i) editor.move(i, {.origin = {1, 2, 3}});
   });
@@ -237,7 +237,7 @@ TEST(LiveScene, KeepsItsHierarchyEfficient) {
     const auto reading = live.read();
     EXPECT_EQ(cast(reading.scene(), {.origin = {1000.0 * i, 0, 9}, .direction = {0, 0, -1}}).object, i);
   }
-  // Down to nothing, and up again.
+  // Removes all objects, then adds one.
   for (std::uint32_t i = 0; i < kBalls; ++i) live.edit([&](auto& editor) { editor.remove((i * 3) % kBalls); });
   EXPECT_FALSE(cast(live.read().scene(), {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}));
   EXPECT_TRUE(live.read().scene().box().empty());

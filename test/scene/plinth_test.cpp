@@ -114,10 +114,11 @@ TEST(Plinth, RaysFromSolidGroundHitNoWall) {
     for (int col = 0; col < 9; ++col) samples.push_back(col == 4 ? kNaN : col < 2 ? 5 : col < 6 ? 1 : 5);
   }
   const Plinth plinth(HeightField::own(samples, 9, 2), 0);
-  // Out of the slope between columns 1 and 2 in its first cell, over the hole, into the block behind.
+  // The ray leaves the slope between columns 1 and 2 in its first cell, and passes over the hole into the block behind
+  // it.
   EXPECT_FALSE(plinth.intersect(ray_of({1.5, 0.3, 2.9}, {1, 0, -0.7})));
   EXPECT_TRUE(plinth.intersect(ray_of({1.5, 0.3, 3.1}, {1, 0, -0.7})));
-  // Up through the base: in the rock, or in the shaft of the hole.
+  // Rays go up through the base: in the rock, or in the shaft of the hole.
   EXPECT_FALSE(plinth.intersect(ray_of({1.5, 0.3, -0.1}, {1, 0, 0.2})));
   EXPECT_TRUE(plinth.intersect(ray_of({3.2, 0.3, -0.1}, {1, 0, 0.2})));
 }

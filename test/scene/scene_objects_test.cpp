@@ -187,7 +187,7 @@ TEST(SceneOfManyFields, FindsTheNearestObject) {
   EXPECT_GT(hits, 1000);
 }
 
-// Several objects that get hundreds of rays each, rotated and above each other, plus a few in the tree.
+// Several objects, rotated and above each other, that get hundreds of rays each, plus a few objects in the tree.
 Scene layers() {
   return Scene({hills(65, 9, 3), hills(33, 20, 4), ball(8),
                 scene_function(HeightFunction(make_function(Sines{{{.amplitude = 6, .wavelength = 40}}})))},
@@ -255,7 +255,7 @@ TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
     }
   }
   EXPECT_GT(tried, 1000);
-  // Without the start, rounding blocks many of them: the test is able to fail.
+  // Without the start, rounding blocks many of these rays, which shows that the test can fail.
   EXPECT_GT(blocked_when_free, 100);
 }
 

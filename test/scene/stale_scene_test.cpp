@@ -62,7 +62,7 @@ TEST(StaleScene, IsReportedAfterVoxelEdits) {
   voxels.edit([](VoxelGrid& g) { return g.fill({{4, 4, 4}, {12, 12, 24}}, 2); });
   EXPECT_TRUE(cast(voxels, ray));
   EXPECT_NE(refusal([&] { cast(scene, ray); }).find("field 0 (voxels) was edited"), std::string::npos);
-  // The field itself still has the box from before.
+  // The field itself still has its former box.
   EXPECT_EQ(refusal([&] { Scene(scene.fields()[0]); }),
             "scene: field 0 (voxels) was edited after it was built (build the field again)");
   EXPECT_TRUE(cast(combine({{voxels}}), ray));

@@ -209,7 +209,7 @@ concept HasQuery = requires(S&& scene) {
 };
 static_assert(HasQuery<Scene&> && HasQuery<const Scene&> && !HasQuery<Scene>);
 
-// Tiles with holes and flat parts, of heights from 0 to 100, or flat at 0.
+// Tiles with holes and flat parts and heights from 0 to 100, or flat at 0.
 TerrainTiles tiles_with_holes(Random& random, double cell, int side) {
   const HeightFieldSettings ground{.cell_x = cell, .cell_y = cell, .nodata = -1};
   TiledTerrain terrain({2, 2, side, side, ground});

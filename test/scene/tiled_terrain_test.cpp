@@ -97,7 +97,7 @@ TEST(TiledTerrain, MatchesOneField) {
       for (int i = 0; i < kTiles * kTiles; ++i) {
         const TilePlace place{i % kTiles, i / kTiles};
         if (round % 3 == 2 && i == 4) {
-          // A missing tile is a hole, as are the cells of one without inner samples.
+          // A missing tile is a hole, as are the cells of a tile without inner samples.
           for (int row = 1; row < kCells; ++row)
             for (int col = 1; col < kCells; ++col)
               all[static_cast<std::size_t>((kCells + row) * kSide + kCells + col)] =
@@ -140,7 +140,7 @@ TEST(TiledTerrain, MatchesOneField) {
 }
 
 // A ray from above all ground to below it, within the terrain, hits. Samples near 1000 are rounded to 2^-14, so
-// stitched ones are off their line.
+// stitched samples are slightly off their line.
 TEST(TiledTerrain, LosesNoRayAtSeamsBetweenLevels) {
   for (const auto surface : {Surface::bilinear, Surface::triangles}) {
     Random random(5);

@@ -145,7 +145,7 @@ class VoxelCameraOnDevice : public OnDevice {
       dvec3 forward(0.0);
       forward[face / 2] = face % 2 ? 1 : -1;
       const std::string name = fmt::format("{}, along {}{}", what, face % 2 ? '+' : '-', "xyz"[face / 2]);
-      // On planes between objects, through them, and beside.
+      // Views along planes between objects, beside these planes, and from inside.
       hits += expect_same(scene, camera, looking(-7.0 * forward, forward), name);
       hits += expect_same(scene, camera, looking(dvec3(0.3, 0.2, 0.1) - 7.0 * forward, forward), name + ", beside");
       hits += expect_same(scene, camera, along(-7.0 * forward, forward, 0.0625), name + ", parallel");
@@ -183,12 +183,12 @@ TEST_F(VoxelCameraOnDevice, DrawsTheSameFromWords) {
   expect_same(scene, camera, looking({5.1, -4.3, 6.7}, {-5, 4, -6}), "words");
 }
 
-// Rays of a filter are off the centres of pixels; directions may be longer than those of the camera's form.
+// Rays of a filter are off the pixel centres; their directions may be longer than the camera's.
 TEST_F(VoxelCameraOnDevice, AcceptsRaysOffThePixelCentres) {
   const Scene scene = touching("voxel-bricks", 0.01);
   VoxelCamera camera(device(), scene, {.rays_at_once = 8192});
   expect_same(scene, camera, looking({5.1, -4.3, 6.7}, {-5, 4, -6}, 0.005), "beside", 0.5);
-  // Objects of a pixel or two, which consist only of silhouettes.
+  // Objects that cover a pixel or two, and consist only of silhouettes.
   expect_same(scene, camera, looking({51, -43, 67}, {-5, 4, -6}, 0.02), "far away", 0.5);
 }
 
@@ -212,7 +212,8 @@ TEST_F(VoxelCameraOnDevice, ResolvesObjectsAtEqualDepth) {
   EXPECT_LT(other.tied(), 100U);
 }
 
-// A batch of the camera's rays in any order, mixed with others, has the CPU's answers; those of the camera by drawing.
+// A batch of camera rays in any order, mixed with other rays, has the CPU's answers; camera rays are answered by
+// drawing.
 TEST_F(VoxelCameraOnDevice, FindsCameraRaysInBatches) {
   const Scene scene = crowd();
   const auto sight = std::make_shared<VoxelSight>(VoxelSight{VoxelDrawing::proxies});
@@ -227,7 +228,7 @@ TEST_F(VoxelCameraOnDevice, FindsCameraRaysInBatches) {
       for (Ray& ray : rays) ray.direction = normalize(ray.direction);
     }
     const std::size_t of_camera = rays.size();
-    // Second rays of pixels: the same ray, one that starts elsewhere, one that looks behind the camera.
+    // Second rays of pixels: the same ray, a ray that starts elsewhere, and a ray that points behind the camera.
     for (std::size_t i = 0; i < of_camera; i += 7) {
       rays.push_back(rays[i]);
       if (i % 3 == 1) rays.back().origin += 0.1;

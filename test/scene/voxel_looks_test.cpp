@@ -43,8 +43,8 @@ TEST(SmoothNormal, MatchesPlanes) {
   EXPECT_EQ(smooth_normal(level, {8, 8, 14}, 3), dvec3(0.0));
 }
 
-// In the middle of a row of voxels that touch at edges both sides are equal: the normal is the face's own, without a
-// jump on the way there.
+// In the middle of a row of voxels that touch at edges, both sides are equal: the normal is the face's own, and does
+// not jump on the path to this point.
 TEST(SmoothNormal, FallsBackToTheFaceNormal) {
   const VoxelGrid row = grid_where(ivec3(16), [](const ivec3& v) { return v.x == v.z; });
   const dvec3 face(0, 0, 1);
@@ -247,7 +247,7 @@ TEST(Voxelised, RejectsInvalidLattices) {
   EXPECT_THROW(lattice_around(scene, 1, WorldBox{{10, 10, 10}, {20, 20, 20}}), Error);
 }
 
-// A file of two models, read again: every voxel is where it was, in its colour.
+// A file of two models, read back: every voxel has the same position and colour.
 TEST(ToVox, KeepsPlacesAndColours) {
   VoxelGrid grid({300, 3, 2}, 24);
   grid.set({0, 0, 0}, 0x010203);

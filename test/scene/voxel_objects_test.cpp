@@ -207,7 +207,7 @@ TEST(VoxelObjects, ShadowRaysDoNotHitTheirStart) {
     ray.origin = middle - 10.0 * ray.direction;
     const Hit hit = scene.closest_hit(ray);
     ASSERT_TRUE(hit);
-    // Straight out of the ball: nothing is in the way.
+    // Straight out of the ball: nothing blocks the ray.
     Ray out;
     out.origin = ray.at(hit.t);
     out.direction = scene.normal(ray, hit);
@@ -365,7 +365,7 @@ TEST(FromVox, HitsHaveTheirPaletteEntry) {
   EXPECT_EQ(palette_entry(plain, plain.closest_hit(down)), std::nullopt);
 }
 
-// From version 200 on, the first of two overlapping ones is visible; before, the last.
+// From version 200 on, the first of two overlapping voxels is visible; in earlier versions, the last.
 TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
   for (const int version : {150, 200}) {
     const VoxelObjects scene(placed_voxels_from(two_cubes(version)));

@@ -177,7 +177,7 @@ TEST(VoxelSeams, ClosedFloorOfTurnedTilesHasNoGap) {
 }
 
 // Two cubes side by side, placed as fields of a scene or in one field, and rays within some hundred units of rounding
-// of the plane between them: whichever way the places are rounded, one of the cubes takes the ray.
+// of the plane between them: however the positions are rounded, one of the cubes blocks the ray.
 TEST(VoxelSeams, HaveNoGapBetweenPlacedFields) {
   bench::Random random(7, 1);
   std::uint8_t voxel = 1;
@@ -233,7 +233,7 @@ TEST(VoxelSeams, HaveNoGapBetweenPlacedFields) {
   }
 }
 
-// Components of directions that rounding treats differently.
+// Direction components that rounding affects differently.
 double any_component(bench::Random& random) {
   constexpr std::array<double, 6> kTiny = {6.123233995736766e-17, 0x1p-30, 3 * 0x1p-29, 0x1p-52, 0x1p-1000, 5e-324};
   switch (random.below(5)) {

@@ -14,7 +14,7 @@ using test::refusal;
 
 std::string header(const std::string& dim) { return "#binvox 1\ndim " + dim + "\ntranslate 1 2 3\nscale 4\ndata\n"; }
 
-// By hand, from the format's description: y runs fastest, then z, then x.
+// Written by hand, from the format's description: y runs fastest, then z, then x.
 TEST(Binvox, ReadsVoxelsInFileOrder) {
   // dim is x, z, y: 2 x 3 x 4 in x, y, z.
   const Binvox binvox = parse_binvox(header("2 4 3") + std::string("\0\5\1\1\0\12\1\1\0\7", 10));

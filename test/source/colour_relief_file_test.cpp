@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-// A file of this text, while it is read.
+// Reads a temporary file with this text.
 RampStops read(const std::string& text) {
   const std::string path = "colour_relief_file_test." + std::to_string(::getpid()) + ".txt";
   std::ofstream(path) << text;

@@ -70,7 +70,8 @@ TEST_F(Npy, ConvertsUnsupportedTypesToFloat32WithANote) {
 }
 
 TEST_F(Npy, ReadsEveryKindOfHalfFloat) {
-  // -2; the largest one; 1/3, rounded; the least normal one, the greatest and the least below it; NaN.
+  // -2; the largest number; 1/3, rounded; the smallest normal number; the largest and the smallest subnormal number;
+  // NaN.
   const std::vector<double> bits{0xc000, 0x7bff, 0x3555, 0x0400, 0x03ff, 0x0001, 0x7e00, 0x8000};
   const std::vector<double> values{-2, 65504, 1365.0 / 4096, 0x1p-14, 1023 * 0x1p-24, 0x1p-24, 0, 0};
   for (const bool big_endian : {false, true}) {

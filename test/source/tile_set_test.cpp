@@ -231,7 +231,7 @@ TEST_F(TileSet, CallersNodataResolvesConflicts) {
   const Raster raster = read_tiles({a, b}, options);
   EXPECT_EQ(4, raster.nodata);
   expect_samples(raster, {1, 2, kHole, kHole, 3, kHole, kHole, kHole, kHole, kHole, 5, 6, kHole, kHole, 7, 8});
-  // A value that the samples cannot have does not mark gaps.
+  // A value that the sample type cannot hold does not mark gaps.
   options.nodata = 40000;
   EXPECT_TRUE(std::isnan(doubles(read_tiles({a, b}, options))[2]));
 }

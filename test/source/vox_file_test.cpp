@@ -24,7 +24,7 @@ VoxFile cube_file() {
   return file;
 }
 
-// A root transform, a group, and below it this many transforms with a shape each.
+// A root transform, a group, and below it this many transforms, each with a shape.
 VoxFile scene_file(const std::vector<VoxAttributes>& frames) {
   VoxFile file = cube_file();
   VoxGroup group;
@@ -204,7 +204,7 @@ TEST(VoxScene, InterpolatesPositionsAndSwitchesOtherAttributes) {
   EXPECT_EQ(at(1 << 30).move, ivec3(11, -11, 4));
   EXPECT_EQ(at(3).model, 0);
   EXPECT_EQ(at(4).model, 1);
-  // Halves go up, below 0 as well.
+  // Halves are rounded up, also below 0.
   std::get<VoxTransform>(file.nodes[2].content).frames = {{{"_t", "0 0 -3"}}, {{"_f", "2"}, {"_t", "1 -1 -4"}}};
   EXPECT_EQ(at(1).move, ivec3(1, 0, -3));
 }

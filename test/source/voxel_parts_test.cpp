@@ -110,7 +110,7 @@ TEST(VoxlapVox, ReadsIndicesAndPalette) {
   refused_with([](const std::string& b) { parse_voxlap_vox(b); }, file + "x", "not a .vox file of Voxlap");
 }
 
-// A map of 2 x 1 columns: one with a bridge, one plain.
+// A map of 2 x 1 columns: one column with a bridge, one without.
 TEST(Vxl, ReadsSpans) {
   const std::string head = numbers({0x09072000, 2, 1}) + std::string(96, '\0');
   // Colour at z 2, solid to 4, ceiling colour at 5, air from 6, ground from 10.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Vulkan calls that lose the window's surface or the device, for window_faults_test: loaded before the Vulkan loader
 // (LD_PRELOAD), with LOSE=PLACE:WHAT:FIRST:COUNT. PLACE: acquire or present. WHAT: out-of-date, suboptimal, surface or
-// device. The calls from FIRST on, COUNT of them, have that result. A lost surface is lost to all calls until it is
-// destroyed, and a lost device for ever.
+// device. COUNT calls, from call FIRST on, have that result. A lost surface is lost for all calls until it is
+// destroyed, and a lost device is lost for ever.
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
 

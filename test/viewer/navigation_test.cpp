@@ -124,7 +124,7 @@ TEST_F(Navigation, WalkerStandsOnTheGroundAndStopsAtWalls) {
   EXPECT_GE(navigator.pose().eye.x, 0);
 }
 
-TEST_F(Navigation, DoubleClickMovesThere) {
+TEST_F(Navigation, DoubleClickMovesToThatPoint) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   const dvec3 clicked(30, 60, 0);
   const double before = length(clicked - navigator.pose().eye);

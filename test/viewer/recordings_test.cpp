@@ -85,7 +85,7 @@ TEST_P(Recordings, EndWithTheirPicture) {
                 "' --screenshot window.png --validation"),
             0)
       << output_;
-  // Rays whose directions differ in the last bit meet the same cells, so no byte differs by more than its rounding.
+  // Rays whose directions differ in the last bit cross the same cells, so no byte differs by more than its rounding.
   expect_golden((folder_ / "window.png").string(), recordings / (name + ".png"), kByteRounding,
                 (fs::path(SCARP_WORK) / ("recording-" + name)).string());
   // Every recording ends with P.

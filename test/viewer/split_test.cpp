@@ -49,7 +49,7 @@ TEST(Split, LineCanBeDragged) {
   EXPECT_FALSE(line.is_at({340, 10}, {640, 480}));
   line.drag_to(160, 640);
   EXPECT_EQ(line.column(640), 160);
-  // It is the same position in pictures of other sizes.
+  // The line is at the same relative position in pictures of other sizes.
   EXPECT_EQ(line.column(64), 16);
   line.drag_to(-50, 640);
   EXPECT_EQ(line.column(640), 0);

@@ -92,7 +92,7 @@ class Window : public testing::Test {
         << commands << "\nwait $pid\n";
     return run("timeout 60 bash use.sh");
   }
-  // The command of output_, `scarp render ... -o FILE ...`, with another FILE.
+  // The command in output_, `scarp render ... -o FILE ...`, with another FILE.
   std::string printed_command(const std::string& file) const {
     const std::size_t begin = output_.find("scarp render ");
     std::string command = output_.substr(begin, output_.find('\n', begin) - begin);

@@ -144,7 +144,7 @@ TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
   EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));
 }
 
-TEST_F(WindowFaults, CtrlCEndsItWhileConverging) {
+TEST_F(WindowFaults, CtrlCClosesTheWindowWhileConverging) {
   // A picture that takes minutes. The window skips passes that were replaced before it could show them, the full one
   // too. Shells start background jobs with this signal ignored.
   std::ofstream(folder_ / "end.sh")

@@ -194,7 +194,7 @@ TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
   EXPECT_EQ(subject.prepared().exaggeration(), 3);
 }
 
-// Sliders of these options wait for the release of the mouse.
+// Sliders of these options take effect when the mouse is released.
 TEST_F(WindowOptions, ReopenIfTheInputDependsOnThem) {
   const Subject ground(opening_of(file), 16, 12), holes(with(opening_of(file), {{"--nodata", "nan"}}), 16, 12),
       large(with(opening_of(file), {{"--look", "comanche"}}), 16, 12);

@@ -230,7 +230,7 @@ TEST_F(Window, ReportsFilesThatCannotBeSaved) {
   }
 }
 
-// Random mouse and keys, ten events per step of the clock, on the picture and on the panel.
+// Random mouse and key events, ten per step of the clock, on the picture and on the panel.
 std::string random_events(int count, unsigned seed) {
   std::mt19937 random(seed);
   const auto pick = [&](int least, int most) { return std::uniform_int_distribution<int>(least, most)(random); };

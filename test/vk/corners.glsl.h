@@ -10,7 +10,7 @@ SCARP_GLSL_BEGIN
 struct CornersPush {
   Address corners;  // vec4 each, in clip coordinates
   vec4 colour;
-  float right;  // that much farther to the right for each instance
+  float right;  // offset to the right per instance
 };
 
 SCARP_GLSL_END

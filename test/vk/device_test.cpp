@@ -97,7 +97,7 @@ TEST(DeviceQueues, PrefersGraphicsThenTimestamps) {
   EXPECT_EQ(chosen({draws, computes_timed, draws_timed, draws_timed}), 2u);
 }
 
-// Vulkan exceptions become one line; the test throws them instead of the driver.
+// Vulkan exceptions become one line; the test throws them in place of the driver.
 TEST(DeviceFailure, BecomesOneLine) {
   const auto failing = [](const auto& failure) {
     return refusal([&] { guarded("Card", "computing", [&] { throw failure; }); });
@@ -260,7 +260,7 @@ TEST_F(OpenDevice, GivesUpAfterTheTimeout) {
   Commands commands(hurried);
   commands.dispatch(pipeline, glsl::TwicePush{words.address(), words.address(), 1 << 20, 200}, {1 << 14, 1, 1});
   EXPECT_NE(refusal([&] { commands.run(); }).find("'slow' did not finish within 1e-06 s"), std::string::npos);
-  // Nothing waits for it again, except its release, for a few seconds.
+  // Nothing waits for the device again, except its release, for a few seconds.
   const std::string said = refusal([&] { commands.fill(words, 0, 4, 0); });
   EXPECT_NE(said.find("'slow' did not finish"), std::string::npos) << said;
   EXPECT_NE(said.find("given up"), std::string::npos) << said;

@@ -205,7 +205,7 @@ TEST_F(DevicePipelines, AreCached) {
   EXPECT_TRUE(fs::exists(path));
 }
 
-TEST_F(DevicePipelines, ReplaceUselessFiles) {
+TEST_F(DevicePipelines, ReplaceUnusableFiles) {
   const std::string path = compute(), whole = content(path);
   ASSERT_GE(whole.size(), 48u);
   for (const std::string& useless : {std::string(), std::string("no pipelines"), whole.substr(0, 40)}) {

@@ -82,7 +82,7 @@ TEST_F(Drawing, CoversThePixelsWhoseCentresAreInside) {
   EXPECT_GE(images.passes[0].nanoseconds.value_or(1), 0);
 }
 
-// Two slopes through one another: the larger depth is visible everywhere, in any drawing order.
+// Two slopes that intersect: the larger depth is visible everywhere, in any drawing order.
 TEST_F(Drawing, LargerDepthIsInFront) {
   const DeviceBuffer rising = buffer_of({{-1, -3, 0, 1}, {-1, 1, 0, 1}, {3, 1, 2, 1}}),
                      falling = buffer_of({{-1, -3, 1, 1}, {-1, 1, 1, 1}, {3, 1, -1, 1}});

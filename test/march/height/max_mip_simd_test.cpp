@@ -209,7 +209,7 @@ TEST(MaxMipSimd, HandlesVeryLongFields) {
 
 // Starts outside their stated cell, far outside or by less than a millionth of a cell: over ground above and below 0,
 // because a wrong start looks right if 0 is below the ground.
-TEST(MaxMipSimd, HandlesStartsBesideTheirCell) {
+TEST(MaxMipSimd, HandlesStartsOutsideTheirCell) {
   Random random(76);
   for (const double base : {-100.0, 100.0}) {
     const int side = 65;

@@ -193,7 +193,7 @@ TEST_F(VoxelsOnDevice, ApplyEdits) {
 }
 
 // Boxes of 2^34 voxels, whose tables are in chunks on the CPU; rays from one end to the other.
-TEST_F(VoxelsOnDevice, MatchInWorlds) {
+TEST_F(VoxelsOnDevice, MatchInLargeGrids) {
   constexpr int kSide = VoxelGrid::kMaxSide, kHeight = 64;
   constexpr int kRays = 200;
   VoxelGrid grid({kSide, kSide, kHeight}, 4);

@@ -90,7 +90,7 @@ TEST(Camera, FramingFitsAllCornersTightly) {
             above = std::min(above, pixel->y / height);
             below = std::min(below, 1 - pixel->y / height);
           }
-          // The margin is 3 % at least; in one direction it is just that on both sides.
+          // The margin is at least 3 %; in one direction it is exactly that on both sides.
           constexpr double kMargin = 0.03, kRounding = 1e-6;
           EXPECT_GE(std::min({left, right, above, below}), kMargin - kRounding);
           // Unless the camera would be too close: never within 5 % of the diagonal.

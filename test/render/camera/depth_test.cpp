@@ -36,7 +36,7 @@ TEST(Depth, MatchesProjectedPoints) {
     EXPECT_NEAR(device_depth(z, range), depth(vulkan), 1e-14);
     EXPECT_NEAR(device_depth(z, reversed), depth(turned), 1e-14);
     EXPECT_NEAR(view_depth_from_device(device_depth(z, reversed), reversed), z, 1e-12 * z);
-    // The result 1 - depth, at least 2 / 3000, has lost 11 of 53 digits.
+    // The result 1 - depth, at least 2 / 3000, has lost 11 of 53 binary digits.
     EXPECT_NEAR(view_depth_from_device(device_depth(z, range), range), z, 1e-11 * z);
   }
   EXPECT_EQ(device_depth(2, range), 0);

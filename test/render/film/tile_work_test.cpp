@@ -16,7 +16,7 @@
 namespace scarp {
 namespace {
 
-// t of a hit is the ray's own t_max, its steps twice that; every ray with an odd one is blocked.
+// A hit has the ray's t_max as t, and twice as many steps; rays with an odd t_max are blocked.
 class Echo final : public SceneBackEnd {
  public:
   void closest_hits(std::uint32_t, std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
@@ -39,8 +39,8 @@ class Echo final : public SceneBackEnd {
   int batches = 0;
 };
 
-// The tile's column and row determine the number of rounds of all three queries, each with its own size; counts correct
-// answers.
+// The tile's column and row determine the number of rounds. The rounds take turns
+// among the three queries, with different numbers of rays; counts correct answers.
 class Curious final : public TileWork {
  public:
   Curious(const PixelTile& tile, std::size_t most_rays, std::atomic<std::int64_t>& right)

@@ -22,7 +22,7 @@ namespace {
 const int kWidth = test::cases(64, 64, 20), kHeight = test::cases(48, 48, 15);
 constexpr int kCells = 32;
 
-// A hill of 32 m x 32 m, 12 m high, round its middle.
+// A round hill on 32 m x 32 m, 12 m high.
 double hill(double x, double y) { return 12 * std::exp(-((x - 16) * (x - 16) + (y - 16) * (y - 16)) / 60); }
 
 Scene heights() {
@@ -47,7 +47,7 @@ Scene function() {
       scene_function(HeightFunction(make_function(Fractal{.wavelength = 24, .height = 12, .octaves = {3, 3, 4}}))));
 }
 
-// A ball that is half in the ground.
+// A ball that is half below the ground.
 Scene shape() {
   return Scene({scene_shape(DistanceField(make_shape(shape::Sphere{.radius = 9})))},
                {{.placement = {.origin = {16, 16, 2}}}});
@@ -169,7 +169,7 @@ TEST_P(EveryInput, SupportsGroundPaintOnTop) {
       [](PictureSettings& s) {
         s.ground.drape = std::make_shared<Drape>(Drape{1, 1, {200, 0, 0, 255}});
       }};
-  // Level faces have no contour lines, upright ones too many: these fade.
+  // Level faces have no contour lines, and vertical faces have too many, which fade.
   if (GetParam().name != "voxels") changes.emplace_back([](PictureSettings& s) { s.ground.contours = 2; });
   for (const auto& change : changes) {
     PictureSettings with = settings();

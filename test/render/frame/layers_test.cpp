@@ -108,7 +108,7 @@ TEST(Layers, SolidWallsAreNotSurfaces) {
   // Level, from the south, below the ground's border: the wall at y = 0.
   const Camera camera = Camera::look_at({16, -20, 6.6}, {16, 0, 6.6}, 2, kWidth, kHeight);
   PictureSettings settings = small();
-  settings.haze = 0;  // it depends on the size of the plinth
+  settings.haze = 0;  // haze depends on the size of the plinth
   const PictureLayers layers = render_layers(test::terrain(field), camera, settings);
   const PictureLayers on_plinth = render_layers(test::terrain_on_plinth(field), camera, settings);
   for (std::size_t i = 0; i < layers.depth.size(); ++i) {

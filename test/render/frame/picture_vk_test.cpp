@@ -198,7 +198,7 @@ class PicturesOnDevice : public OnDevice {
     return settings;
   }
 
-  // All of the above for one picture.
+  // Runs all of the above for one picture.
   static void expect_the_cpus(const Scenes& of, const PictureSettings& settings, bool device_alone_too = true) {
     const Picture cpu = render_picture(of.cpu, of.camera, settings);
     std::shared_ptr<Judged> judge;

@@ -337,7 +337,7 @@ PictureSettings settings_of(const Row& row) {
   return settings;
 }
 
-// Turned by these angles in radians to the right and up.
+// Rotated by these angles in radians, to the right and up.
 Camera camera_of(const Row& row, const HeightField& field, const dvec2& turn) {
   Camera camera = Camera::top({{0, 0, 0}, {field.width(), field.depth(), 10}}, kWidth, kHeight);
   if (row.top) {
@@ -447,7 +447,7 @@ TEST_F(TerrainFrame, ResumesWhereItWasInterrupted) {
   }
 }
 
-// Wherever it is interrupted, nothing of it is left in the next picture, which is larger and uses other memory.
+// Wherever a picture is interrupted, nothing of it remains in the next picture, which is larger and uses other memory.
 TEST_F(TerrainFrame, CanBeInterrupted) {
   Row row = rows()[6];
   const HeightField field = hills(row.field);

@@ -26,7 +26,7 @@ TEST(SampleDirections, DiscIsUniform) {
     const double share = mean_over_square([&](dvec2 s) { return length(on_disc(s)) < radius ? 1.0 : 0.0; });
     EXPECT_NEAR(share, radius * radius, 1.0 / kSide) << radius;
   }
-  // Each quarter between the diagonals, and each half of one, has its fraction.
+  // Each quarter between the diagonals, and each half of a quarter, has its fraction of the samples.
   for (int part = 0; part < 8; ++part) {
     const double share = mean_over_square([&](dvec2 s) {
       const dvec2 p = on_disc(s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arbitrary rays are judged like those of the look `error`.
+// Arbitrary rays are judged like the rays of the look `error`.
 #include "scarp/render/look/judged_rays.h"
 
 #include <gtest/gtest.h>

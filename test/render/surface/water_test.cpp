@@ -52,7 +52,7 @@ TEST(Water, ObeysReflectionAndRefractionLaws) {
   }
 }
 
-// A cone of slope 1 whose top is at the middle node. Between nodes a bilinear patch is off the cone by at most
+// A cone of slope 1 whose top is at the middle node. Between nodes, a bilinear patch deviates from the cone by at most
 // (1 / 8) (d2/dx2 + d2/dy2) = 1 / (8 r) cells, and so is the coast: 0.006 cells at r = 20.4.
 constexpr int kConeSide = 65;
 constexpr double kMiddle = 32, kTop = 40, kLevel = 19.6, kCoast = kTop - kLevel;

@@ -25,7 +25,7 @@ std::string numbers(std::initializer_list<std::uint32_t> list) {
   return bytes;
 }
 
-// The coordinates of the highest voxel at the middle of a scene.
+// The coordinates of the highest voxel in the middle of a scene.
 ivec3 hit_voxel(const PlacedVoxels& voxels) {
   const Scene scene(scene_voxels(voxels));
   const dvec3 middle = 0.5 * (scene.box().low + scene.box().high);

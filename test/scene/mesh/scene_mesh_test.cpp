@@ -200,7 +200,7 @@ TEST(SceneMesh, SharedEdgesAndCornersLeaveNoGap) {
   }
 }
 
-// From a convex solid a ray outwards hits nothing, and a ray inwards hits the other side.
+// From the surface of a convex solid, a ray outwards hits nothing, and a ray inwards hits the other side.
 TEST(SceneMesh, RayFromATriangleHitsOnlyOthers) {
   for (const dvec3& middle : {dvec3(0), dvec3(5e5, 4e6, 1e3)}) {
     const SceneFieldPtr field = scene_mesh(ball(middle, 5));
