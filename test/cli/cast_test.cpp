@@ -219,7 +219,7 @@ TEST_F(Cast, AllHitsAreSortedByT) {
 
 TEST_F(Cast, WarnsAboutRaysFromBelow) {
   hills("10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10");
-  // From below up, from above down, from above up.
+  // Rays from below going up, from above going down, and from above going up.
   rays("x,y,z,dx,dy,dz\n15,15,5,0.1,0,1\n15,15,15,0.1,0,-1\n15,15,15,0.1,0,1\n");
   const Names arguments{"cast", path("hills.asc"), "--coords", "local", "--rays", path("rays.csv")};
   Names any = arguments;
@@ -235,7 +235,7 @@ TEST_F(Cast, WarnsAboutRaysFromBelow) {
   EXPECT_EQ(rows_of(run(arguments).out)[0].at("status"), "below");
 }
 
-// Each kind of input, from straight above.
+// Each kind of input, hit from straight above.
 class CastInputs : public Cast {
  protected:
   // One row per ray; `options` begin with the input.

@@ -536,7 +536,7 @@ TEST_F(MapsCli, FullDiskLeavesNoOutput) {
   }
 }
 
-// Ctrl-C in the middle of long work.
+// Ctrl-C during long work.
 TEST_F(MapsCli, InterruptLeavesNoOutput) {
   std::string text = "ncols 400\nnrows 400\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n", table = "x,y\n";
   for (int i = 0; i < 400 * 400; ++i) text += fmt::format("{} ", i * 7919 % 31);

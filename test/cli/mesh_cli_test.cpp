@@ -84,7 +84,7 @@ TEST_F(MeshOption, StandsAtMeshAt) {
   EXPECT_GT(on_ground[0], 5);
   EXPECT_LT(on_ground[0], 100);
   EXPECT_EQ(reds({"--mesh-at", "-480,480,9000", "--coords", "map"}), north_west);
-  // In the ground.
+  // Inside the ground.
   EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
 }
 

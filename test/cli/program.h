@@ -94,7 +94,7 @@ inline Result result_of(int status, const Streams& streams, std::uint64_t peak =
           std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err), peak};
 }
 
-/// The running program; its output goes into files of a separate folder.
+/// The running program; its output goes into files in a separate folder.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const char* out_path = nullptr,
@@ -117,7 +117,7 @@ class Program {
 
   ::pid_t pid() const { return pid_; }
 
-  /// Waits for its end.
+  /// Waits until the program ends.
   Result result() {
     int status = 0;
     ::waitpid(pid_, &status, 0);
@@ -159,8 +159,8 @@ inline Result run(const std::vector<std::string>& arguments, const std::string& 
   return result;
 }
 
-/// As run(), where `scarp` opens a Vulkan driver: memory that Mesa's lavapipe keeps when it is unloaded is not a leak
-/// of Scarp, but the leak sanitizer can no longer tell.
+/// Like run(), for calls in which `scarp` opens a Vulkan driver: memory that Mesa's lavapipe keeps when it is unloaded
+/// is not a leak in Scarp, but the leak sanitizer can no longer distinguish it.
 inline Result run_on_device(const std::vector<std::string>& arguments) {
   return run(arguments, "/dev/null", Leaks::kept);
 }

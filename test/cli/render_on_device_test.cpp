@@ -52,7 +52,7 @@ TEST_F(RenderOnDevice, RendersAndNamesTheDevice) {
     named |= device.out.find(", on " + std::string(one["name"]) + "\n") != std::string::npos;
   }
   EXPECT_TRUE(named) << device.out;
-  // Both are exact by the same judge.
+  // Both pictures are exact by the same judge.
   for (const char* wrong : {"lost        red        0\n", "invented    magenta    0\n", "late        orange     0\n"}) {
     EXPECT_NE(device.out.find(wrong), std::string::npos) << device.out;
   }

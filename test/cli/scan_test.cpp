@@ -29,7 +29,7 @@ using test::rows_of;
 using test::run;
 using Names = std::vector<std::string>;
 
-// Casts into a raster without a CRS, which a note would mention.
+// Runs `cast`; an ESRI grid gets --crs none, because a note would mention the missing CRS.
 test::Result cast(Names arguments) {
   arguments.insert(arguments.begin(), "cast");
   if (arguments[1].ends_with(".asc")) arguments.insert(arguments.end(), {"--crs", "none"});

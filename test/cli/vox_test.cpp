@@ -346,7 +346,7 @@ TEST_F(CliVox, SectionPrintsDistances) {
   EXPECT_EQ(count(spheres, ">1<"), 24);  // the corners are 1.41 away
   ASSERT_EQ(run({"section", model_, "-o", svg, "--margin", "2", "--radii", "cubes", "--axis", "y"}).status, 0);
   const std::string cubes = test::text_of(svg);
-  // Upwards there is one layer.
+  // Vertically there is one layer.
   EXPECT_EQ(count(cubes, "<rect"), 35);
   EXPECT_EQ(count(cubes, "<text"), 32);
 }

@@ -19,7 +19,7 @@ TEST(PlacedVoxels, UseOctantsForSmallModels) {
   EXPECT_EQ(usual({{2048, 2048, 2048}}), "voxel-bricks");
   EXPECT_EQ(usual({{512, 1, 1}}), "voxel-octants");
   EXPECT_EQ(usual({{513, 1, 1}}), "voxel-bricks");
-  // The limit is that of the march itself.
+  // This limit is the march's own.
   VoxelGrid grid({513, 1, 1}, 8);
   grid.fill(grid.box(), 1);
   EXPECT_NE(test::refusal([&] { VoxelModel(grid, find_voxel_march("voxel-octants")); }), "");

@@ -98,7 +98,7 @@ class SceneVoxelsOnDevice : public OnDevice {
     for (Ray& ray : rays) ray = ray_at_crowd(random);
     expect_same(cpu, there, rays, {});
     if (HasFailure()) return;
-    // From the hits: away from them and into them.
+    // Rays from the hits: away from the surface and into it.
     std::vector<Hit> hits(rays.size());
     cpu.closest_hits(rays, hits);
     std::vector<Ray> next;

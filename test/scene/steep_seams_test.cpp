@@ -36,7 +36,7 @@ TerrainTiles flat_tiles(double cell, int cols, int rows, int cells) {
   return terrain.read();
 }
 
-// All queries find the ground at t, and a hit that ends there.
+// All queries find the ground at t, also for a range that ends just behind it.
 void expect_ground(const Scene& scene, const Ray& ray, double t) {
   const Hit hit = cast(scene, ray);
   ASSERT_TRUE(hit);

@@ -110,7 +110,7 @@ TEST_F(DamagedFiles, ReportsTruncatedArchives) {
   const std::string tiff = bytes_of(slope());
   const std::string whole = write_zip("a.zip", {{"dem/slope.tif", tiff}, {"b", "1"}, {"c", "2"}, {"d", "3"}});
   EXPECT_NO_THROW(read_raster("/vsizip/" + whole + "/dem/slope.tif", {}));
-  // Valid, but the path is incomplete or wrong: the message lists the content.
+  // A valid archive, but the path is incomplete or wrong: the message lists the content.
   expect_says(read_error(whole), "is a .zip archive (name a raster in it: /vsizip/" + whole + "/dem/slope.tif, ");
   expect_says(read_error(whole), "/c or 1 more");
   expect_says(read_error("/vsizip/" + whole + "/slope.tif"), "does not exist in '" + whole + "' (name a raster in it");

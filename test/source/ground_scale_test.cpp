@@ -90,7 +90,7 @@ TEST(GroundScale, ProjectionsMatchGeodesics) {
   expect_like_geodesics("EPSG:32610", "EPSG:4326", kWgs84A, kWgs84F, 562710, 5114985, 1);
   expect_like_geodesics("EPSG:32733", "EPSG:4326", kWgs84A, kWgs84F, 180000, 6200000, 1);
   expect_like_geodesics("EPSG:3857", "EPSG:4326", kWgs84A, kWgs84F, -13628000, 4551000, 1);
-  // Oblique and conic ones; equal-area ones are not conformal.
+  // Oblique and conic projections; equal-area projections are not conformal.
   expect_like_geodesics("EPSG:2056", "EPSG:4150", 6377397.155, 1 / 299.1528128, 2600000, 1200000, 1);
   expect_like_geodesics("EPSG:3035", "EPSG:4258", 6378137, 1 / 298.257222101, 3000000, 4000000, 1);
 }

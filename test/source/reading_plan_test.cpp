@@ -30,7 +30,8 @@ std::vector<double> slope() {
   return samples;
 }
 
-// The averages: the slope between the samples, except at the corners with its lowest and highest.
+// The averages: the slope between the samples, except at the corners with its lowest and highest sample, which are
+// kept.
 std::vector<double> averages(int cols = kManyCols, int rows = kManyRows) {
   std::vector<double> samples;
   for (int row = 0; row < rows; row += 2) {
@@ -146,7 +147,7 @@ TEST_F(ReadingPlan, ReducesArraysTilesAndEncodedHeights) {
   };
   EXPECT_EQ(averages(), doubles(read_tiles({half("w.tif", 0), half("e.tif", kManyCols / 2)}, reduced())));
 
-  // The blue channel counts: n = height, and the red and green ones add a constant.
+  // The blue channel counts: n = height, and the red and green channels add a constant.
   RasterOptions encoded = reduced();
   encoded.encoding = HeightEncoding::terrarium;
   const std::vector<double> n =

@@ -76,7 +76,7 @@ inline GLuint compiled(GLenum kind, const std::string& text) {
   return shader;
 }
 
-/// A texture in three dimensions of unsigned integers, one byte or two words per texel, for texelFetch.
+/// A three-dimensional texture of unsigned integers, one byte or two words per texel, for texelFetch.
 inline void fill_3d(GLenum unit, GLint format, const std::array<int, 3>& size, const void* texels) {
   GLuint texture = 0;
   glGenTextures(1, &texture);

@@ -62,7 +62,7 @@ Hit upside_down(Hit hit) {
   return hit;
 }
 
-// Whether some of the rays within rounding of this one hit and some do not.
+// Whether, among the rays within rounding of this ray, some hit and some do not.
 bool grazes(const HeightTarget& target, const Ray& ray, double t) {
   const HeightField& field = *target.field;
   const GridRay local = field.grid_from_world(ray);

@@ -39,8 +39,8 @@ class Echo final : public SceneBackEnd {
   int batches = 0;
 };
 
-// The tile's column and row determine the number of rounds. The rounds take turns
-// among the three queries, with different numbers of rays; counts correct answers.
+// The tile's column and row determine the number of rounds. The rounds alternate between the three queries, with
+// different numbers of rays; counts correct answers.
 class Curious final : public TileWork {
  public:
   Curious(const PixelTile& tile, std::size_t most_rays, std::atomic<std::int64_t>& right)

@@ -59,7 +59,7 @@ TEST(Fog, ByHeightMatchesTheIntegralAlongTheRay) {
     }
   }
   EXPECT_EQ(judged, 81);
-  // All the way up: the integral of the fog above.
+  // A ray that goes all the way up: the integral of the fog above.
   const Ray up = ray({0, 0, 350}, {0, 1, 2});
   const double above = per_metre * std::exp(-1.0) * settings.falloff / up.direction.z;
   EXPECT_NEAR(transmittance(settings, up, kInfinity), std::exp(-above), 1e-14);

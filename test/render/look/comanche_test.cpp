@@ -140,7 +140,7 @@ TEST(Comanche, PlainWaterShowsAtTheFirstSampleBelow) {
   EXPECT_DOUBLE_EQ(met.t, truth);
 }
 
-TEST(Comanche, UpwardRaysMiss) {
+TEST(Comanche, UpwardRaysEndAboveTheHighestGround) {
   const HeightField field = endless();
   const StepMarch march(field, {.steps = 1000, .shells = true}, 1000, {0, 1, 0});
   Ray ray;

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> greys(const std::vector<int>& values) {
   return rgba;
 }
 
-constexpr double kSharp = 1e-3;  // metres of a pixel
+constexpr double kSharp = 1e-3;  // pixel size in metres
 
 // 3 x 2 texels over 30 x 20 m; the mean is 85.
 TEST(DetailTexture, RepeatsNorthUp) {

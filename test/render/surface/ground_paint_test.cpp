@@ -75,7 +75,7 @@ TEST(GroundPaint, RockIsSteepAndSnowIsHigh) {
   EXPECT_GT(rock.x, rock.y);
   EXPECT_GT(snow.x, 0.7f);
   EXPECT_LT(cliff.x, 0.5f) << "too steep for snow";
-  // Just below the line there is more of it on the side away from the sun, in the west.
+  // Just below the snow line there is more snow on the side away from the sun, in the west.
   EXPECT_GT(at(68, {0.4, 0, 1}).z, at(68, {-0.4, 0, 1}).z);
 }
 

@@ -74,7 +74,7 @@ TEST(Water, CoastOfAConeIsACircle) {
   settings.shadows = false;
   const Camera camera = Camera::look_at({kMiddle, kMiddle, 200}, {kMiddle, kMiddle, 0}, 16, kSide, kSide);
   const PictureLayers layers = render_layers(scene, camera, settings);
-  // A pixel on the water, in cells: the coast is known to half of it.
+  // Size of a pixel on the water, in cells: the coast is known to half a pixel.
   const double half_pixel = camera.pixel_width(200 - kLevel) / 2;
   EXPECT_GT(half_pixel, 0.006 * 10) << "a cone of patches is a cone here";
   const Water water(*settings.water, scene);
