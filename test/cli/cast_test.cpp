@@ -105,7 +105,7 @@ TEST_F(Cast, MapNodesHitTheirSamples) {
 }
 
 TEST_F(Cast, LonlatNodesHitTheirSamples) {
-  // Cells of 1/1024 degree: nodes and edges are numbers without rounding.
+  // Cells of 1/1024 degree: nodes and edges are exact numbers.
   const double west = -84.5, south = 36.25, cell = 1.0 / 1024;
   const std::string bounds = fmt::format("--bounds={},{},{},{}", west - cell / 2, south - cell / 2,
                                          west + (kCols - 0.5) * cell, south + (kRows - 0.5) * cell);
@@ -456,7 +456,7 @@ TEST_F(Cast, ClosedPipeIsNotAnError) {
   for (int i = 0; i < 100000; ++i) table += "15,15,500,0,0,-1\n";
   const std::string command = fmt::format("'{}' cast '{}' --coords local --rays '{}' 2> '{}' | head -n 1 > '{}'",
                                           SCARP_PROGRAM, hills(), rays(table), path("err"), path("out"));
-  // The second shell starts it with SIGPIPE ignored, as some daemons do.
+  // The second shell starts `scarp` with SIGPIPE ignored, as some daemons do.
   for (const std::string& line : {command, "trap '' PIPE; " + command}) {
     EXPECT_EQ(std::system(line.c_str()), 0);
     EXPECT_EQ(test::text_of(path("err")).find("scarp: "), std::string::npos) << test::text_of(path("err"));
@@ -555,7 +555,7 @@ TEST_F(Cast, WarnsThatAFieldWithoutCompleteCellsIsNeverHit) {
 TEST_F(Cast, DeviceMatchesCpu) {
   const auto devices = nlohmann::json::parse(test::run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
-  // The border is shared; a hole. Cells of 1 m, heights 100 to 105.
+  // A field with a shared border and a hole; cells of 1 m, heights from 100 to 105.
   constexpr int kSide = 9;
   constexpr double kDelta = 2 * 16 * 0x1p-24 * (3 * 5 + (2 * kSide + 1) * 5);
   std::string field =

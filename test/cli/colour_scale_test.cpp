@@ -80,7 +80,8 @@ TEST_F(ColourScale, RampRangeMatchesTheLegend) {
 }
 
 TEST_F(ColourScale, LevelGroundAtAContourIsNotDrawn) {
-  // A lake at 100 m, and its shore; contours at 80, 100 and 120 m. The second lake is rough by 1e-5 m, like rounded floats.
+  // A lake at 100 m, and its shore; contours at 80, 100 and 120 m. The second lake is rough by 1e-5 m, like rounded
+  // floats.
   for (const double rounding : {0.0, 1e-5}) {
     const std::string lake = dem("lake.asc", [&](int col, int row) {
       const double away = std::max(std::abs(col - 16), std::abs(row - 16)) - 8;

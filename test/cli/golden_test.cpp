@@ -135,7 +135,7 @@ TEST_P(GoldenPicture, MatchesOnADevice) {
 #endif
 
 #ifdef SCARP_MESH_ON_DEVICE
-// Drawn and computed on a CPU device, which is the same everywhere.
+// Drawn and computed on a CPU device, whose results are the same everywhere.
 TEST(GoldenMesh, MatchesTheReviewedPicture) {
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";

@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// 8001 x 8000 samples: each of the 2 x 2 in the file many times.
+// 8001 x 8000 samples: each of the file's 2 x 2 samples, repeated many times.
 std::string large_raster(const test::Scratch& scratch) {
   scratch.write("small.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1000\n10 20\n30 4000\n");
   return scratch.write("large.vrt", R"(<VRTDataset rasterXSize="8001" rasterYSize="8000">

@@ -475,7 +475,7 @@ TEST_F(MapsCli, ValidatesPlacesTimesAndFiles) {
   for (const char* rule : {"--sun-per-cell", "--refraction"})
     expect_refused({"shadow", dem_, "--crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out}, "--crs");
 #endif
-  // Found before the work starts.
+  // The error is found before the work starts.
   const Names there = on_dem("viewshed") + Names{"--observer", "500105,5000105", "--of", "GTiff", "-o"};
   expect_refused(there + Names{path("none/x.tif")}, "'" + path("none") + "' does not exist");
   expect_refused(there + Names{path("")}, path(""));

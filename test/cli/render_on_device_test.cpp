@@ -102,7 +102,7 @@ TEST_F(RenderOnDevice, RendersFunctionsAndScenes) {
   }
 }
 
-// Hits on voxels are those of the CPU to the bit, and therefore pictures and tables, too.
+// Hits on voxels match those of the CPU to the bit, and therefore pictures and tables match, too.
 TEST_F(RenderOnDevice, RendersVoxelsAsTheCpu) {
   const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
   if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);

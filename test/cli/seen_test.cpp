@@ -18,7 +18,7 @@ class Seen : public testing::Test {
  protected:
   static constexpr int kSide = 24;
 
-  // Hills of 100 to 300 m on 2.3 km; `sample` replaces the height of some.
+  // Hills of 100 to 300 m over 2.3 km; `sample` replaces the height of some.
   template <class F>
   std::string grid(const std::string& name, double cell, const F& sample) const {
     std::string text = fmt::format(

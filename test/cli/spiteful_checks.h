@@ -47,7 +47,7 @@ struct Wanted {
   std::vector<std::string> also{};      ///< other commands to try: `section`, `cast`, `voxelise`
   bool of_option = false;               ///< the error is in an option, which is named instead of the file
   bool whole = false;  ///< of another kind and not damaged: an error lists the supported formats, and does not advise
-                       ///< to fetch it again
+                       ///< fetching it again
 
   Wanted noting(std::string text) && { return note = std::move(text), std::move(*this); }
   Wanted too_small() && { return tiny = true, std::move(*this); }
@@ -208,7 +208,7 @@ inline std::int64_t voxels_of_vox(const std::string& bytes) {
   return found;
 }
 
-/// Runs `info`, `render` and the other commands of the case on a file of a folder.
+/// Runs `info`, `render` and the other commands of the case on a file in a folder.
 inline void check_file(const Scratch& folder, const std::string& file, const Case& c) {
   const Wanted& wanted = c.wanted;
   SCOPED_TRACE("case '" + c.name + "'");

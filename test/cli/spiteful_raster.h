@@ -21,7 +21,7 @@ namespace scarp::test {
 enum class Expected {
   drawn,             ///< a picture with ground in it
   drawn_or_warned,   ///< a picture, and a warning if there is next to no ground in it
-  right_or_refused,  ///< drawn_or_warned with the numbers that are stated, or refused
+  right_or_refused,  ///< as drawn_or_warned, with the stated numbers; or refused
   described,         ///< `info` works, but there is nothing to draw: rejected by `render`
   refused,           ///< one line that names the file
 };
@@ -100,7 +100,7 @@ class SpitefulFiles {
     return bytes(name, text);
   }
 
-  /// A GeoTIFF of cells of 10 m in UTM zone 32, all of whose bands hold the same. `edit` may change anything.
+  /// A GeoTIFF of cells of 10 m in UTM zone 32, all of whose bands hold the same samples. `edit` may change anything.
   std::string tiff(const std::string& name, GDALDataType type, const std::vector<double>& samples,
                    const Edit& edit = {}, std::vector<const char*> options = {}, int bands = 1, int cols = kCols,
                    int rows = kRows) const {

@@ -20,7 +20,7 @@ const std::string kCube = block({4, 4, 4});
 const std::vector<std::string> kOthers{"cast", "section", "voxelise"};
 
 std::string scene(const std::string& nodes, const std::string& models = kCube) { return vox(models + nodes, 200); }
-// The cube once, by a transform of these frames.
+// A single cube, placed by a transform with these frames.
 std::string once(const std::vector<Attributes>& frames, const Attributes& own = {}) {
   return scene(moved(0, 1, frames, -1, own) + shape(1));
 }
@@ -183,7 +183,7 @@ TEST(SpitefulScene, Layers) {
   });
 }
 
-// The empty space between them takes no memory, and no picture of this size shows both.
+// The empty space between the models takes no memory, and no picture of this size shows both.
 TEST(SpitefulScene, DistantModels) {
   const auto apart = [](std::int64_t by) { return scene(placed({{{"_t", at(0, 0, 2)}}, {{"_t", at(by, 0, 2)}}})); };
   check_all({
@@ -194,7 +194,7 @@ TEST(SpitefulScene, DistantModels) {
        either("apart", 64, Size{16'000'004, 4, 4}).too_small().trying({"cast"})},
       {"two models 2^30 apart", apart(1 << 30), refused("1073741824")},
   });
-  // 100,000 voxels are more than a file can have: rejected quickly, and without the memory for them.
+  // 100,000 voxels are more than a file can have: they are rejected quickly, without allocating memory for them.
   const test::Scratch folder;
   folder.write("m.vox", apart(100'000));
   const Look look(folder, "m.vox", {"voxelise"}, "o.vox");

@@ -16,7 +16,7 @@ struct NamedFunction {
   bool smooth;  ///< no creases: finite differences match the gradient everywhere
 };
 
-/// All nodes, all kinds of noise; features of 10 to 3000 m, heights of some hundred.
+/// All nodes, all kinds of noise; features of 10 to 3000 m, heights of some hundred metres.
 std::vector<NamedFunction> terrain_functions();
 
 class FunctionRandom {

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# run.sh of ./dev gpu-bundle, in a bundle of stand-ins: a step that hangs or fails does not stop the others, and the table reports it.
+# run.sh of ./dev gpu-bundle, in a bundle of stand-ins: a step that hangs or fails does not stop the others, and the
+# table reports it.
 # usage: bundle.sh ROOT WORK
 set -euo pipefail
 

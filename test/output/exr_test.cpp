@@ -81,8 +81,8 @@ TEST_F(ExrFile, FullDiskKeepsTheOldPicture) {
   write_exr(path("whole.exr"), {200, 200, {{"Z", depth.data()}}});
   const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole.exr")));
   write_exr(path("a.exr"), {2, 2, {{"Z", depth.data()}}});
-  // The disk is full within the header, among the lines, before the last byte; and for a picture so small that nothing
-  // reaches the disk before the file is closed.
+  // The disk becomes full within the header, between lines, or before the last byte; and for a picture so small that
+  // nothing reaches the disk before the file is closed.
   for (const auto& [side, limit_of_size] :
        {std::pair(200, std::uint64_t{100}), {200, size / 2}, {200, size - 1}, {3, std::uint64_t{100}}}) {
     std::string message;

@@ -41,7 +41,7 @@ PlacedVoxels one(VoxelGrid grid, const glm::dmat3& world_from_grid, const dvec3&
   return {{model}, {{0, world_from_grid, origin}}, {}};
 }
 
-// A cube of this many voxels a side.
+// A cube with this many voxels per side.
 PlacedVoxels cube(int side, const glm::dmat3& world_from_grid = glm::dmat3(1.0), const dvec3& origin = dvec3(0.0)) {
   VoxelGrid grid(ivec3(side), 8);
   grid.fill(grid.box(), 1);

@@ -67,7 +67,7 @@ TEST(Filters, SeeEveryHillOfAFunction) {
   for (int i = cases(2000, 300, 50); i > 0; --i) {
     Ray ray{.origin = {random.in(-50, 50), random.in(-50, 50), random.in(-3, 6)}, .t_max = 1};
     ray.direction = {random.in(-150, 150), random.in(-150, 150), random.in(-4, 4)};
-    // Where it crosses the ground, by samples a few centimetres apart; rays that nearly touch it are skipped.
+    // Where the ray crosses the ground, by samples a few centimetres apart; rays that nearly touch it are skipped.
     std::vector<double> falls;
     const auto clearance = [&](double t) { return ray.at(t).z - waves.value(ray.at(t).x, ray.at(t).y); };
     double before = clearance(0), least = std::abs(before);
@@ -118,7 +118,7 @@ TEST(Filters, SeeEveryBallFromOutside) {
     for (int i = 0; i < 5; ++i) {
       Ray ray{.origin = random.inside(3) + dvec3(0, 0, 15), .t_max = 3};
       ray.direction = random.inside(2) - ray.origin;
-      // Where it is in a ball; rays that nearly graze one, or leave one where they enter another, are skipped.
+      // Where the ray is in a ball; rays that nearly graze a ball, or leave one where they enter another, are skipped.
       std::vector<std::pair<double, double>> in;
       bool clear = true;
       const double square = dot(ray.direction, ray.direction);
@@ -175,7 +175,7 @@ TEST(Filters, RespectTheStartOfTheRay) {
   const Scene waves(scene_function(HeightFunction(make_function(Sines{{{.amplitude = 2, .wavelength = 20}}}))));
   const SceneQuery nothing = waves.query({.accept = [](const Ray&, const Hit&) { return false; }});
   EXPECT_EQ(nothing.closest_hit({{5, 0, -1}, {0, 0, -1}}).status, HitStatus::below);
-  // A ray along flat ground touches it everywhere: the step limit ends it.
+  // A ray along flat ground touches it everywhere: the step limit ends the march.
   const Scene flat(scene_function(HeightFunction(make_function(Plane{}))));
   EXPECT_NE(flat.query({.accept = [](const Ray&, const Hit&) { return false; }})
                 .closest_hit({.origin = {0, 0, 0}, .direction = {1, 0, 0}, .t_max = 100})

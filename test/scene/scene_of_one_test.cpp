@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scenes of one field at the origin: they accept the same rays as the field, and return the answers of its own batches,
-// to the bit. Heights above ground in scenes of more.
+// to the bit. Also heights above ground in scenes of several fields.
 #include <gtest/gtest.h>
 
 #include <cmath>

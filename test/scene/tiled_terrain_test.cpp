@@ -25,7 +25,7 @@ using test::whole;
 
 constexpr int kCells = 16, kTiles = 3, kSide = kCells * kTiles + 1;
 
-// Hills with noise, in samples of a whole terrain of tiles.
+// Hills with noise, as samples of a whole tiled terrain.
 std::vector<float> samples(Random& random, double hole_share) {
   std::vector<float> all;
   for (int row = 0; row < kSide; ++row) {
@@ -159,7 +159,7 @@ TEST(TiledTerrain, LosesNoRayAtSeamsBetweenLevels) {
     const auto inside = [&](const dvec3& p) { return std::min(p.x, p.y) > 0 && std::max(p.x, p.y) < kTiles * width; };
     int lost = 0, rays = 0;
     while (rays < 100'000) {
-      // Through a seam, near the ground there.
+      // Rays through a seam, near the ground there.
       double x = width * whole(random, 1, kTiles - 1), y = uniform(random, 0, kTiles * width);
       if (rays % 2) std::swap(x, y);
       const double off = rays % 3 ? 0x1p-14 : 0.5;
@@ -301,7 +301,7 @@ TEST(TiledTerrain, RejectsMismatchedTilesWithoutChanges) {
   HeightFieldSettings other = settings;
   other.offset = 1;
   EXPECT_EQ(put({0, 1}, tile(all, {0, 1}, other)), "tiles: (0, 1): its setting 'offset' is not that of the layout");
-  // Another sample at the shared border, at its corner, and where the coarser tile has samples.
+  // A different sample at the shared border, at its corner, and where the coarser tile has samples.
   const auto at = static_cast<std::size_t>((kCells + 4) * kSide + kCells);
   const float right = std::exchange(all[at], 77.0f);
   EXPECT_NE(put({0, 1}, tile(all, {0, 1}, settings)).find("(0, 1) and (1, 1) differ at a sample of their border: "),

@@ -138,7 +138,7 @@ TEST(CoarseVoxels, AreUsedWherePixelsAreLarger) {
   EXPECT_EQ(near.fields().size(), 1U);
 }
 
-// Stairs that the sun shines along, a little above their slope: flat ones shade themselves, smooth ones do not.
+// Stairs with the sun slightly above their slope: flat-shaded stairs shadow themselves, smooth ones do not.
 TEST(SmoothVoxels, AreNotShadowedByTheirOwnSteps) {
   const VoxelGrid stairs = grid_where(ivec3(64, 16, 40), [](const ivec3& v) { return 2 * v.z < v.x; });
   const PlacedVoxels voxels{{model_of(stairs)}, {VoxelPlace{0, glm::dmat3(0.5), {10, 0, 0}}}};

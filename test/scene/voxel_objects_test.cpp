@@ -56,7 +56,7 @@ Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std:
   return best;
 }
 
-// A hundred thousand objects of a thousand grids, rotated and scaled: those near each ray are tested one by one.
+// A hundred thousand objects with a thousand grids, rotated and scaled: those near each ray are tested one by one.
 TEST(VoxelObjects, FindsTheNearestOfAHundredThousand) {
   constexpr int kModels = 1000, kObjects = 100'000, kRays = 100;
   constexpr double kSide = 300;              // of the cube that contains them
@@ -216,7 +216,7 @@ TEST(VoxelObjects, ShadowRaysDoNotHitTheirStart) {
   EXPECT_EQ(free, 2000);
 }
 
-// Cubes and rounded ones alike: a ray into the solid hits at once, also by any-hit; one by one and in batches.
+// Both cubes and rounded voxels: a ray into the solid hits at once, also by any-hit; one by one and in batches.
 TEST(VoxelObjects, RaysIntoTheirSurfaceHitAtOnce) {
   // Shallower rays, as quantised, may leave a cube's face across an edge: those that do not reach its plane within the
   // displacement of 2^-17 voxel (voxel_ray.h).
@@ -410,7 +410,7 @@ TEST(FromVox, PlacesRotatedVoxels) {
   }
 }
 
-// The given number of models of the largest canvas in a row, each with the voxels.
+// This many models with the largest canvas, in a row, each with these voxels.
 VoxFile canvases(int models, const std::vector<VoxVoxel>& voxels) {
   VoxFile file;
   file.version = 200;
@@ -446,7 +446,7 @@ TEST(FromVox, RejectsExcessiveFilesEarly) {
   EXPECT_LT(bytes, wide.models.size() * 60'000);
   const std::string refusal = test::refusal([&] { placed_voxels_from(wide, {.voxels = {.march = "voxel-octants"}}); });
   EXPECT_NE(refusal.find("more than 1.1 GB of memory (choose --march voxel-bricks)"), std::string::npos) << refusal;
-  // 46^3 instances, each within a fifth of its side from another: too many pairs.
+  // 46^3 instances, all within a fifth of their side of one another: too many pairs.
   constexpr int kAlong = 46;
   VoxFile pile = canvases(1, {{0, 0, 0, 1}, {255, 255, 255, 1}});
   VoxGroup all;

@@ -48,7 +48,7 @@ VoxelPlace place_at(const dvec3& low, const glm::dmat3& turn, const ivec3& size)
   return {0, turn, low - glm::min(far, dvec3(0.0))};
 }
 
-// By every query.
+// Tested by every query.
 bool blocks(const VoxelObjects& objects, const Ray& ray) {
   const bool blocked = static_cast<bool>(objects.closest_hit(ray));
   EXPECT_EQ(blocked, objects.occluded(ray));
@@ -113,7 +113,7 @@ TEST(VoxelSeams, BlockRaysNearlyInTheSharedPlane) {
           ray.origin = dvec3(-from * ray.direction.x, 1.5, 10);
           if (std::abs(ray.origin.x) > 3) continue;
           ASSERT_TRUE(blocks(objects, ray)) << power << ' ' << way << ' ' << from;
-          // The hit is not inside, after the top was passed.
+          // The hit is at the top, and not inside after the ray has passed the top.
           EXPECT_NEAR(objects.closest_hit(ray).t, 6, 1) << power << ' ' << way << ' ' << from;
         }
       }

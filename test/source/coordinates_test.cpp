@@ -25,7 +25,7 @@ const Place kPlaces[] = {
     {"EPSG:32616", 721000, 4030000, 30, 30},              // UTM
     {"EPSG:2274", 2450000, 640000, 15, 20},               // feet
     {"EPSG:3857", -9400000, 4350000, 40, 40},             // Web Mercator
-    {"EPSG:3413", -420000, -2100000, 90, 90},             // polar, grid north far off true north
+    {"EPSG:3413", -420000, -2100000, 90, 90},             // polar, grid north far from true north
     {"EPSG:4326", 179.9, -17.5, 1.0 / 1200, 1.0 / 1200},  // across the antimeridian
     {"EPSG:4326", 275.5, 36.25, 1.0 / 1200, 1.0 / 1200},  // longitudes from 0 to 360
     {"EPSG:32760", 829000, 8070000, 1.0, 1.0},            // cells of a metre, far from the origin of their map

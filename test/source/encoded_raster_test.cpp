@@ -14,7 +14,7 @@ class EncodedRaster : public Files {
  protected:
   using Pixel = std::array<std::uint8_t, 4>;
 
-  // A PNG, or a file of another driver, of the given pixels; without alpha their last byte is omitted.
+  // A PNG, or a file of another driver, with the given pixels; without alpha, their last byte is omitted.
   std::string write_image(const std::string& name, int cols, int rows, const std::vector<Pixel>& pixels, bool alpha,
                           const char* driver = "PNG") {
     GDALDatasetUniquePtr memory(

@@ -41,7 +41,7 @@ TEST_F(GdalRaster, WidensBytesWithANote) {
 }
 
 TEST_F(GdalRaster, ReadsSignedBytesWithTheirSign) {
-  // -128 and 5 as bytes, with GDAL's metadata that they are signed.
+  // -128 and 5 as bytes, with GDAL metadata that marks them as signed.
   const std::string file = write_tiff(
       "a.tif", GDT_Byte, 2, 2, {128, 5, 255, 0},
       [](GDALDataset& d) { d.GetRasterBand(1)->SetMetadataItem("PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE"); }, 1,

@@ -187,7 +187,7 @@ TEST_F(Npy, IgnoresNonHeightArraysInAnArchive) {
       npy_bytes("{'descr': [('z', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", std::string(24, '\0'));
   EXPECT_EQ(kValues, doubles(read_raster(write_zip("a.npz", {{"dem.npy", height}, {"m.npy", mask}}), {})));
   EXPECT_EQ(kValues, doubles(read_raster(write_zip("b.npz", {{"t.npy", table}, {"dem.npy", height}}), {})));
-  // A single one is rejected for its kind; with several, the error asks for a name.
+  // A single array is rejected for its kind; with several arrays, the error asks for a name.
   expect_says(read_error(write_zip("c.npz", {{"m.npy", mask}})), "'|b1' (true and false)");
   expect_says(read_error(write_zip("d.npz", {{"t.npy", table}})), "structures");
   expect_says(read_error(write_zip("e.npz", {{"m.npy", mask}, {"t.npy", table}})),

@@ -41,7 +41,7 @@ TEST_F(Navigation, StartsAtTheGivenCamera) {
   const Camera camera = navigator.camera(800, 600);
   EXPECT_EQ(camera.eye(), dvec3(20, 5, 30));
   EXPECT_LT(length(camera.forward() - normalize(dvec3(0, 45, -30))), 1e-12);
-  // It turns around the point of the ground in the middle.
+  // The camera turns around the ground point in the middle.
   EXPECT_NEAR(navigator.pose().distance, std::hypot(45, 30), 1e-6);
 }
 

@@ -41,7 +41,7 @@ TEST_F(WindowFaults, ReopensALostSurface) {
   ASSERT_EQ(output_, "");
   for (const std::string place : {"acquire", "present"}) {
     for (const std::string what : {"out-of-date", "suboptimal", "surface"}) {
-      // At first, and more often than one frame tries.
+      // The first call fails, or more calls in a row than one frame retries.
       for (const std::string when : {":1:1", ":10:12"}) {
         const std::string plan = place + ":" + what + when;
         ASSERT_EQ(lose(plan, "now.png"), 0) << plan << '\n' << output_;

@@ -14,7 +14,8 @@ namespace scarp::test {
 
 using Offsets = std::vector<std::uint32_t>;
 
-/// Adds the offset of a member, by the id of its struct, if this operation (spirv_operations.h) decorates one with it.
+/// Adds the offset of a member, under the id of its struct, if this operation (spirv_operations.h) decorates a member
+/// with its offset.
 inline void add_offset(std::uint32_t code, std::span<const std::uint32_t> words,
                        std::map<std::uint32_t, Offsets>& structs) {
   if (code != spirv_op::kMemberDecorate || words[3] != spirv_decoration::kOffset) return;

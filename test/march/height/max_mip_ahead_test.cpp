@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors and the scalar walk agree on single rays: over every kind of field and ray of the
-// oracle's suite, next to the ground, through nodes and along borders, on every instruction set that this machine has.
+// Vectors and the scalar walk agree on single rays: over every kind of field and ray of the oracle's suite, next to the
+// ground, through nodes and along borders, on every instruction set that this machine has.
 #include "scarp/march/height/max_mip_ahead.h"
 
 #include <gtest/gtest.h>

@@ -106,7 +106,7 @@ TEST(Camera, FramingFitsAllCornersTightly) {
 }
 
 TEST(Camera, IsAtTheAzimuthOfTheView) {
-  // The grid's north points to the compass azimuth of 10 degrees.
+  // Grid north is at a compass azimuth of 10 degrees.
   const double grid_north = glm::radians(10.0);
   const Camera camera = Camera::framed(kBox, {.azimuth_deg = 100, .elevation_deg = 0}, grid_north, 400, 400);
   EXPECT_NEAR(camera.forward().x, -1, 1e-12) << "a view from the grid's east looks west";
@@ -149,7 +149,7 @@ TEST(Camera, NearerViewsApproachTheirFocus) {
 }
 
 TEST(Camera, TopMapsNodesToPixels) {
-  // 11 x 6 nodes 30 m apart on 200 x 100 pixels: 20 pixels a cell.
+  // 11 x 6 nodes 30 m apart on 200 x 100 pixels: 20 pixels per cell.
   const Camera camera = Camera::top({{0, 0, -50}, {300, 150, 90}}, 200, 100);
   for (int col = 0; col <= 10; ++col) {
     for (int row = 0; row <= 5; ++row) {

@@ -135,7 +135,8 @@ TEST_P(EveryInput, SupportsWater) {
       EXPECT_NE(before.colour[i], after.colour[i]);
     } else if (hit && before.position[i].z > kWater + 0.1) {
       ++above;
-      // Marches that converge to a surface stop elsewhere if a ray ends at the water, by their tolerance.
+      // Marches that converge to a surface stop at a different point, within their tolerance, if a ray ends at the
+      // water.
       EXPECT_LT(length(before.colour[i] - after.colour[i]), 1e-3);
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resolve(): a request takes precedence over that of the input, and that over the defaults.
+// resolve(): a request takes precedence over the input's request, and the latter over the defaults.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -222,7 +222,7 @@ TEST(Picture, UnlitWallsHaveOneColour) {
   EXPECT_GT(red(unlit, 24, 36), red(lit, 40, 36));
 }
 
-// 7 x 5 cells: level 1 has 4 x 3 nodes, whose last are narrower.
+// 7 x 5 cells: level 1 has 4 x 3 nodes, the last of which are narrower.
 TEST(Picture, LevelsShowTheMaximaOfTheirNodes) {
   std::vector<float> samples;
   for (int i = 0; i < 8 * 6; ++i) samples.push_back(static_cast<float>(i * 29 % 48));

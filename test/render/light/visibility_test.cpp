@@ -112,7 +112,7 @@ TEST(SkyOcclusion, EndsAtTheGivenDistance) {
 }
 
 TEST(SkyOcclusion, IsZeroOnARidge) {
-  // The shading normal at the ridge is upright, the slope's is not: the sky is that over the slope.
+  // The shading normal at the ridge is upright, but the slope's normal is not: the visible sky is that over the slope.
   const Scene scene = scene_of(33, 33, [](int col, int) { return -2 * std::abs(col - 16); });
   const LightPoint point = point_at(scene, 16.125, 16.5);
   ASSERT_GT(length(point.normal - point.shading_normal), 0.5);
@@ -139,7 +139,7 @@ class Cliff : public testing::Test {
 TEST_F(Cliff, PenumbraMatchesTheSunDisc) {
   const double radius = glm::radians(0.533 / 2);
   // The edge is at the angle atan(height / distance). A disc that it covers up to the fraction s of its radius from the
-  // middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: flat, which is off by radius^2 for a cap.
+  // middle shows 1/2 + (asin s + s sqrt(1 - s^2)) / pi: a formula for a flat disc, which is off by radius^2 for a cap.
   for (const double s : {-0.95, -0.6, -0.3, 0.0, 0.4, 0.7, 0.95}) {
     const double shown = 0.5 + (std::asin(s) + s * std::sqrt(1 - s * s)) / std::numbers::pi;
     const double distance = height_ / std::tan(altitude_ - s * radius);

@@ -56,7 +56,7 @@ TEST(GroundPaint, ContoursAppearOnVerticalSurfacesOnly) {
     const dvec3 p(50, 50, height);
     return with(p, height, normal, kPixel) != without(p, height, normal, kPixel);
   };
-  // A pixel of an upright surface covers as much height as it is long.
+  // On an upright surface, a pixel covers a height equal to its side.
   EXPECT_TRUE(inked(40, upright));
   EXPECT_TRUE(inked(40 + 1.0 * kPixel, upright));
   EXPECT_FALSE(inked(40 + 1.1 * kPixel, upright));

@@ -70,7 +70,7 @@ TEST_F(RayDumps, RoundTripExactly) {
   dump.ray.start = RayStart::on_surface;
   dump.ray.start_cell = {0, 1};
   dump.ray.start_cell.col = 0;
-  // Cell (0, 1) wraps round and has the corners 4, 5, 1, -2.
+  // Cell (0, 1) wraps around and has the corners 4, 5, 1, -2.
   const auto read = through_a_file({dump});
   ASSERT_EQ(read.size(), 1u);
   const HeightFieldSettings& to = read[0].field.settings();

@@ -84,7 +84,7 @@ TEST(ScannerFile, DefaultsAreAWholeTurnWithoutNoise) {
   EXPECT_EQ(lidar.path.at(0).heading, 0);
 }
 
-// 3600 steps of 0.1 degrees are a turn, although the sum of such doubles is more.
+// 3600 steps of 0.1 degrees are a full turn, although the sum of these doubles is larger.
 TEST(ScannerFile, StepsThatFillATurnAreAccepted) {
   for (const int count : {7, 360, 1800, 3600, 36000}) {
     for (const char* sign : {"", "-"}) {

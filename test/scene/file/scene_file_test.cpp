@@ -161,7 +161,7 @@ TEST_F(SceneFiles, CombineVoxels) {
   const auto combined = [&](const std::string& name, const char* at) {
     return with_object(fmt::format(R"({{"scale": 2, "voxels": {{"{}": {}}}}})", name, parts(at)));
   };
-  // From above, in metres: half a voxel is one.
+  // From above, in metres: half a voxel is one metre.
   const auto height = [](const SceneFile& file, double x, double y) {
     const Ray ray{.origin = {x, y, 100}, .direction = {0, 0, -1}};
     const Hit hit = file.scene.closest_hit(ray);

@@ -29,7 +29,7 @@ const ShapeNames kNames{
 DistanceField field_of(const char* text) { return distance_field_from_json(Json::parse(text), "/shape", kNames); }
 
 TEST(ShapeJson, ReadsEverySolid) {
-  // A position just outside of each, and its distance.
+  // A position just outside each solid, and its distance.
   const struct {
     const char* text;
     dvec3 position;
