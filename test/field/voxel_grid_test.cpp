@@ -325,7 +325,7 @@ TEST(VoxelGrid, BuildFromBricksMatchesEdits) {
   EXPECT_THROW(VoxelGrid::built(size, 5, too_large), Error);
 }
 
-// The object of the post: 32^3, each solid voxel with its own colour.
+// The object of C. Leak's post (bench/voxel_sets.h): 32^3, each solid voxel with its own colour.
 TEST(VoxelGrid, StoresTheStandardObjectCompactly) {
   VoxelGrid grid({32, 32, 32}, 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {

@@ -119,7 +119,7 @@ TEST(Relaxed, ApproachesAPlane) {
 }
 
 TEST(Relaxed, FollowsItsRecurrence) {
-  // Over a plane h shrinks by 1 - 0.4 * 0.6 a step: the number of steps is known.
+  // Over a plane h shrinks by 1 - 0.4 * 0.6 per step: the number of steps is known.
   const HeightField field = flat();
   MarchStats stats;
   march_relaxed({&field, nullptr}, {{10, 50, 30}, {0.8, 0, -0.6}}, {}, &stats);

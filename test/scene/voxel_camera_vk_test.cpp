@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of voxels on a Vulkan device, drawn as boxes and traced by compute: both are the CPU's, bit for bit, for any
-// eye, also where two objects are at the same depth.
+// Pictures of voxels on a Vulkan device, drawn as boxes and traced by compute: both equal the CPU's, bit for bit, for
+// any eye, also where two objects are at the same depth.
 #include "scarp/scene/voxel_camera_vk.h"
 
 #include <fmt/format.h>
@@ -70,7 +70,7 @@ std::shared_ptr<const VoxelModel> model_of(const ivec3& size, double share, std:
   return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
 }
 
-// Touching cubes, as in the post, about the origin.
+// Touching cubes around the origin, as in C. Leak's post (bench/voxel_sets.h).
 Scene touching(std::string_view march, double share = 0.1) {
   PlacedVoxels placed;
   placed.models = {model_of(ivec3(8), share, march)};

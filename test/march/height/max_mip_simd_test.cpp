@@ -30,7 +30,7 @@ const int kRaysPerSet = cases(3000, 1000, 25);
 const int kCameras = cases(60, 15, 1);
 const int kFans = cases(120, 30, 1);
 const std::size_t kBatchSizes = static_cast<std::size_t>(cases(3, 3, 1));
-// Every 17th in builds with sanitizers, to find out-of-bounds accesses of a group of rays.
+// Every 17th ray in builds with sanitizers, to find out-of-bounds accesses of a group of rays.
 const std::size_t kUnusualStride = static_cast<std::size_t>(cases(1, 1, 17));
 #ifdef NDEBUG
 constexpr int kNodesApart = 1;

@@ -107,7 +107,7 @@ TEST(Queries, AnyHitLooksAheadAndAgreesWithClosestHit) {
     int hits = 0, far = 0;
     for (int i = 0; i < 50'000; ++i) {
       Ray ray = along_hills(field, random, i % 2);
-      // Some end just in front of their hit, or just behind it.
+      // Some rays end just in front of their hit, or just behind it.
       const Hit first = march_max_mip(target, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
       const Hit hit = march_max_mip(target, ray);
@@ -163,7 +163,7 @@ TEST(Queries, AnswersKeepTheOrderOfTheRays) {
   }
   EXPECT_GT(found, 5000);
 
-  // Each ray once; and the new order is a fixed point.
+  // The order contains each ray once, and is a fixed point of the sort.
   std::vector<Ray> ordered;
   for (const std::uint32_t i : order) ordered.push_back(rays[i]);
   EXPECT_TRUE(ground_order(field, ordered).empty());

@@ -96,7 +96,7 @@ TEST_P(SinglePrecisionSampling, FollowsItsStepRule) {
       check(marched_as(GetParam()), spiteful_fields()[pair.field], spiteful_rays()[pair.ray], random, counts);
   }
   EXPECT_GT(counts.hits, 100 * kRaysPerField);
-  // Those that start or enter below the ground.
+  // Rays that start or enter below the ground.
   EXPECT_LT(counts.doubtful, counts.asked / 2);
 }
 
@@ -202,7 +202,7 @@ TEST(SinglePrecisionSampling, LeavesBlocks) {
   for (int i = 0; i < kRays; ++i) {
     Ray ray;
     ray.origin = {uniform(random, 0, kSide - 1), uniform(random, 0, kSide - 1), 1};
-    // Some nearly along an axis: the slower a line is crossed, the more its time rounds.
+    // Some rays are nearly along an axis: the slower a line is crossed, the more its time rounds.
     ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1) * std::exp2(-uniform(random, 0, 12)), -0.001};
     const DeviceRay prepared = sampled_device_ray(field, ray);
     ASSERT_TRUE(prepared.marches);

@@ -154,7 +154,7 @@ TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithClosestHit) {
     std::uint64_t hits = 0, closest_fetches = 0, any_fetches = 0;
     for (int i = 0; i < kRays; ++i) {
       Ray ray = along_hills(field, random, i % 2);
-      // Some end just in front of their hit, or just behind it.
+      // Some rays end just in front of their hit, or just behind it.
       const Hit first = march_max_mip({&field, &pyramid}, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
       const DeviceRay prepared = device_ray(field, ray);

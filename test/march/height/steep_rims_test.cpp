@@ -459,8 +459,7 @@ TEST(SteepRims, KeepHitsAtTheEndOfTheRange) {
   }
 }
 
-// A random field of the whole kind: cells, formats, surfaces, holes, walls and wraps; half of the flat ones at height
-// 0.
+// A random field of any kind: cells, formats, surfaces, holes, walls and wraps; half of the flat ones at height 0.
 HeightField field_of_any_kind(Random& random, bool wraps) {
   const int cols = whole(random, 2, 8), rows = whole(random, 2, 8), most = whole(random, 0, 2) * 5;
   const double cell[] = {1, 0.1, 0.7, 7.7, 1.0 / 3}, hole = whole(random, 0, 2) * 0.2;
@@ -481,7 +480,7 @@ HeightField field_of_any_kind(Random& random, bool wraps) {
 }
 
 // Rays through a node of the field or past it by rounding, steep, along lines, level, or from anywhere. Without offset
-// and relief, some have heights below the least normal number.
+// and relief, some rays have heights below the smallest normal number.
 Ray ray_at_node(const HeightField& field, Random& random) {
   const HeightFieldSettings& to = field.settings();
   const int col = whole(random, 0, field.cols() - 1), row = whole(random, 0, field.rows() - 1);

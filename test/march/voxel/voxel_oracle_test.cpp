@@ -18,7 +18,7 @@
 namespace scarp::test {
 namespace {
 
-// Few under the sanitizers, which check memory accesses.
+// Few rays under the sanitizers, which check memory accesses.
 const int kRaysPerPair = cases(100'000, 10'000, 500);
 constexpr int kRaysPerGrid = 250;
 
