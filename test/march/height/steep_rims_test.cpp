@@ -531,7 +531,9 @@ void expect_same_hit_for_any_range(const HeightTarget& target, Ray ray, double l
       ASSERT_EQ(march(target, cut), hit) << t_max;
     }
     cut.t_max = std::nextafter(hit.t, -1e300);
-    if (cut.t_max >= cut.t_min) ASSERT_FALSE(march(target, cut)) << hit.t;
+    if (cut.t_max >= cut.t_min) {
+      ASSERT_FALSE(march(target, cut)) << hit.t;
+    }
   }
   const Hit hit = march_max_mip(target, ray);
   if (!hit) return;
@@ -543,7 +545,9 @@ void expect_same_hit_for_any_range(const HeightTarget& target, Ray ray, double l
   ASSERT_EQ(batch, hit);
   ASSERT_TRUE(blocked && occluded_max_mip(target, ray));
   ray.t_max = std::nextafter(hit.t, -1e300);
-  if (ray.t_max >= ray.t_min) ASSERT_FALSE(occluded_max_mip(target, ray));
+  if (ray.t_max >= ray.t_min) {
+    ASSERT_FALSE(occluded_max_mip(target, ray));
+  }
 }
 
 TEST(SteepRims, HitTheSamePointWhereverTheRangeEnds) {
