@@ -62,7 +62,7 @@ class FanWalk {
     const HeightField::GridScales scales = field_.grid_scales();
     scales_.per_x = static_cast<float>(scales.per_cell_x), scales_.per_y = static_cast<float>(-scales.per_cell_y);
     scales_.per_z = static_cast<float>(scales.per_scale);
-    // Of the rays whose hits are wanted, march_max_mip() counts the cells of those that end.
+    // march_max_mip() counts cells: rays whose hits are wanted end where it can.
     scales_.most_major = wraps && !sights ? static_cast<float>(std::min(0x1p60, 0x1p40 / fan.t_max)) : 0x1p60f;
     triangles_ = field_.settings().surface == Surface::triangles;
     const double low = field_.min_sample(), high = field_.max_sample();

@@ -126,7 +126,7 @@ TEST(FanBatch, FindsFansOverWrappedFields) {
       for (Ray& ray : rays) ray.t_max = 2000;
       EXPECT_TRUE(fan_batch(target, rays));
       expect_single_answers(target, rays);
-      // Of different lengths, up to none that cells are counted for.
+      // Ranges of different lengths, and infinite ones, in which cells cannot be counted.
       for (std::size_t i = 6; i + 1 < rays.size(); i += 7)
         rays[i].t_max = i % 3 ? 10 * static_cast<double>(i) : std::numeric_limits<double>::infinity();
       EXPECT_TRUE(fan_batch(target, rays));
