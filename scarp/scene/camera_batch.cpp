@@ -10,11 +10,11 @@
 namespace scarp {
 namespace {
 
-// A picture with fewer rays than one in this many pixels is not worth drawing, and the device has no room for more
-// pixels.
+// A picture with fewer than one ray per kMostPixelsPerRay pixels is not worth drawing, and the device has no room for
+// more than kMostPixels.
 constexpr std::uint64_t kMostPixelsPerRay = 4, kMostPixels = std::uint64_t{1} << 21;
 constexpr std::int64_t kRaysPerPiece = 4096;
-// Rounding of the rays' numbers, relative to their largest.
+// Rounding of the rays' coordinates, relative to the largest one.
 constexpr double kRounding = 0x1p-40;
 
 struct PixelOf {
@@ -30,7 +30,7 @@ class Pixels {
     off_ = kRounding * (1 + length(picture.origin));
   }
 
-  /// For parallel rays, the maximum distance of their origins from those of the picture's form.
+  /// For parallel rays, the maximum distance of their origins from those that the picture's form gives.
   double off() const { return off_; }
 
   PixelOf of(const Ray& ray) const {

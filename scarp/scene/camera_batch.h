@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: finds the rays of a batch that belong to a camera, arranged as their part of the picture.
+// Private to the station: finds the rays of a batch that come from a camera, and arranges them as the part of the
+// picture that they cover.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +18,10 @@ struct CameraBatch {
 
   VoxelPicture picture;             ///< the part
   std::vector<std::uint32_t> ray;   ///< ray of each pixel, row by row; kNone: no ray
-  std::vector<std::size_t> others;  ///< rays that are not in it
+  std::vector<std::size_t> others;  ///< rays that are not in the part
 };
 
-/// Returns nullopt if few rays are the camera's, or they are scattered over its picture.
+/// Returns nullopt if few of the rays come from the camera, or if they are scattered over its picture.
 std::optional<CameraBatch> camera_batch(const VoxelPicture& picture, std::span<const Ray> rays);
 
 }  // namespace scarp

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t kRaysPerCheck = 8192, kPointsPerPiece = 1024;
 
-// True only for rays that validate() accepts: nearly all that it accepts, at a fraction of its cost. Sums of numbers
+// True only for rays that validate() accepts, and for nearly all of those, at a fraction of its cost. Sums of numbers
 // are finite only if the numbers are.
 bool is_plain(const Ray& ray, bool wraps) {
   const dvec3 sum = ray.origin + ray.direction;

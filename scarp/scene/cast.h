@@ -33,9 +33,9 @@ bool occluded(const Scene& scene, const Ray& ray, const Hit* from = nullptr);
 void occluded(const Scene& scene, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               std::span<const Hit* const> from = {});
 
-/// Sets heights[i] to scene.height(xs[i], ys[i]), in metres: that of the highest ground, NaN where there is none. On
-/// all threads. Throws Error if spans differ in length. heights_at() of a field (field/ground_points.h) also has
-/// normals.
+/// Sets heights[i] to scene.height(xs[i], ys[i]), in metres: the height of the highest ground, NaN where there is none.
+/// Uses all threads. Throws Error if spans differ in length. heights_at() of a field (field/ground_points.h) also
+/// returns normals.
 void heights_at(const Scene& scene, std::span<const double> xs, std::span<const double> ys, std::span<double> heights);
 
 }  // namespace scarp

@@ -17,7 +17,7 @@ struct ScenePart {
   Scene scene;
   Placement placement{};                    ///< rotation, scale and origin; identity by default
   std::optional<std::uint32_t> material{};  ///< index into PictureSettings::materials; nullopt: as in `scene`
-  std::optional<std::uint32_t> mask{};      ///< of its objects (SceneObject::mask); nullopt: as in `scene`
+  std::optional<std::uint32_t> mask{};      ///< SceneObject::mask of its objects; nullopt: as in `scene`
 };
 
 /// Returns a scene of all objects of all parts, in order. Hit::object is the index of an object, from 0; if every part

@@ -14,7 +14,7 @@ struct DeviceTerrain;  // scene_vk.h
 class FieldOnDevice {
  public:
   virtual ~FieldOnDevice() = default;
-  /// Rays start by Ray::start; `from` is for fields whose rays need more than that, and may be empty.
+  /// Rays start as Ray::start states. `from`, which may be empty, is for fields whose rays need more than that.
   virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                             std::span<const Hit* const> from) = 0;
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,

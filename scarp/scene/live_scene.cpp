@@ -229,7 +229,7 @@ void LiveScene::Editor::remove(std::uint32_t object) {
   state.free_objects.push_back(object);
 }
 
-// Fields whose samples or voxels were edited change the boxes of their objects.
+// Updates the boxes of objects whose fields were edited.
 void LiveScene::State::update_fields() {
   const std::uint64_t edits = edits_of_all_fields.load(std::memory_order_relaxed);
   if (edits == scene.seen_.value()) return;

@@ -15,12 +15,13 @@
 //     terrain.set_samples(rect, samples);          if (hits[0] && hits[0].object == car) ...
 //   });
 //
-// The number of an object is its index in Scene::objects() and that in Hit::object. It does not change while the object
-// exists. Later objects reuse the numbers of removed ones; until then no ray hits those numbers.
+// The number of an object is its index in Scene::objects(), and the value of Hit::object. It does not change while the
+// object exists. Later objects reuse the numbers of removed ones; until then no ray hits those numbers.
 //
-// Queries return the same results as a new scene of the same objects. Only the hierarchy's boxes on the way to an
-// object are updated: a move in a scene of 10,000 objects takes about 5 us. When edits have degraded the hierarchy
-// (box_tree_editor.h), an edit rebuilds it, at about 1 us per object, spread over at least 8 edits per object.
+// Queries return the same results as a new scene of the same objects. Only the boxes on the path from the root of the
+// hierarchy to an object are updated: a move in a scene of 10,000 objects takes about 5 us. When edits have degraded
+// the hierarchy (box_tree_editor.h), an edit rebuilds it, at about 1 us per object, spread over at least 8 edits per
+// object.
 #pragma once
 
 #include <cstdint>
@@ -62,7 +63,7 @@ class LiveScene {
     std::shared_lock<std::shared_mutex> held_;
   };
 
-  /// Returns a Reading of the current state. Waits for edits that run or already wait. Thread-safe.
+  /// Returns a Reading of the current state. Waits for edits that are running or already waiting. Thread-safe.
   Reading read() const { return Reading(*this); }
 
   /// Changes objects, in edit().
@@ -87,9 +88,9 @@ class LiveScene {
 
   /// Calls `change` while no query runs, and returns the new epoch: queries see all of its edits at once. Inside it,
   /// fields of this scene may be edited by their own functions (Terrain::set_samples(), Voxels::edit(), ...); the scene
-  /// detects which were. Fields built by scene_heights(field) alone are rebuilt completely: edit a Terrain instead. If
-  /// `change` throws, its edits before that remain, and the exception is rethrown. Thread-safe; `change` must not call
-  /// edit() or read().
+  /// detects which ones were. Only fields built by scene_heights(field) are rebuilt completely: edit a Terrain instead.
+  /// If `change` throws, its edits before that remain, and the exception is rethrown. Thread-safe; `change` must not
+  /// call edit() or read().
   std::uint64_t edit(const std::function<void(Editor&)>& change);
 
  private:

@@ -29,18 +29,18 @@ struct HeightRamp {
   double low = 0, high = 1;  ///< metres of world z, low <= high
 };
 
-/// Colours at heights, blended between them.
+/// Colours at given heights, blended in between.
 struct HeightStops {
   std::vector<std::pair<double, vec3>> stops;  ///< world z in metres, rising, and sRGB 0..1; at least one
 };
 
-/// Two colours in cubes, of the object's own space.
+/// Two colours in alternating cubes, in the object's own space.
 struct Checker {
   vec3 first{0.9f}, second{0.2f};  ///< sRGB, 0..1
-  double size = 1;                 ///< metres of a cube's side, > 0
+  double size = 1;                 ///< side of a cube in metres, > 0
 };
 
-/// One material up to `from`, another one from `to` on, blended between.
+/// One material up to `from` and another one from `to` on, blended in between.
 struct Blend {
   enum class By : std::uint8_t {
     slope,   ///< degrees between the normal and up, 0..180
@@ -48,7 +48,7 @@ struct Blend {
   };
   By by = By::slope;
   double from = 30, to = 40;        ///< from <= to
-  std::uint32_t low = 0, high = 0;  ///< materials before it in the list
+  std::uint32_t low = 0, high = 0;  ///< materials before this one in the list
 };
 
 using Material = std::variant<OwnColour, PlainColour, HeightRamp, HeightStops, Checker, Blend>;

@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// Tolerance for the orthogonality of a rotation: many roundings, but no intentional shear.
+// Tolerance for the orthogonality of a rotation: permits many roundings, but no intentional shear.
 constexpr double kRigid = 1e-9;
 
 bool is_rigid(const glm::dmat3& turn) {
@@ -49,8 +49,8 @@ double farthest_of(const Placement& placement, double in_field, const WorldBox& 
       {in_field * placement.scale, longest_of(placement.origin), longest_of(extent.low), longest_of(extent.high)});
 }
 
-// A placement rounds as much as a field's own objects do (VoxelObjects), so twice their 2^-48; and all objects have the
-// same room, because two that meet must agree which rays are on the plane between them.
+// A placement rounds as much as the objects of a field do (VoxelObjects), hence twice their 2^-48. All objects have the
+// same room, because two that meet must agree on which rays are on the plane between them.
 double room_of_voxels(double farthest) {
   if (!(farthest > 0)) return 0;
   int exponent = 0;

@@ -23,7 +23,7 @@ struct Placement {
   dvec3 world_from_field(const dvec3& p) const { return scale * (turn * p) + origin; }
   dvec3 world_from_normal(const dvec3& n) const { return turn * n; }
   dvec3 field_from_world(const dvec3& p) const { return ((p - origin) * turn) / scale; }
-  /// An identity is exact.
+  /// Exact for the identity.
   Ray field_from_world(const Ray& ray) const {
     Ray local = ray;
     local.origin = ((ray.origin - origin) * turn) / scale;  // v * M is transpose(M) * v
@@ -32,7 +32,8 @@ struct Placement {
   }
 
   bool identity() const { return turn == glm::dmat3(1.0) && scale == 1 && origin == dvec3(0.0); }
-  /// Whether z stays up: rotated about z only. Rounding takes some 2^-50 from the cosine; a tilt of 2^-20 counts.
+  /// Whether z stays up, that is, the rotation is about z only. Rounding reduces the cosine by about 2^-50; a tilt of
+  /// 2^-20 is detected.
   bool upright() const { return turn[2].z >= 1 - 0x1p-41; }
 };
 

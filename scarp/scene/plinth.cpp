@@ -15,8 +15,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kOfRelief = 0.15;
 constexpr double kOfSide = 0.03;
 
-// Whether the ray is on or under the edge of a cell where it crosses it, at t. The edge belongs to the cell's near or
-// far side across axis `across` (0: columns, 1: rows) and runs along the other one.
+// Whether the ray is on or under the edge of a cell that it crosses at t. The edge belongs to the cell's near or far
+// side across axis `across` (0: columns, 1: rows) and runs along the other one.
 bool under_edge(const CellHeights& h, const std::array<int, 2>& cell, const GridRay& ray, std::size_t across,
                 bool far_side, double t) {
   const std::size_t along = 1 - across;
@@ -72,7 +72,7 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
   if (!(t_in <= t_out)) return {};
   const bool has_holes = field_.nodata_count() > 0;
   const bool from_top = side == 2 && local.direction.z < 0;
-  // Behind the border only rims of holes have walls.
+  // Inside the border, only the rims of holes have walls.
   if (from_top && !has_holes) return {};
 
   // Walk the cells from crossing to crossing.
@@ -113,7 +113,7 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     if (!has_holes) return {};
     crossed = next[0] <= next[1] ? 0 : 1;
     t = next[crossed];
-    // Below the surface without a wall before: the ray came through the surface, and hit it there.
+    // Below the surface without having crossed a wall: the ray came through the surface and hit it there.
     if (heights && under_edge(*heights, cell, local, crossed, step[crossed] > 0, t)) return {};
     from_outside = !heights;
     cell[crossed] += step[crossed];

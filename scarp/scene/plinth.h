@@ -5,7 +5,7 @@
 //
 //        __/\_            A ray that comes from outside (or from over a hole) into a valid cell, below the edge of the
 //   ____/     \___        surface and above the base, hits a wall there. Cells are walked one after another; a field
-//   |#############|       without holes has walls at its border alone, so its first cell decides.
+//   |#############|       without holes has walls only at its border, so its first cell decides.
 //   |#############|  base
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace scarp {
 
-/// Default height of the base: below the field's lowest point by a fraction of its size.
+/// Default height of the base: a fraction of the field's size below its lowest point.
 double plinth_base(const HeightField& field);
 
 class Plinth {

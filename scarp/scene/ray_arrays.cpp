@@ -13,7 +13,7 @@
 namespace scarp {
 namespace {
 
-// Few enough to stay in a cache of second level per thread, many enough for all threads.
+// Few enough to stay in each thread's L2 cache, many enough for all threads.
 constexpr std::size_t kRaysAtOnce = 1 << 16;
 constexpr std::int64_t kRaysPerColumn = 8192;
 

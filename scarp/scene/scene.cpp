@@ -25,7 +25,7 @@
 namespace scarp {
 namespace {
 
-// Levels of voxels: a grid of 2,048 is a single one then.
+// Maximum level of voxels: a grid with sides of 2,048 is a single voxel then.
 constexpr int kCoarsest = 11;
 
 // Materials of cells and parts count from 1.
@@ -319,7 +319,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
   bool any_hit = false;
   for (const std::uint32_t object : beside_tree_) {
     if (!sees(rules, objects_[object])) continue;
-    // Without earlier hits, free rays need no limit.
+    // Without earlier hits, the ranges of free rays need no limit.
     std::span<const Ray> asked = rays;
     if (any_hit || !in_place_[object] || rooms_[object] != 0 || !all_free(rays, from)) {
       locals.resize(rays.size());
@@ -346,7 +346,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
 
 void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked,
                               const SceneRules* rules) const {
-  // The tree first: rays that it blocks need not be followed over the ground.
+  // The tree first: rays that are blocked there need not be traced over the ground.
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     blocked[i] = tree_blocks({rays, from, i, rules});

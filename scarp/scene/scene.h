@@ -43,9 +43,9 @@ struct SceneObject {
 /// Selects the objects and hits that count in a query.
 struct SceneRules {
   std::uint32_t mask = ~std::uint32_t{0};  ///< objects count whose mask shares a bit with it
-  Sides sides = Sides::above;              ///< of height fields and tiles; all other objects are hit from outside
+  Sides sides = Sides::above;  ///< sides hit of height fields and tiles; all other objects are hit from outside
   /// Returns whether a hit counts; the ray continues behind hits that do not. Called with the ray of the query for some
-  /// or all hits on its way, not always in order of t; in batches from many threads at once. Null: all hits count.
+  /// or all hits along it, not always in order of t; in batches from many threads at once. Null: all hits count.
   std::function<bool(const Ray&, const Hit&)> accept{};
 };
 
@@ -57,7 +57,7 @@ struct SceneSurface {
   dvec3 normal{0.0};          ///< unit, outward; zero for a ray that started inside a voxel
   dvec3 shading_normal{0.0};  ///< unit, outward, smooth; zero if `normal` is
   std::uint32_t object = 0;
-  std::uint32_t material = 0;         ///< SceneObject::material, or that of the cell or the part that was hit
+  std::uint32_t material = 0;         ///< SceneObject::material, or the material of the cell or part that was hit
   dvec3 place{0.0};                   ///< position in the object's own space
   std::optional<VoxelColour> colour;  ///< nullopt if the field has no colours
   double openness = 1;                ///< fraction of the sky that the object itself leaves open, 0..1
@@ -117,7 +117,7 @@ class Scene {
                     std::span<const Hit* const> from = {}) const;
   /// Returns the target of fans of camera rays, if only_heights() is not null; nullopt if fans do not apply.
   std::optional<HeightTarget> fan_target() const;
-  /// The same hits for free rays with t_min = 0 that a fan over fan_target() has looked for.
+  /// Returns the same hits for free rays with t_min = 0 that a fan over fan_target() has searched for.
   void closest_hits(std::span<const Ray> rays, std::span<const FanSight> sights, std::span<Hit> hits) const;
   /// Sets blocked[i] to 1 if occluded(rays[i], from[i]), else to 0. Threads and errors as for closest_hits().
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
@@ -163,7 +163,7 @@ class Scene {
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
-  /// Returns how the marches sample; `none` if one of them does not or does it differently.
+  /// Returns how the marches sample; `none` if one of them does not sample or samples differently.
   Sampling sampling() const;
   /// Returns the distinct SceneField::caveat() messages of its fields.
   std::vector<std::string> caveats() const;

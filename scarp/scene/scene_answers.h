@@ -42,7 +42,7 @@ inline std::uint8_t frame_of(const Placement& placement) {
 /// Whether placements may make the direction overflow. Such a ray is shortened by 2^kShorter, which lengthens its t.
 constexpr int kShorter = 100;
 inline bool is_too_long(const Ray& ray) { return !(longest_of(ray.direction) < 0x1p900); }
-/// Whether one of the rays is such, or one that cast() rejects: then each is traced individually.
+/// Whether one of the rays is such a ray, or one that cast() rejects: then each is traced individually.
 inline bool any_odd(std::span<const Ray> rays) {
   return std::any_of(rays.begin(), rays.end(), [](const Ray& ray) { return is_too_long(ray) || !is_followable(ray); });
 }
@@ -68,8 +68,8 @@ inline void Scene::make_local(const StartedRay& started, std::uint32_t object, c
   if (!started.own || started.ray.start_object != object) local.start = RayStart::free;
   if (!best) return;
   local.t_max = best.t;
-  // Hits of a ray from a surface are before t_max: for one at the same t, which counts if its object has the lower
-  // index.
+  // Hits of a ray from a surface must be before t_max. Extends the range to find a hit at the same t, which counts if
+  // its object has the lower index.
   if (local.start == RayStart::on_surface)
     local.t_max = std::nextafter(best.t, std::numeric_limits<double>::infinity());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Batches of a scene whose rays a back end traces: many rays over one field at a time.
 //
-//   all rays ──▶ one ground beside the tree after the other, each ray no further than its nearest hit so far
+//   all rays ──▶ each ground beside the tree in turn, each ray no farther than its nearest hit so far
 //   hierarchy ──▶ pairs of a ray and an object whose box it hits, sorted by field ──▶ one call per field
 //
 // The hierarchy cannot shorten rays along the way, as it does for single rays: all boxes up to the ground are tested.
@@ -22,7 +22,7 @@ namespace {
 // The pairs of a slice of rays are traced together.
 constexpr std::size_t kRaysAtOnce = 1 << 17;
 
-// For each i in [0, count), on all threads.
+// Calls body(i) for each i in [0, count), on all threads.
 template <class Body>
 void for_each(std::size_t count, const Body& body) {
   parallel_for(static_cast<std::int64_t>(count), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -42,7 +42,7 @@ const DeviceTerrain* Scene::device_terrain() const {
   return back_end_ && sole_ ? back_end_->terrain(objects_[sole_object_].field) : nullptr;
 }
 
-// pairs: all of one field.
+// pairs: all with the same field.
 void Scene::trace_closest(std::span<const Ray> rays, From from, std::span<const Pair> pairs, std::span<Hit> hits,
                           std::span<std::uint32_t> steps) const {
   if (pairs.empty()) return;
@@ -79,7 +79,7 @@ void Scene::trace_occluded(std::span<const Ray> rays, From from, std::span<const
   for (std::size_t i = 0; i < pairs.size(); ++i) blocked[pairs[i].ray] |= answers[i];
 }
 
-// Pairs along rays up to their hits.
+// Returns the pairs along the rays up to their hits.
 std::vector<Scene::Pair> Scene::pairs_in_tree(std::span<const Ray> rays, std::span<const Hit> hits) const {
   std::vector<std::vector<std::uint32_t>> met(rays.size());
   for_each(rays.size(), [&](std::size_t i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A back end that traces the rays of a scene instead of the CPU. One call traces thousands of rays over one field, in
-// that field's space, so a virtual call costs nothing.
+// that field's space, so the cost of the virtual call is negligible.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace scarp {
 
 struct DeviceTerrain;  // scene_vk.h
 
-/// `field` is an index of the scene's fields. Rays start as in SceneField, by Ray::start or on the surface of `from`.
-/// All spans have the same length, except that `steps` and `from` may be empty.
+/// `field` is an index into the scene's fields. Rays start as in SceneField: as Ray::start states, or on the surface of
+/// `from`. All spans have the same length, except that `steps` and `from` may be empty.
 class SceneBackEnd {
  public:
   virtual ~SceneBackEnd() = default;

@@ -20,7 +20,7 @@ std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t f
 
 bool all_followable(std::span<const Ray> rays) { return std::all_of(rays.begin(), rays.end(), is_followable); }
 
-// piece(first, count) on all threads.
+// Calls piece(first, count) on all threads.
 template <class Piece>
 void for_each_piece(std::size_t rays, const Piece& piece) {
   parallel_for(static_cast<std::int64_t>(rays), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {

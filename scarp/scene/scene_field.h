@@ -2,7 +2,7 @@
 // A field with its march, as an object of a scene: the same queries for heights, functions, shapes, voxels and meshes
 // (mesh/scene_mesh.h), in the field's own space.
 //
-// A ray from a surface starts there by the rule of the field's kind (cell, position, voxel, triangle). Origins are not
+// A ray from a surface starts there by the rule for the field's kind (cell, position, voxel, triangle). Origins are not
 // offset, except those of shadow rays of voxels with smooth normals.
 #pragma once
 
@@ -38,11 +38,11 @@ struct FieldSurface {
   dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that started inside
   dvec3 shading_normal{0.0};            ///< unit
   std::optional<VoxelColour> colour{};  ///< if the field has its own colours
-  int material = 0;                     ///< of the cell or the part of a shape, plus 1; 0: that of the object
-  double openness = 1;                  ///< fraction of the sky that the field itself leaves open
-  VoxelMaterial light{};                ///< what the surface emits and mirrors
-  bool wall = false;                    ///< whether a wall of solid ground or of a plinth was hit
-  /// z of the surface, if known more precisely than from the ray's point: a sea at 0 is exactly at 0.
+  int material = 0;       ///< material of the cell or of the part of a shape, plus 1; 0: that of the object
+  double openness = 1;    ///< fraction of the sky that the field itself leaves open
+  VoxelMaterial light{};  ///< what the surface emits and mirrors
+  bool wall = false;      ///< whether a wall of solid ground or of a plinth was hit
+  /// z of the surface, if known more precisely than z of the point on the ray: a sea at 0 is exactly at 0.
   std::optional<double> height{};
 };
 
@@ -68,16 +68,16 @@ struct SceneFieldParts {
   std::variant<std::monostate, Heights, Function, Shape, Voxels> of{};  ///< monostate: none of these
 };
 
-/// Immutable and thread-safe. Rays start by Ray::start unless `from` is given: then they start on the surface of that
-/// hit of this field. In batches `from` is empty or as long as `rays`, and rays whose entry is null start free.
+/// Immutable and thread-safe. Rays start as Ray::start states unless `from` is given: then they start on the surface of
+/// that hit on this field. In batches `from` is empty or as long as `rays`, and rays whose entry is null start free.
 class SceneField {
  public:
   virtual ~SceneField() = default;
 
   virtual std::string_view kind() const = 0;                    ///< "heights", "function", "shape", "voxels", "mesh"
   virtual std::string_view march() const = 0;                   ///< its name
-  virtual Sampling sampling() const { return Sampling::none; }  ///< of the march
-  /// Returns why the march with its settings guarantees less than MarchEntry states; empty if it does not.
+  virtual Sampling sampling() const { return Sampling::none; }  ///< how the march samples
+  /// Returns why the march, with its settings, guarantees less than MarchEntry states; empty if it guarantees as much.
   virtual std::string caveat() const { return {}; }
   /// Bounding box of everything that rays can hit; empty if there is nothing, nullopt for an unbounded field.
   virtual std::optional<WorldBox> box() const = 0;
@@ -91,8 +91,8 @@ class SceneField {
   virtual bool is_backdrop() const { return false; }
   /// Whether any of its surfaces may mirror.
   virtual bool mirrors() const { return false; }
-  /// Returns the height of the ground at (x, y); nullopt beside the ground, in its holes, and for fields that are not
-  /// ground.
+  /// Returns the height of the ground at (x, y); nullopt outside the ground, over its holes, and for fields that are
+  /// not ground.
   virtual std::optional<double> height(double x, double y) const;
 
   /// Returns the closest hit. Overwrites `stats` unless null.
@@ -118,7 +118,7 @@ class SceneField {
   virtual std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
 
   /// Returns the surface for a point below the ground, in the shape or in a solid voxel, surface included, with the
-  /// normal of the surface above or nearest. Returns nullopt outside, beside the ground and in its holes.
+  /// normal of the surface above or nearest. Returns nullopt outside, beyond the edge of the ground, and in its holes.
   virtual std::optional<FieldSurface> within(const dvec3& p) const = 0;
 
   /// Returns the side of the smallest cell or voxel, in metres; 0 for fields without cells or voxels.
@@ -180,11 +180,11 @@ enum class AnsweredBy : std::uint8_t {
 /// Throws Error for a setting out of range.
 SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march = find_height_march("max-mip"),
                             const MarchSettings& settings = {}, AnsweredBy answered_by = AnsweredBy::cpu);
-/// The same with the march `max-mip` and the field's existing pyramid; both are shared. `materials` as in
-/// require_materials(); null: the object's.
+/// The same with the march `max-mip` and an existing pyramid of the field; both are shared. `materials` as in
+/// require_materials(); null: the object's material.
 SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid, CellMaterials materials = nullptr);
 
-/// Throws Error unless there is one for each cell or the pointer is null.
+/// Throws Error unless there is one material for each cell or the pointer is null.
 void require_materials(const HeightField& field, const CellMaterials& materials);
 
 /// `march` is a row of function_marches(). Throws Error for a setting out of its range.
@@ -196,10 +196,10 @@ SceneFieldPtr scene_function(HeightFunction function,
 SceneFieldPtr scene_shape(DistanceField shape, const ShapeMarchEntry& march = find_shape_march("sphere-trace"),
                           const MarchSettings& settings = {});
 
-/// Placed models as one field; each model has its march. With VoxelNormals::smooth, occluded() moves a ray that starts
-/// on a voxel along the smooth normal, by sqrt(3) voxels, so that the steps of a smooth-looking surface do not shadow
-/// it. Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
-/// model that is null, a rounding or shading out of its range.
+/// Placed models as one field; each model has its own march. With VoxelNormals::smooth, occluded() moves a ray that
+/// starts on a voxel along the smooth normal, by sqrt(3) voxels, so that a smooth-looking surface is not shadowed by
+/// its own steps. Throws Error naming the place if its model does not exist or its matrix is not a rotation with a
+/// scale. Also throws for a model that is null, and a rounding or shading out of range.
 SceneFieldPtr scene_voxels(PlacedVoxels voxels, const VoxelShading& shading = {});
 
 }  // namespace scarp

@@ -75,7 +75,7 @@ class FunctionField final : public SceneField {
     return {function_.normals_are_of_march() ? normal : upward(function_.gradient(p.x, p.y, FunctionUse::march)),
             normal};
   }
-  // It misses no crossing.
+  // The judge misses no crossing.
   SceneFieldPtr judge() const override {
     MarchSettings settings;
     settings.lipschitz_local.max_steps = kStepsOfJudge;

@@ -22,9 +22,10 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerCopy = 4096;
-// Neighbours may be placed so far apart or over each other, in cells, and meet without a gap. The origin of each is
-// rounded, by 2^-53 of it along every axis, and transforming a ray from the world to a field takes 8 roundings of their
-// distance: together less than 16 for both, if neither is beyond 2^23 cells (an earth-centred field with cells of 1 m).
+// Maximum distance or overlap, in cells, at which placed neighbours still meet without a gap. The origin of each is
+// rounded by 2^-53 of itself along every axis, and transforming a ray from world to field space takes 8 roundings of
+// their distance: together less than 16 for both, if neither is beyond 2^23 cells (an earth-centred field with cells of
+// 1 m).
 constexpr double kSeam = 0x1p-26;
 constexpr const char* kNotOnCpu =
     "scene: these heights were made for a back end, and nothing was built for rays on the CPU";
@@ -145,7 +146,7 @@ class Heights final : public SceneField {
     if (from.empty()) return march_.occluded_batch(target(), rays, blocked, settings_);
     march_.occluded_batch(target(), begun(rays, from), blocked, settings_);
   }
-  // Sorted by the ground below the rays' origins, if that is faster (march/height/queries.h).
+  // Sorts the rays by the ground below their origins, if that is faster (march/height/queries.h).
   void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                                    std::span<const Hit* const> from) const override {
     if (!steps.empty()) return SceneField::closest_hits_on_all_threads(rays, hits, steps, from);

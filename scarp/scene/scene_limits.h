@@ -6,7 +6,7 @@
 
 namespace scarp {
 
-/// Rays of a batch that a thread takes at a time.
+/// Number of rays of a batch that a thread takes at a time.
 inline constexpr std::int64_t kRaysPerPiece = 512;
 /// Step limit of marches that judge others.
 inline constexpr int kStepsOfJudge = 1 << 20;

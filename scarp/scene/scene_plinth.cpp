@@ -36,7 +36,7 @@ class PlinthField final : public SceneField {
       if (const auto wall = plinth_.intersect(rays[i])) set(hits[i] = Hit{}, rays[i], *wall);
     }
   }
-  // A ray through a wall is inside, where it hits none.
+  // A ray that passes through a wall is inside, where it hits no other wall.
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
     const Hit hit = closest_hit(ray, from, stats);
     return hit && rules.accept && !(*rules.accept)(hit) ? Hit{} : hit;
@@ -49,7 +49,7 @@ class PlinthField final : public SceneField {
     return {.normal = normal, .shading_normal = normal, .wall = true};
   }
   std::optional<FieldSurface> within(const dvec3&) const override { return {}; }
-  // Before the terrain in batches: the ground behind a wall need not be marched.
+  // Batches test the plinth before the terrain: the ground behind a wall need not be marched.
   bool likes_batches() const override { return true; }
 
  private:

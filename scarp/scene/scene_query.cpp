@@ -19,7 +19,7 @@
 namespace scarp {
 namespace {
 
-// As world_box(), and no smaller than rounding might have made it.
+// As world_box(), padded for its rounding.
 WorldBox padded_box(const Placement& to, const WorldBox& box) {
   const WorldBox world = world_box(to, box);
   const double room = kPlacing * (length(to.origin) + to.scale * (length(box.low) + length(box.high)));
@@ -86,8 +86,8 @@ void SceneQuery::find_no_contacts() {
   }
 }
 
-// Calls visit(object, field) for the objects that the mask selects and that may hold something no worse than `end`. The
-// bound of a box and what visit returns are those of BoxTree::search().
+// Calls visit(object, field) for the objects that the mask selects and that may contain something no worse than `end`.
+// bound() and the result of visit() are as for BoxTree::search().
 template <class Bound, class Visit>
 void SceneQuery::search(double end, const Bound& bound, const Visit& visit) const {
   scene_.require_current();

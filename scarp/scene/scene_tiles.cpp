@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tiles as one field of a scene: each tile on the ray's path is traced by its own march; the closest hit counts and, at
-// the same t, the tile with the lower number.
+// Tiles as one field of a scene: each tile on the ray's path is traced by its own march; the closest hit counts; at the
+// same t, the tile with the lower number.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,7 +22,7 @@ struct Span {
   bool empty() const { return !(begin <= end); }
 };
 
-// The times at which a ray is between two coordinates of one axis.
+// The times at which a ray is between two coordinates along an axis.
 Span between(double low, double high, double origin, double direction, const Span& span) {
   if (direction == 0) return low <= origin && origin <= high ? span : Span{1, 0};
   const double a = (low - origin) / direction, b = (high - origin) / direction;
@@ -168,14 +168,14 @@ class Tiles final : public SceneField {
   }
 
  private:
-  // Where a ray from the surface starts: at a seam, on more than one tile.
+  // The tiles on which a ray from the surface starts: several at a seam.
   struct Starts {
     int count = 0;
     std::uint32_t part[4];
     Cell cell[4];
   };
 
-  // f(tile, col, row, box) for the tiles that have ground.
+  // Calls f(tile, col, row, box) for the tiles that have ground.
   template <class F>
   void for_each_tile(const F& f) const {
     for (int row = 0; row < layout_.rows; ++row) {
@@ -218,7 +218,7 @@ class Tiles final : public SceneField {
       const HeightField& field = tile.ground->field;
       if (const auto place = field.place(x, y)) {
         const auto ground = field.ground_at(*place);
-        // The caller's cell, if it is the one at the point or adjacent to it: rounding may decide between them.
+        // Uses the caller's cell if it is the cell at the point or an adjacent one: rounding may decide between them.
         const Cell own = ray.start_cell;
         const bool near = !from && std::abs(own.col - ground.cell.col) <= 1 && std::abs(own.row - ground.cell.row) <= 1;
         if (field.cell_heights(near ? own : ground.cell)) add(number(col, row), near ? own : ground.cell);
@@ -228,7 +228,7 @@ class Tiles final : public SceneField {
     return starts;
   }
 
-  // tile_hit(tile, part, ray, stats): the closest hit on one tile.
+  // tile_hit(tile, part, ray, stats) returns the closest hit on one tile.
   template <class March>
   Hit closest(const Ray& ray, const Hit* from, bool only_from_above, MarchStats* stats, const March& tile_hit) const {
     Hit best;
@@ -266,16 +266,16 @@ class Tiles final : public SceneField {
     return own;
   }
 
-  // Calls f(tile, col, row, first) for the tiles that the ray may hit before the hit `best`, nearest first within a
-  // cell, until it returns true. `only_from_above`: not for those whose ground it stays above. `first`: whether the ray
-  // is over this tile where it comes to the terrain.
+  // Calls f(tile, col, row, first) for the tiles that the ray may hit before the hit `best`, nearest first to within a
+  // cell, until f returns true. `only_from_above`: skips tiles whose ground the ray stays above. `first`: whether the
+  // ray is over this tile where it reaches the terrain.
   template <class F>
   void for_each_on_way(const Ray& ray, const Hit& best, bool only_from_above, const F& f) const {
     if (box_.empty() || !is_followable(ray)) return;
     const dvec3& o = ray.origin;
     const dvec3& d = ray.direction;
     const double width = map_->tile_width(), depth = map_->tile_depth();
-    // Tiles are widened by a cell, far more than rounding: testing one in vain costs little.
+    // Tiles are widened by a cell, far more than rounding: an unnecessary test of a tile costs little.
     const double wide_x = layout_.ground.cell_x + std::abs(o.x) * 0x1p-48,
                  wide_y = layout_.ground.cell_y + std::abs(o.y) * 0x1p-48;
     Span whole{ray.t_min, ray.t_max};
@@ -292,7 +292,7 @@ class Tiles final : public SceneField {
              begin_y >= north * depth - slack_y && begin_y <= (north + 1) * depth + slack_y;
     };
     const auto done = [&](const Span& span) { return span.begin > best.t && best; };
-    // The range of tiles between two coordinates, in the order of the ray.
+    // The range of tiles between two coordinates, in the order in which the ray crosses them.
     const auto range = [](double from, double to, double wide, double length, int count, bool forward, int& first,
                           int& last) {
       const double low = std::floor((std::min(from, to) - wide) / length);
@@ -330,7 +330,7 @@ class Tiles final : public SceneField {
     if (field.all_nodata()) return true;
     const double lowest = along(ray.origin.z, ray.direction.z, ray.direction.z < 0 ? span.end : span.begin);
     const double highest = field.max_height();
-    // Products below the least normal number are rounded by more than their share.
+    // Products below the smallest normal number have a larger relative rounding error.
     const double rounding = 0x1p-40 * (std::abs(ray.origin.z) + std::abs(lowest) + std::abs(highest));
     return lowest - highest > rounding + std::numeric_limits<double>::min();
   }

@@ -25,7 +25,8 @@
 namespace scarp {
 namespace {
 
-// Marches ready to run, shared by all fields that use them: creating one takes longer than most of its calls.
+// Marches that are ready to run, shared by all fields that use them: creating a march takes longer than most of its
+// calls.
 class Marches {
  public:
   explicit Marches(const Device& device) : device_(device) {}
@@ -180,7 +181,7 @@ class OnDevice final : public SceneBackEnd {
   }
 
  private:
-  // Null for a field that does not run there.
+  // Returns null for a field that does not run on the device.
   std::unique_ptr<FieldOnDevice> made(const SceneField& field) {
     const SceneFieldParts parts = field.parts();
     if (const auto* heights = std::get_if<SceneFieldParts::Heights>(&parts.of))

@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-// It visits every voxel in turn, in integers.
+// Visits one voxel after the other, in integers.
 constexpr std::string_view kJudge = "voxel-planes";
 
 class VoxelField final : public SceneField {
@@ -106,8 +106,8 @@ class VoxelField final : public SceneField {
   }
 
  private:
-  // A surface with smooth normals must not be shadowed by its own steps. Voxels with their centres below a plane have
-  // corners up to sqrt(3) / 2 voxel above it, and faces as far below: the ray starts free above all of them.
+  // A surface with smooth normals must not be shadowed by its own steps. Voxels whose centres are below a plane have
+  // corners up to sqrt(3) / 2 voxels above it, and faces as far below it: the ray starts free above all of them.
   Ray above_steps(const Ray& ray, const Hit& from) const {
     const dvec3 p = ray.at(ray.t_min), normal = objects_.normal(p, from);
     Ray above = ray;
@@ -125,7 +125,7 @@ class VoxelField final : public SceneField {
     const dvec3 in_world = objects_.world_from_grid(hit, smooth);
     const double towards = dot(in_world, normal);
     if (towards > 0) return in_world;
-    // A face of a step that faces up the slope is lit like the slope; on a leaf or a thread, where the other side may
+    // A face of a step that faces up the slope is lit like the slope; on leaves and threads, where the other side may
     // dominate, the face normal is blended in.
     const dvec3 along = in_world - towards * normal;
     return normalize(along + std::max(0.0, 1 - 2 * length(along)) * normal);

@@ -99,7 +99,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
   }
 
  private:
-  // The steps of a drawing do not cover the whole ray.
+  // Drawings do not count the steps of the whole ray.
   bool draws(std::span<const std::uint32_t> steps, std::span<const Hit* const> from) const {
     return sight_ && sight_->drawing == VoxelDrawing::proxies && steps.empty() && from.empty();
   }

@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// Models, and the objects that they are placed as.
+/// Models, and the objects that place them.
 struct ObjectsOnDevice {
   /// Throws Error for a march that does not run on devices, or if the device lacks memory or 64-bit floating point
   /// numbers.

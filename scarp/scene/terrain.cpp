@@ -45,7 +45,7 @@ void Terrain::set_materials(std::vector<std::uint8_t> materials) {
 
 void Terrain::changed(const CellBox& cells) {
   state_->pyramid.update(state_->field, cells);
-  // The scene's box has the heights from before.
+  // The scene's box still reflects the old heights.
   state_->scene = Scene(state_->scene.fields()[0]);
 }
 

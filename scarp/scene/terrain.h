@@ -69,9 +69,9 @@ class Terrain {
   /// last two cases the terrain must not be used until another call succeeds.
   void samples_changed(const SampleRect& rect);
 
-  /// Sets the material of each cell, 0..255: SceneSurface::material of hits on it, in place of the object's. Rows from
-  /// north to south, as the samples. Empty: none. Scenes that contain the terrain keep the old materials until they are
-  /// combined again. Throws Error unless there is one for each cell.
+  /// Sets the material of each cell, 0..255: SceneSurface::material of hits on it, in place of the object's. Rows run
+  /// from north to south, like the samples. Empty: no materials. Scenes that contain the terrain keep the old materials
+  /// until they are combined again. Throws Error unless there is one material for each cell.
   void set_materials(std::vector<std::uint8_t> materials);
 
   /// Returns the height of the ground at (x, y), in metres; nullopt outside the field and over holes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Borders that tiles share: they have the same samples, and those of a finer tile are stitched to a coarser one.
+// Borders shared by tiles: both tiles have the same samples there, and a finer tile is stitched to a coarser one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,12 +25,12 @@ double sample_at(const HeightField& field, int col, int row) {
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 struct Side {
-  int dcol, drow;  // to the tile beside
+  int dcol, drow;  // to the adjacent tile
 };
 constexpr std::array<Side, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 constexpr std::array<Side, 4> kDiagonals{{{-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 
-// The sample `index` of the border of a tile on that side.
+// Sample `index` of a tile's border on this side.
 double on_border(const Tile& tile, Side side, int index) {
   const HeightField& field = tile.given;
   if (side.dcol != 0) return sample_at(field, side.dcol < 0 ? 0 : field.cols() - 1, index);
@@ -48,7 +48,7 @@ std::string shown(double sample) { return std::isnan(sample) ? "a hole" : fmt::f
                   col, row, col + side.dcol, row + side.drow, shown(here), shown(beside)));
 }
 
-// A copy of a tile's samples, as float32, and the rounding of those on straight lines.
+// A copy of a tile's samples as float32, and the rounding of the samples on straight lines.
 struct Stitched {
   int cols, rows;
   std::vector<float> samples;
@@ -71,7 +71,7 @@ void stitch(Stitched& to, Side side, const Tile& coarser, int level) {
       const int col = side.dcol == 0 ? at : side.dcol < 0 ? 0 : to.cols - 1;
       const int row = side.drow == 0 ? at : side.drow < 0 ? 0 : to.rows - 1;
       float& sample = to.at(col, row);
-      if (std::isnan(sample)) continue;  // a hole of the finer tile remains one
+      if (std::isnan(sample)) continue;  // a hole in the finer tile remains a hole
       const double line = first + (second - first) * j / apart;
       sample = static_cast<float>(line);
       to.step = std::max(to.step, std::abs(sample - line));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the tiles of a TiledTerrain at one epoch. A new epoch shares all tiles and rows that did not
-// change with the one before.
+// Private to the station: the tiles of a TiledTerrain at one epoch. A new epoch shares all unchanged tiles and rows
+// with the previous one.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ struct Tile {
   std::shared_ptr<const TileGround> ground;  ///< `given`, or a copy with stitched borders
   bool stitched = false;                     ///< whether it is a copy
   double own_step = 0;   ///< rounding of stitched samples relative to the line that they represent, in sample units
-  double seam_step = 0;  ///< HeightTarget::seam_step: the greatest of own_step here and beside
+  double seam_step = 0;  ///< HeightTarget::seam_step: the greatest own_step of this tile and its neighbours
 };
 
 struct TileMap {
@@ -61,19 +61,19 @@ struct TileMap {
   /// World position of the south-west sample of a tile.
   dvec3 corner(int col, int row) const { return {col * tile_width(), (layout.rows - 1 - row) * tile_depth(), 0}; }
 
-  /// Calls f(tile, col, row, x, y) for the tiles that contain a point, one or, where they meet, up to four, with the
-  /// position in each, until f returns true.
+  /// Calls f(tile, col, row, x, y), with the position in the tile, for each tile that contains a point, until f returns
+  /// true. Where tiles meet, these are up to four.
   template <class F>
   void at(double x, double y, const F& f) const;
 };
 
 /// Distance in cells from a tile's border up to which a point counts as on it: world coordinates at 2^20 cells are
-/// accurate to 2^-33 of a cell, and converting them to a tile takes a few operations.
+/// accurate to 2^-33 of a cell, and a few operations convert them to a tile.
 constexpr double kTileSeam = 0x1p-30;
 
 template <class F>
 void TileMap::at(double x, double y, const F& f) const {
-  // Position in a tile, on the border if it is beside it by rounding; NaN outside.
+  // Position in a tile; on the border if only rounding puts it outside; NaN outside.
   const auto inside = [](double p, double length, double cell) {
     const double slack = kTileSeam * cell;
     return p >= -slack && p <= length + slack ? std::clamp(p, 0.0, length) : std::numeric_limits<double>::quiet_NaN();
@@ -97,7 +97,7 @@ void TileMap::at(double x, double y, const F& f) const {
 /// Throws Error if tiles that meet differ in a sample of their shared border.
 void require_same_border(const TileMap& map, int col, int row);
 
-/// Sets Tile::ground, stitched where a tile beside is coarser, and own_step.
+/// Sets own_step and Tile::ground, which is stitched where an adjacent tile is coarser.
 void build_ground(const TileMap& map, int col, int row, Tile& tile);
 
 /// The tiles as one field of a scene. `march` is `max-mip` or `exhaustive`.

@@ -44,7 +44,7 @@ void require_layout(const TileLayout& layout) {
   HeightField::view(&sample, 1, 1, layout.ground);
 }
 
-// The level of a tile with this many samples; -1 if there is none.
+// The level of a tile with this number of samples; -1 if no level has it.
 int level_of(const TileLayout& layout, const HeightField& field) {
   for (int level = 0; layout.cell_cols >> level >= 1 && layout.cell_rows >> level >= 1; ++level) {
     if (layout.cell_cols % (1 << level) != 0 || layout.cell_rows % (1 << level) != 0) return -1;
@@ -98,7 +98,7 @@ TilePlace TerrainTiles::place(const Hit& hit) const {
 
 std::optional<double> TerrainTiles::height(double x, double y) const { return scene_->height(x, y); }
 
-// The new map, in which rows are copied before they change.
+// The new map. Rows are copied before they change.
 struct TiledTerrain::Editor::Change {
   TileMap map;
   std::set<std::pair<int, int>> changed{};  // row, column
@@ -125,7 +125,8 @@ struct TiledTerrain::Editor::Change {
 
 void TiledTerrain::Editor::Change::finish() {
   for (const auto& place : changed) require_same_border(map, place.second, place.first);
-  // Grounds of changed tiles and of finer ones beside; a ground that is not stitched and need not be remains.
+  // Rebuilds the ground of changed tiles and of finer tiles beside them, except ground that neither is nor must be
+  // stitched.
   for_each_beside([&](int col, int row) {
     const Tile& now = *map.find(col, row);
     const auto coarser = [&](int c, int r) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A terrain of tiles: a grid of height fields that share their border samples and answer as one field. Tiles can be
-// added and removed while other threads query.
+// A tiled terrain: a grid of height fields that share their border samples and act as one field. Tiles can be added and
+// removed while other threads query.
 //
 //   scarp::TiledTerrain terrain({.cols = 100, .rows = 100, .cell_cols = 256, .cell_rows = 256, .ground = {...}});
 //   terrain.edit([&](auto& editor) { editor.put({3, 4}, field); });     // one thread
@@ -10,14 +10,14 @@
 //
 //   (0,0)---(1,0)---+     Tile (0, 0) is the north-west one; rows go south, as in a height field. The south-west
 //     |       |     |     sample of the whole grid is at x = y = 0. A tile of cell_cols x cell_rows cells has one
-//   (0,1)---(1,1)---+     sample more each way: it shares those of its borders with the tiles beside it.
+//   (0,1)---(1,1)---+     sample more in each direction: it shares its border samples with its neighbours.
 //     |       |     |
 //     +-------+-----+     Missing tiles are holes.
 //
 // A tile may be coarser: its cells are 2, 4, 8, ... times as long, and correspondingly fewer. Where a finer tile meets
 // it, the samples of the finer border are replaced by those of the straight lines between the coarser samples, so that
-// the surfaces meet without a gap. Stitched samples are float32; where one is rounded, rays that enter at most that far
-// below the border hit it.
+// the surfaces meet without a gap. Stitched samples are float32; where one is rounded, rays that enter below the border
+// by at most the rounding hit it.
 #pragma once
 
 #include <cstdint>
@@ -45,16 +45,16 @@ struct TileLayout {
   int rows = 1;                  ///< tiles, 1..65536
   int cell_cols = 256;           ///< cells of a tile at full resolution, >= 1
   int cell_rows = 256;           ///< >= 1
-  HeightFieldSettings ground{};  ///< of all tiles at full resolution; without wrap, not solid
+  HeightFieldSettings ground{};  ///< settings of all tiles at full resolution; without wrap, not solid
 };
 
-/// The tiles at one epoch, as a scene of one field. Copies are cheap. Immutable and thread-safe; valid as long as it
-/// exists, regardless of later edits. Queries use the march `max-mip`, which is exact.
+/// The tiles at one epoch, as a scene of one field. Copies are cheap. Immutable and thread-safe; valid as long as they
+/// exist, regardless of later edits. Queries use the march `max-mip`, which is exact.
 class TerrainTiles {
  public:
   const Scene& scene() const { return *scene_; }
   operator const Scene&() const { return *scene_; }
-  /// Number of edits before.
+  /// Number of edits before this epoch.
   std::uint64_t epoch() const { return epoch_; }
 
   const TileLayout& layout() const;
@@ -88,13 +88,14 @@ class TiledTerrain {
   /// Changes tiles, in edit().
   class Editor {
    public:
-    /// Adds a tile. The field shares its samples with the caller's: they must not change while it is here. Samples of
-    /// HeightField::view() with a known owner are kept alive. Throws Error for a place outside the grid, a tile that is
-    /// there already, or a field that does not fit the layout: another number of samples, cell size or setting.
+    /// Adds a tile. The tile shares its samples with the caller's field: they must not change while the tile is in the
+    /// terrain. Samples of HeightField::view() with a known owner are kept alive. Throws Error for a place outside the
+    /// grid, a place that has a tile already, or a field that does not fit the layout in its number of samples, cell
+    /// size or settings.
     ///
-    /// `materials`: of each cell of the field, rows from north to south; null: that of the object.
+    /// `materials`: one per cell of the field, rows from north to south; null: the object's material.
     void put(TilePlace place, const HeightField& field, CellMaterials materials = nullptr);
-    /// Removes a tile. Throws Error if there is none.
+    /// Removes a tile. Throws Error if there is none at this place.
     void remove(TilePlace place);
 
    private:
@@ -105,7 +106,7 @@ class TiledTerrain {
   };
 
   /// Calls `change`, then publishes its tiles in one step, and returns the new epoch. Readers do not wait, and earlier
-  /// results of read() do not change. Builds the pyramids of the tiles that changed and of finer tiles beside them.
+  /// results of read() do not change. Builds the pyramids of the tiles that changed and of their finer neighbours.
   /// Throws Error, changing nothing, if `change` throws or tiles would differ in a sample of their shared border
   /// (compared where the coarser one has samples). Edits wait for one another; `change` must not call edit().
   /// Thread-safe.

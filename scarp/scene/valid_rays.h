@@ -9,8 +9,8 @@
 
 namespace scarp {
 
-/// Throws Error for the first invalid ray, whichever the threads find first. The rays are those from `first` on of a
-/// batch of `all`, for the message.
+/// Throws Error for the first invalid ray, even if a thread finds another one earlier. For the message, the rays are
+/// part of a batch of `all` rays and start at its index `first`.
 void require_valid(std::span<const Ray> rays, std::span<const Hit* const> from, const Scene& scene, std::size_t first,
                    std::size_t all);
 

@@ -34,7 +34,7 @@ class VoxelCamera {
 
   /// Returns the times of the last picture's passes.
   const std::vector<PassTime>& passes() const;
-  /// Pixels of the last picture by proxies that compute answered.
+  /// Number of pixels of the last picture by proxies that the compute shader traced.
   std::size_t tied() const;
   /// Size on the device: the grids with their accelerators; the objects and the hierarchy; pictures.
   struct Bytes {

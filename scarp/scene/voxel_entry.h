@@ -9,12 +9,12 @@
 
 namespace scarp {
 
-/// Returns the index in its model's palette of the voxel that was hit. Nullopt for hits of other fields and for models
-/// without a palette: the entries of their voxels are colours of 24 bits.
+/// Returns the palette index of the voxel that was hit, in its model's palette. Returns nullopt for hits on other
+/// fields and for models without a palette, whose entries are 24-bit colours.
 std::optional<std::uint32_t> palette_entry(const Scene& scene, const Hit& hit);
 
-/// Returns the coordinates in its file of the voxel that was hit. Nullopt for hits of other fields. Without a file
-/// these are Hit::voxel.
+/// Returns the coordinates in its file of the voxel that was hit. Returns nullopt for hits on other fields. Without a
+/// file, the coordinates are Hit::voxel.
 std::optional<ivec3> file_voxel(const Scene& scene, const Hit& hit);
 
 }  // namespace scarp

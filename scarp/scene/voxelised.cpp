@@ -52,7 +52,7 @@ VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
                     const std::function<std::uint32_t(const SceneSurface&)>& entry, const Progress& progress) {
   const ivec3 size = lattice.box.high - lattice.box.low;
   VoxelGrid grid(size, VoxelGrid::kMaxEntryBits);
-  // A layer of bricks at a time: all threads test points, one fills the grid.
+  // One layer of bricks at a time: all threads test points, one thread fills the grid.
   const auto columns = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   std::vector<std::optional<SceneSurface>> found(columns * VoxelGrid::kBrick);
   const auto place = [&](int x, int y, int z) {

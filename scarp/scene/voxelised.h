@@ -13,15 +13,15 @@
 
 namespace scarp {
 
-/// Voxel v is the cube from v * side to (v + 1) * side in the world, of those in `box`.
+/// The voxels in `box`. Voxel v is the cube from v * side to (v + 1) * side in world space.
 struct VoxelLattice {
   double side = 1;  ///< metres
   VoxelBox box;
 };
 
 /// Returns the lattice around the scene, or around the part inside `within` (required if the scene is unbounded).
-/// Voxels are aligned to the world's origin. Throws Error for a side that is not above 0, nothing bounded, more than
-/// `most` voxels along an axis, or positions beyond 2^24 voxels.
+/// Voxels are aligned to the world's origin. Throws Error if `side` is not above 0, no object is bounded, an axis has
+/// more than `most` voxels, or positions exceed 2^24 voxels.
 VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within = {},
                             int most = VoxelGrid::kMaxModelSide);
 

@@ -57,7 +57,7 @@ Voxels Voxels::copy(const std::uint8_t* indices, const ivec3& size, VoxelSetting
 
 void Voxels::edit(const std::function<VoxelBox(VoxelGrid&)>& change) {
   state_->model->edit(change);
-  // The scene's box is that of the solid voxels before.
+  // The scene's box still reflects the old voxels.
   state_->scene = scene_of(state_->model, state_->side);
 }
 

@@ -23,7 +23,7 @@ namespace scarp {
 struct VoxelSettings {
   double side = 1;  ///< side of a voxel in metres, > 0
   /// palette[i] is the colour of voxels with the entry i; entries beyond it are black. If it is empty, the entries of a
-  /// grid are RGB colours in 24 bits, with red in the lowest 8.
+  /// grid are 24-bit RGB colours, with red in the lowest 8 bits.
   std::vector<VoxelColour> palette{};
 };
 

@@ -12,7 +12,7 @@ namespace scarp {
 
 struct ExampleFunction {
   std::string_view name, description;  ///< one line
-  std::string_view json;               ///< the function itself, as a file would have it (function_json.h)
+  std::string_view json;               ///< the function itself, in the format of function files (function_json.h)
 };
 
 std::span<const ExampleFunction> example_functions();

@@ -48,7 +48,7 @@ PlacedVoxels placed_voxels_from(const VoxelParts& file, const VoxelFileOptions& 
     const ivec3 size = boxes[i].high - boxes[i].low;
     require_marchable(march, size);
     const auto solid = static_cast<std::int64_t>(file.parts[i].voxels.size());
-    // A page per voxel at most.
+    // At most one page per voxel.
     const std::int64_t pages = std::min(solid, VoxelGrid::pages_of(size));
     memory.add(VoxelGrid::bytes_of(size, pages, solid, kColourBits) + accelerator_bytes(march.accelerator, size),
                "split the model, or choose --march voxel-bricks");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of listed voxels as models, one per part, in metres: a voxel 1 m, z up.
+// Files of listed voxels as models, one per part, in metres: voxels of 1 m, z up.
 #pragma once
 
 #include "scarp/scene/voxel/placed_voxels.h"

@@ -43,7 +43,7 @@ VoxelBox box_of(const VdbLeaf& leaf) {
   return box;
 }
 
-// The file's voxels by their place in the grid.
+// The file's voxels by their position in the grid.
 class Cells {
  public:
   explicit Cells(const VdbVoxels& file) : file_(file) {
@@ -54,7 +54,7 @@ class Cells {
     }
     for (const VdbTile& tile : file.tiles) box = around(box, {tile.low, tile.low + tile.side});
     if (box.empty()) throw Error("no voxel is solid");
-    // Bricks of leaves are those of the grid.
+    // Aligned, so that the bricks of leaves are those of the grid.
     low_ = (box.low >> 3) << 3;
     size_ = box.high - low_;
     VoxelGrid::require_size(size_, kVdbColourBits);
@@ -63,7 +63,7 @@ class Cells {
     blocks_ = ((box.high - 1) >> 7) + 1 - first_block_;
   }
 
-  // Maximum memory of a grid of them.
+  // Maximum memory of a grid of these voxels.
   std::int64_t bytes() const {
     // A leaf covers four pages, which it may not share.
     const auto leaves = static_cast<std::int64_t>(file_.leaves.size());
@@ -71,7 +71,7 @@ class Cells {
     for (const VdbTile& tile : file_.tiles) {
       const std::int64_t side = tile.side / kCell;
       if (tile.side < kBlock) cells += 1, pages += 4;
-      // Pages that are solid throughout share their masks.
+      // Completely solid pages share their masks.
       places += 4 * side * side * (side / 32 + 2);
     }
     return VoxelGrid::bytes_of(size_, std::min(pages, VoxelGrid::pages_of(size_)),
@@ -176,7 +176,7 @@ PlacedVoxels placed_voxels_from(const VdbVoxels& file, const VoxelFileOptions& o
       {[&](const VoxelBox& page) { return cells.contents(page); },
        [&](const ivec3& brick, std::span<std::uint32_t, 64> entries) { return cells.fill(brick, entries); }});
   if (options.surface_colours) grid.drop_hidden_entries();
-  // Without entries all are number 0.
+  // Without entries, all voxels have the number 0.
   std::vector<VoxelColour> palette;
   if (file.colours.empty()) palette = {kPlainVoxels};
   // (x, y, z) becomes (x, -z, y).

@@ -20,8 +20,8 @@
 namespace scarp {
 namespace {
 
-// Limits on hostile files. Pairs of instances that are examined, and voxels that are compared where they overlap, each
-// pair counting as several: about 10 s each.
+// Limits against hostile files: pairs of instances that are examined, and voxels that are compared where instances
+// overlap, where each pair counts as kVoxelsPerPair voxels. Each limit is about 10 s of work.
 constexpr std::int64_t kMostPairs = std::int64_t{1} << 32, kMostCompared = std::int64_t{1} << 29, kVoxelsPerPair = 8;
 constexpr const char* kTooManyOverlaps =
     "its models overlap too much to decide which voxels are shown (move them apart, or unite them in the editor)";
@@ -41,7 +41,7 @@ struct Model {
   VoxelGrid grid{ivec3(1), kIndexBits};
 };
 
-// Which voxels of a file are solid.
+// Decides which voxels of a file are solid.
 class Solid {
  public:
   explicit Solid(const VoxPalette& palette) {
@@ -50,7 +50,7 @@ class Solid {
   bool operator()(const VoxVoxel& v) const { return ordered_rank(place_of(v)) < ranks_[v.index]; }
 
  private:
-  // The nearest number of ranks out of four, but at least one for visible colours.
+  // Rounds to a number of ranks out of four, at least one for visible colours.
   static int ranks_of(int alpha) { return alpha == 0 ? 4 : std::max(1, (4 * alpha + 127) / 255); }
 
   std::array<int, 256> ranks_{};  // by palette index; 0: none
@@ -72,7 +72,7 @@ std::vector<VoxelMaterial> materials_of(const VoxFile& file) {
 class Models {
  public:
   Models(const VoxFile& file, const std::vector<VoxInstance>& instances, VoxelMemory& memory) : solid_(file.colours()) {
-    // Nothing is allocated before all are counted.
+    // Nothing is allocated before all models are counted.
     for (const VoxInstance& instance : instances) {
       const auto [at, is_new] = models_.try_emplace(instance.model);
       if (!is_new) continue;
@@ -132,7 +132,7 @@ struct Placed {
   Placed(const VoxInstance& instance, const VoxModel& from, const Model& of)
       : file_model(&from),
         model(&of),
-        // Models turn about their middle.
+        // Models rotate about their centre.
         place(instance.turn, instance.move - instance.turn(from.size / 2) + instance.turn(of.box.low)),
         bounds(place.lattice_box(of.grid.bounds())) {}
 
@@ -148,14 +148,14 @@ struct Placed {
   }
 };
 
-// Voxels that for_each_hidden() visits.
+// Number of voxels that for_each_hidden() visits.
 std::int64_t visited(const Placed& upper, const Placed& lower) {
   return std::min(voxels_in(intersection(upper.bounds, lower.bounds)),
                   static_cast<std::int64_t>(lower.file_model->voxels.size()));
 }
 
 // Calls hide(v) for each voxel v of the lower grid that the upper instance covers. Visits the voxels of the common box
-// or those of the file, whichever are fewer.
+// or of the file, whichever are fewer.
 template <class Hide>
 void for_each_hidden(const Placed& upper, const Placed& lower, const Hide& hide) {
   const VoxelBox common = intersection(upper.bounds, lower.bounds);
@@ -173,8 +173,8 @@ void for_each_hidden(const Placed& upper, const Placed& lower, const Hide& hide)
   });
 }
 
-// Calls body(a, b) for each pair of boxes that overlap, a before b. Examines pairs that overlap along one axis, the one
-// along which the fewest do.
+// Calls body(a, b) for each pair of boxes that overlap, a before b. Examines the pairs that overlap along one axis: the
+// axis with the fewest such pairs.
 template <class Body>
 void for_each_overlap(const std::vector<Placed>& instances, const Body& body) {
   std::vector<std::size_t> order, best_order;
@@ -226,7 +226,7 @@ std::vector<VoxInstance> different(std::vector<VoxInstance> instances, bool keep
 }  // namespace
 
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options) {
-  // The one that is shown where instances overlap.
+  // Which instance is shown where several overlap.
   const bool first_wins = file.version >= 200;
   const std::vector<VoxInstance> instances = different(vox_instances(file, options.scene), first_wins);
   std::vector<VoxelColour> palette(256);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scene of a .vox file as placed models, in metres: a voxel 1 m, z up as in the file.
+// The scene of a .vox file as placed models, in metres: voxels of 1 m, z up as in the file.
 #pragma once
 
 #include "scarp/scene/voxel/placed_voxels.h"
@@ -16,7 +16,7 @@ struct FromVoxOptions {
 /// metals (_metal, reduced by _rough) become VoxelMaterial; all others, glass included, are opaque. An alpha of 1 to
 /// 254 is the fraction of a colour's voxels that are solid, chosen by ordered_pattern.h. An alpha of 0 means opaque,
 /// because many programs do not write alpha. Where instances overlap, one voxel remains at each position, the one that
-/// MagicaVoxel shows: that of the first instance in files from version 200 on, that of the last in older files. An
+/// MagicaVoxel shows: from the first instance in files of version 200 and later, from the last in older files. An
 /// instance that loses voxels gets its own model; all others share the models of the file. If instances coincide, one
 /// remains. Grids are models cut to the smallest box around their voxels. Throws Error: unknown march, too many
 /// overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it is allocated.

@@ -82,7 +82,7 @@ class FunctionReader {
   }
 
  private:
-  // make_function() reports values out of range in its own words.
+  // make_function() reports values out of range; adds their position.
   static Function made(FunctionShape shape, const std::string& path) {
     try {
       return make_function(std::move(shape));
@@ -156,7 +156,7 @@ class FunctionReader {
     return read;
   }
 
-  // With more than two operands, the first two are combined first, and so on.
+  // With more than two operands, combines the first two, then the result with the third, and so on.
   Function combined(Type type, JsonObject& object, int depth) const {
     const Json& of = object.at("of");
     const std::string path = object.path_of("of");

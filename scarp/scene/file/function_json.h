@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Terrain functions in JSON: one object per node of function_node.h, whose settings are its keys, lengths in metres.
 //
-//   5                                                            a plane at that height
-//   "hills"                                                      a function of that name
+//   5                                                            a plane at this height
+//   "hills"                                                      the function with that name
 //   {"type": "plane", "height": 0, "slope": [0.1, 0]}
 //   {"type": "sines", "waves": [{"amplitude": 20, "wavelength": 700, "towards": 17, "phase": 0}]}
 //   {"type": "fbm", "noise": "perlin", "seed": 1, "wavelength": 1000, "height": 200, "gain": 0.5, "lacunarity": 2,

@@ -21,26 +21,26 @@ void take_json(std::optional<T>& to, const nlohmann::json& object, const char* k
   if (object.contains(key)) to = object[key].get<T>();
 }
 
-/// Refers to the JSON that it was made of.
+/// Refers to the JSON that it was constructed from.
 class JsonObject {
  public:
-  /// Throws Error if it is not an object.
+  /// Throws Error if `json` is not an object.
   JsonObject(const nlohmann::json& json, std::string path);
 
   const std::string& path() const { return path_; }
   std::string path_of(std::string_view key) const;
-  /// Null if there is none. finish() accepts every key that was requested.
+  /// Returns null if the key is missing. finish() accepts every key that was requested.
   const nlohmann::json* find(std::string_view key);
   const nlohmann::json& at(std::string_view key);
 
-  /// A finite number, or the default if there is none.
+  /// Returns a finite number, or `fallback` if the key is missing.
   double number(std::string_view key, double fallback);
   double number(std::string_view key);
   std::int64_t whole(std::string_view key, std::int64_t fallback, std::int64_t least, std::int64_t most);
   std::string text(std::string_view key);
-  /// One of `names`, as its index.
+  /// Returns the index of the value in `names`.
   std::size_t choice(std::string_view key, std::size_t fallback, const std::vector<std::string_view>& names);
-  /// A list of two numbers.
+  /// Reads a list of two numbers.
   void pair(std::string_view key, double& first, double& second);
 
   /// Throws Error for a key that was never requested, listing those that were.

@@ -21,8 +21,8 @@
 namespace scarp {
 namespace {
 
-// Samples of a generated field, 4 GiB: no fewer than those of the largest field of scarp-bench leaks; a line of a file
-// must not allocate all memory.
+// Maximum number of samples of a generated field: 4 GiB. The largest field of scarp-bench leaks fits, and a line of a
+// file cannot allocate all memory.
 constexpr std::int64_t kMostGenerated = std::int64_t{1} << 30;
 
 constexpr std::string_view kHead = "scarp-rays 1";
@@ -78,7 +78,7 @@ std::string text_of(const Ray& ray, const std::string& expected, const std::stri
   return text;
 }
 
-// Whether two fields are copies of one.
+// Whether two fields are copies of each other.
 bool same_field(const HeightField& a, const HeightField& b) {
   return a.visit([](const auto& grid) { return static_cast<const void*>(grid.data); }) ==
          b.visit([](const auto& grid) { return static_cast<const void*>(grid.data); });
@@ -128,7 +128,7 @@ class DumpReader {
     throw Error(fmt::format("'{}', line {}: {}", path_, std::max(1, number_), what));
   }
 
-  // The next line with anything to read; false at the end.
+  // Moves to the next line with content; returns false at the end.
   bool next() {
     while (std::getline(in_, line_)) {
       ++number_;
@@ -313,7 +313,7 @@ class DumpReader {
     return samples;
   }
 
-  // An error of the library refers to this line or earlier ones.
+  // Errors that the library throws refer to this line or earlier ones.
   template <class Check>
   void with_line(const Check& check) const {
     try {

@@ -4,7 +4,7 @@
 //   scarp-rays 1                          first line: what this is, and its version
 //   # anything                            lines like this and empty ones are skipped
 //   field float32 3 2                     starts a field: type of the samples, columns, rows
-//   cell_x 0x1p+0                         the settings, in any order; what is left out has its default:
+//   cell_x 0x1p+0                         the settings, in any order; settings that are left out have their defaults:
 //   ...                                   cell_y scale offset exaggeration nodata surface wrap solid
 //   row 0x1p+0 nan 0x1.8p+1               the samples, from north to south, one line for each row; or
 //   generate ridged 1 0x1p+0 0x0p+0       instead of rows, a procedural DEM: kind, seed, cell in metres, feature size
@@ -13,7 +13,7 @@
 //   direction 0x0p+0 0x0p+0 -0x1p+0
 //   range 0x0p+0 inf                      t_min and t_max
 //   start on_surface 0 1                  or: start free, the default
-//   expected a hit                        for people; so is `answered`
+//   expected a hit                        for human readers, as is `answered`
 //
 // Numbers are decimal or, to the last bit, hexadecimal (C's %a).
 #pragma once
@@ -34,16 +34,16 @@ struct RayDump {
   /// Set if the samples are a procedural DEM in metres; they are then not written out.
   std::optional<ProceduralDem> generator;
   Ray ray;
-  std::string expected;  ///< for people: one line; may be empty
+  std::string expected;  ///< for human readers: one line; may be empty
   std::string answered;
 };
 
-/// Writes the rays into one file; consecutive ones over the same field (copies of one) share its text. Throws Error if
-/// the file cannot be written; then no file is created or changed.
+/// Writes the rays into one file; consecutive rays over the same field (or copies of it) share its text. Throws Error
+/// if the file cannot be written; then no file is created or changed.
 void write_ray_dumps(const std::string& path, std::span<const RayDump> dumps);
 
-/// Reads files by write_ray_dumps(), or hand-written ones in this form; at least one ray. Throws Error naming the file
-/// and the line.
+/// Reads files written by write_ray_dumps(), or by hand in the same format, with at least one ray. Throws Error naming
+/// the file and the line.
 std::vector<RayDump> read_ray_dumps(const std::string& path);
 
 }  // namespace scarp

@@ -29,7 +29,7 @@ constexpr const char* kElevations =
 constexpr const char* kAzimuths = "an object: count per turn, and from and step in degrees if it is not a whole turn";
 constexpr const char* kRate = "turns per second, a number above 0";
 
-// The value of a key that must be there.
+// The value of a required key.
 const Json& needed(JsonObject& object, std::string_view key, std::string_view expected) {
   const Json* value = object.find(key);
   if (!value) throw Error(fmt::format("{}: is missing; expected {}", object.path_of(key), expected));
@@ -156,7 +156,7 @@ void take_mounting(JsonObject& scanner, LidarMounting& mounting) {
   object.finish();
 }
 
-// A pose and whether it counts from the ground.
+// Reads a pose; returns whether it is relative to the ground.
 bool take_pose(const Json& json, const std::string& path, bool moving, LidarPose& pose) {
   JsonObject object(json, path);
   if (moving) {

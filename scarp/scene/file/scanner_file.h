@@ -10,7 +10,7 @@
 //     "pose": {"at": [500, 300], "above": 0, "heading": 90}
 //   }
 //
-// doc/user/cast.md documents every key. Angles of the file are in degrees; the path of a table is relative to the
+// doc/user/cast.md documents every key. Angles in the file are in degrees. The path of a table is relative to the
 // file's folder.
 #pragma once
 
@@ -24,9 +24,9 @@ namespace scarp {
 
 struct ScannerFile {
   Lidar lidar;                      ///< positions of the path are in the coordinates of the file
-  bool lonlat = false;              ///< these are from columns lon and lat of a table
+  bool lonlat = false;              ///< they come from the columns lon and lat of a table
   std::vector<std::string> places;  ///< name of each pose for messages, "car.json: /path/3"
-  std::vector<std::string> files;   ///< that were read besides the file itself
+  std::vector<std::string> files;   ///< files that were read besides the file itself
 };
 
 /// Parses the text of a file in `folder`. Throws Error without the file's name: no JSON, missing, unknown and mistyped

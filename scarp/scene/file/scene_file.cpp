@@ -35,7 +35,7 @@ struct Whole {
   Progress progress;
 };
 
-// One file. Objects of others that it names are in its own space by then.
+// Reads one file. Objects of other files that it names are converted to its own space first.
 class SceneReader {
  public:
   SceneReader(const std::string& path, Whole& whole) : path_(path), whole_(whole) {
@@ -81,7 +81,7 @@ class SceneReader {
     return function;
   }
 
-  // The index of a field that is referred to by name, or defined in the object itself.
+  // Returns the index of the object's field, which is referred to by name or defined in the object.
   std::pair<std::uint32_t, dvec3> field_of(const Json& object, const std::string& path) {
     if (!object.contains("field")) return add_field(object, path);
     for (const char* key : {"march", "settings", "heights", "function", "shape", "voxels", "mesh", "scene"}) {

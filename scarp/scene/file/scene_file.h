@@ -24,7 +24,7 @@
 
 namespace scarp {
 
-/// Camera of a file. Here and below, members without a value are not set by the file; the caller chooses them.
+/// Camera settings of a file. Here and below, the caller chooses the members that the file does not set.
 struct SceneCamera {
   std::optional<dvec3> eye, target;  ///< both or none, metres, world
   std::optional<double> azimuth_deg, elevation_deg, distance, fov_deg;
@@ -84,7 +84,7 @@ struct SceneFile {
   std::optional<double> haze_distance;  ///< metres; never set if `fog` is
   std::optional<SceneWater> water;
   std::optional<SceneFog> fog;
-  std::vector<std::string> notes;  ///< conversions and assumptions of the readers, one line each, for display
+  std::vector<std::string> notes;  ///< conversions and assumptions that the readers made, one line each, for display
   std::vector<std::string> files;  ///< all files that were read: this one, other scenes, heights, voxels
 };
 

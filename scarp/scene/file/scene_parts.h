@@ -19,28 +19,28 @@
 
 namespace scarp {
 
-/// Context of fields: what they may refer to, and the notes about them.
+/// Context of fields: the names that they may refer to, and the notes about them.
 struct FieldSurroundings {
-  std::string folder;        ///< that paths count from
+  std::string folder;        ///< that paths are relative to
   FunctionByName functions;  ///< named ones
-  /// Look up a name used at a position: a material's number for shapes, from 1, and the JSON of a field with its
-  /// position. Both throw Error.
+  /// Look up a name that is used at a position: the number of a shape's material, from 1, and the JSON of a field with
+  /// its position. Both throw Error.
   std::function<int(const std::string& name, const std::string& path)> material;
   std::function<std::pair<const nlohmann::json*, std::string>(const std::string& name, const std::string& path)> field;
-  std::vector<std::string>* notes;  ///< of readers
-  std::vector<std::string>* files;  ///< that have been read
+  std::vector<std::string>* notes;  ///< notes of the readers
+  std::vector<std::string>* files;  ///< files that have been read
   Progress progress;
 };
 
 struct FieldWithPlace {
   SceneFieldPtr field;
-  dvec3 shift{0.0};  ///< of the field in its own space: centred ones are moved
+  dvec3 shift{0.0};  ///< of the field in its own space; not zero for centred fields
 };
 
-/// One of heights, function, shape, voxels, mesh, with march and settings.
+/// Reads heights, a function, a shape, voxels or a mesh, with its march and settings.
 FieldWithPlace field_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around);
 
-/// The field of `voxels`, for a march of voxel_marches(); empty: see file_voxel_march().
+/// Reads `voxels` for a march of voxel_marches(); empty: see file_voxel_march().
 FieldWithPlace voxels_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around,
                                 std::string_view march);
 
@@ -60,7 +60,7 @@ SceneSky sky_from_json(const nlohmann::json& scene);
 std::optional<SceneWater> water_from_json(const nlohmann::json& scene);
 std::optional<SceneFog> fog_from_json(const nlohmann::json& scene);
 
-/// Settings of all marches, with the names of the command line's options, with underscores.
+/// Settings of all marches. Their names are those of the command-line options, with underscores.
 MarchSettings march_settings_from_json(const nlohmann::json& json, const std::string& path);
 
 /// Rethrows the current Error, prefixed with the position.

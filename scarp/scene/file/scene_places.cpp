@@ -27,12 +27,12 @@ glm::dmat3 about(int axis, double angle) {
   return turn;
 }
 
-// Numbers of one copy, the same on every machine.
+// Random numbers for one copy, the same on every machine.
 class Dice {
  public:
   Dice(std::uint64_t seed, std::int64_t copy) : seed_(octave_seed(seed, 0)), copy_(copy) {}
 
-  /// 0 up to 1.
+  /// In [0, 1).
   double next() { return lattice_hash(seed_, copy_, next_++) * 0x1p-32; }
   double between(double low, double high) { return low + (high - low) * next(); }
 

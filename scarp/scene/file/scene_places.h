@@ -20,11 +20,11 @@ struct SceneGround {
 
   /// World z at a world position. Throws Error naming `at`, the position in the file, if there is no ground.
   double height(double x, double y, const std::string& at) const;
-  /// The same; nullopt if there is none.
+  /// The same, but returns nullopt if there is no ground.
   std::optional<double> height(double x, double y) const;
 };
 
-/// The ground of a name used at a position in the file; throws Error.
+/// Returns the ground with this name, which is used at a position in the file. Throws Error if there is none.
 using GroundByName = std::function<SceneGround(const std::string& name, const std::string& at)>;
 
 using ScenePlaces = std::vector<Placement>;
@@ -33,7 +33,8 @@ using ScenePlaces = std::vector<Placement>;
 Placement placement_from_json(const nlohmann::json& json);
 
 /// Reads at, turn, scale, on, places and scatter of an object that conforms to the schema. Throws Error naming the
-/// position in the file if there is no ground there, it is tilted, or there is too little of it for scattered objects.
+/// position in the file if there is no ground there, the ground is tilted, or it is too small for the scattered
+/// objects.
 ScenePlaces places_from_json(const nlohmann::json& object, const std::string& path, const GroundByName& grounds);
 
 }  // namespace scarp

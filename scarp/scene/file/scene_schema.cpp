@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/file/scene_schema.h"
 
-// g++ 12 sees overlaps in "[" + std::to_string(index), of which valijson is full (GCC bug 105651).
+// g++ 12 falsely warns of overlaps in "[" + std::to_string(index), which valijson uses often (GCC bug 105651).
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wrestrict"
 #endif
@@ -36,7 +36,7 @@ std::string shortened(const std::string& text) {
   return text.size() <= kMostShown ? text : text.substr(0, kMostShown) + "...";
 }
 
-// The containers that the parser is in.
+// One level of the containers that the parser is in.
 struct Level {
   bool list;
   std::size_t index = 0;         // of a list

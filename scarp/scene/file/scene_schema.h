@@ -11,8 +11,8 @@ namespace scarp {
 /// Maximum nesting depth of a scene file.
 inline constexpr std::size_t kDeepestScene = 1000;
 
-/// Returns the text of a JSON file. Throws Error without its name if it is a folder, missing or not readable; `what` is
-/// the content that is expected, "a scene".
+/// Returns the text of a JSON file. Throws Error without its name if it is a folder, missing or not readable; `what`
+/// names the expected content, for example "a scene".
 std::string json_text_of(const std::string& path, std::string_view what);
 
 /// Throws Error naming the line if the text is not JSON, or naming the position as a JSON pointer for a duplicate key

@@ -33,7 +33,7 @@ std::string told(const Json& json) {
   throw Error(fmt::format("{}: expected {}, got {}", path.empty() ? "/" : path, expected, told(got)));
 }
 
-// A key as a JSON pointer writes it (RFC 6901).
+// Appends a key to a JSON pointer (RFC 6901).
 std::string within(const std::string& path, std::string_view key) {
   std::string out = path + '/';
   for (const char c : key) {
@@ -195,7 +195,7 @@ class ShapeReader {
   }
   static std::string kinds() { return fmt::format("{}", fmt::join(kKinds, ", ")); }
 
-  // Errors of the library are reported with their position.
+  // Adds the position to errors that the library throws.
   static Shape made(const std::string& path, const shape::Form& form) {
     try {
       return make_shape(form);

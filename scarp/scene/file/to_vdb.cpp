@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTile = 128, kLeaf = 8;  // voxels
 
-// Pages of a grid, each examined once: worlds share most of them.
+// Kinds of a grid's pages. Each page is examined once: worlds share most of them.
 class PageKinds {
  public:
   enum Kind : std::uint8_t { unknown, empty, full, mixed };
@@ -17,7 +17,7 @@ class PageKinds {
   explicit PageKinds(const VoxelGrid& grid)
       : grid_(grid), known_(grid.masks().size() / VoxelGrid::kPageBricks + 1, unknown) {}
 
-  /// Contents of the bricks of a box of voxels; `mixed` also if pages continue beyond it.
+  /// Contents of the bricks of a box of voxels; also `mixed` if pages continue beyond the box.
   Kind of(const VoxelBox& box) {
     Kind all = unknown;
     for_each_row({box.low / 4, (box.high + 3) / 4}, [&](int y, int z) {

@@ -7,7 +7,7 @@
 
 namespace scarp {
 
-/// Converts a grid without its colours. Its corner is at voxel `low` of the world; voxels have a side of `side` metres.
+/// Converts a grid without its colours. Its corner is at the world voxel `low`; voxels have a side of `side` metres.
 VdbVoxels vdb_of(const VoxelGrid& grid, const ivec3& low, double side);
 
 }  // namespace scarp

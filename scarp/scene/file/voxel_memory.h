@@ -13,12 +13,13 @@
 
 namespace scarp {
 
-/// Voxels that readers add to a grid at once, which limits the memory in use.
+/// Number of voxels that readers add to a grid at once. Limits the memory in use.
 inline constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 20;
 
 class VoxelMemory {
  public:
-  /// `voxels`: listed in the file. Grids may take 1 GiB, or four times the 4 bytes that a .vox file has per voxel.
+  /// `voxels`: number of voxels listed in the file. Grids may take 1 GiB or, if that is more, 16 bytes per voxel: four
+  /// times the size of a voxel in a .vox file.
   explicit VoxelMemory(std::int64_t voxels) : most_(std::max(std::int64_t{1} << 30, 16 * voxels)) {}
 
   /// Throws Error with the remedy if the sum exceeds the limit.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: which points are inside a closed mesh, by the parity of the triangles above them.
+// Private to the station: decides which points are inside a closed mesh, by the parity of the number of triangles above
+// them.
 //
 // Seen from above, a triangle contains a point if an odd number of its edges pass it in the east. Each edge is decided
-// by one expression of its two corners, so both its triangles decide alike, and of a closed mesh an even number of
-// triangles is above and below any point: none is lost or counted twice at an edge or a corner.
+// by one expression of its two corners, so both its triangles decide alike. Therefore a vertical line through any point
+// meets an even number of triangles of a closed mesh: none is lost or counted twice at an edge or a corner.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 // neither overflows nor loses small meshes. A ray enters them in double, near the box, with a unit direction:
 //
 //   ray ──▶ t at the box ──▶ origin there ──float──▶ Embree ──triangle──▶ t, u, v by its plane, in double
-//                                                       └── candidates outside of the ray's range are passed over
+//                                                       └── candidates outside the ray's range are skipped
 #include "scarp/scene/mesh/scene_mesh.h"
 
 #include <embree3/rtcore.h>
@@ -54,7 +54,7 @@ struct MeshRay {
   double start_s = 0;    ///< t of `start`, relative to the world ray's origin
   double length = 1;     ///< of the world ray's direction: s = t * length
   double first_t = 0, last_t = 0;
-  double reach = 0;              ///< s beyond which the mesh or the range ends
+  double reach = 0;              ///< s at which the mesh or the range ends
   std::uint32_t passed = kNone;  ///< the triangle that the ray starts on
 };
 
@@ -213,7 +213,7 @@ class MeshField final : public SceneField {
 
   // Returns false if the ray misses the box.
   bool enters(const Ray& ray, const Hit* from, MeshRay& local) const {
-    // Divided by its largest part first: squares neither overflow nor vanish.
+    // Divided by its largest component first, so that squares neither overflow nor underflow.
     const double part = std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
     const dvec3 along = ray.direction / part;
     const double along_length = length(along);
@@ -223,7 +223,7 @@ class MeshField final : public SceneField {
     dvec3 origin = (ray.origin - middle_) / unit_;
     double low = ray.t_min * local.length, high = ray.t_max * local.length;
     if (local.passed = start_triangle(ray, from); local.passed != kNone) {
-      // Into the triangle's plane, from which world coordinates may have been rounded away.
+      // Moves the start into the triangle's plane: rounding of world coordinates may have moved it out.
       const dvec3 n = normal(local.passed);
       if (const double square = dot(n, n); square > 0)
         origin += n * (dot(n, position(local.passed, 0) - (origin + low * local.direction)) / square);
@@ -270,7 +270,7 @@ class MeshField final : public SceneField {
     if (square == 0) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
     const double facing = dot(n, ray.direction);
     double s = facing != 0 ? dot(n, a) / facing : found_s;
-    // The plane of a triangle seen edge-on is ill-conditioned, but its corners still bound s.
+    // Intersecting a plane that is seen edge-on is ill-conditioned, but the triangle's corners still bound s.
     const double along_a = dot(a, ray.direction), along_b = dot(b, ray.direction), along_c = dot(c, ray.direction);
     s = std::clamp(s, std::min({along_a, along_b, along_c}), std::max({along_a, along_b, along_c}));
     const dvec3 p = s * ray.direction;
@@ -321,7 +321,7 @@ class MeshField final : public SceneField {
 
   WorldBox box_;
   dvec3 middle_;
-  double unit_ = 1;  // the file's, in one of Embree's
+  double unit_ = 1;  // units of the file per unit of Embree
   dvec3 half_{0.0};  // of the box in Embree's units, widened by the rounding error
   std::size_t triangles_ = 0;
   std::vector<vec3> positions_;  // in Embree's units, three per triangle and one more; Embree reads them here

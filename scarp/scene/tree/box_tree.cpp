@@ -14,7 +14,7 @@ namespace {
 constexpr int kBins = 16;
 constexpr int kUnbalanced = 32;  // levels after which ranges are halved
 
-// Roundings in float on the way from a coordinate to a difference: less than 4 units of 2^-24 of the largest one.
+// Rounding in float from a coordinate to a difference: less than 4 units of 2^-24 of the largest coordinate.
 constexpr double kPadding = 0x1p-21;
 
 // The rays of a beam share their longest axis, along which their speeds are similar; slopes are limited to this.
@@ -43,7 +43,8 @@ struct BoxTree::Builder {
     return range;
   }
 
-  // Where to split a range: at the best of the bins' borders along the longest side of its centres, or in halves.
+  // Returns where to split a range: at the best bin border along the longest side of the box of its centres, or in the
+  // middle.
   std::uint32_t split(const Range& whole, int depth) {
     WorldBox centres;
     for (std::uint32_t i = whole.begin; i < whole.end; ++i) {
@@ -96,13 +97,13 @@ struct BoxTree::Builder {
     return static_cast<std::uint32_t>(middle_of - order.begin());
   }
 
-  // The node for a range; its children are the parts after three splits, each time of the largest part.
+  // Builds the node for a range. Its children result from three splits, each of the largest part so far.
   std::uint32_t build(const Range& whole, int depth) {
     std::array<Range, kWide> parts{whole};
     int count = 1;
     while (count < kWide) {
-      // The largest part that does not fit in one node; otherwise one that fits in the remaining places without its own
-      // node.
+      // The largest part that does not fit in one node; otherwise a part that fits in the remaining slots without its
+      // own node.
       int largest = -1;
       const auto free = static_cast<std::uint32_t>(kWide - count);
       for (int i = 0; i < count; ++i) {
@@ -191,7 +192,7 @@ bool BoxTree::clip(const Ray& ray, double& t_in, double& t_out) const {
     t_in = std::max(t_in, std::min(a, b));
     t_out = std::min(t_out, std::max(a, b));
   }
-  // The box is padded: a ray that misses it by rounding touches nothing.
+  // The box is padded, so a ray that misses it because of rounding touches nothing.
   return t_in <= t_out;
 }
 

@@ -2,9 +2,9 @@
 // A hierarchy of boxes: finds the objects that a ray may hit, or that may be nearest to something else, roughly nearest
 // first.
 //
-// Four children to a node, so that one test looks at four boxes. Boxes are stored in float, relative to the centre of
-// all, and padded by more than the rounding error: a ray never misses a box that it touches. Rays start where they
-// enter the outer box, so their distance to it does not matter.
+// A node has four children, so one test covers four boxes. Boxes are stored in float, relative to the centre of the
+// whole tree, and padded by more than the rounding error: a ray never misses a box that it touches. Rays start where
+// they enter the outer box, so their distance to it does not matter.
 //
 // Rays of similar direction form a beam, which traverses the hierarchy once for all of them: an interval of origins and
 // one of slopes per axis; a box is hit if the beam's earliest entry is not later than its latest exit.
@@ -34,9 +34,9 @@ namespace scarp {
 class BoxTree {
  public:
   BoxTree() = default;
-  /// Boxes must be finite and not empty, fewer than 2^31.
+  /// There must be fewer than 2^31 boxes, all finite and not empty.
   explicit BoxTree(std::span<const WorldBox> boxes);
-  /// The same over boxes[i] for each i of `objects` alone. box() is `reach` times as wide as the boxes, >= 1.
+  /// The same over boxes[i] for each i in `objects` only. box() is `reach` times as wide as the boxes, reach >= 1.
   BoxTree(std::span<const WorldBox> boxes, std::vector<std::uint32_t> objects, double reach = 1);
 
   /// A group of at most Beam::kRays rays; up to 7 numbers beyond them are read and ignored.
@@ -109,7 +109,7 @@ class BoxTree {
   using StackOf = std::array<Entry<Number>, (kWide - 1) * kMaxDepth + kWide>;
   using Stack = StackOf<float>;
 
-  // Sides of a box as nodes have them.
+  // Sides of a box as nodes store them.
   float rounded_low(const WorldBox& box, int axis) const {
     return static_cast<float>(box.low[axis] - middle_[axis] - padding_);
   }
@@ -132,7 +132,7 @@ class BoxTree {
     }
   }
 
-  // Trees with more padding may have numbers that are infinite in float.
+  // In trees with more padding, coordinates may be infinite in float.
   static constexpr double kMostPadding = 0x1p100;
   // Rounding of a product and a difference in float, with a margin: Ize uses 2 * 3 units for a factor.
   static constexpr float kRounding = 1 + 0x1p-20f;

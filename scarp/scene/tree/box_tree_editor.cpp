@@ -9,10 +9,10 @@
 namespace scarp {
 namespace {
 
-constexpr double kWorstArea = 2;           // of that when it was built
+constexpr double kWorstArea = 2;           // relative to the area when the tree was built
 constexpr std::uint64_t kEditsPerBox = 8;  // building costs about as much as one or two edits per box
 constexpr std::uint64_t kFewEdits = 64;
-// A tree's numbers reach this far from its centre, relative to its boxes when it was built: an object that moves away
+// Range of a tree's coordinates from its centre, relative to its boxes when it was built: an object that moves away
 // causes a rebuild each time its distance has doubled.
 constexpr double kReach = 2;
 
@@ -110,7 +110,7 @@ void BoxTreeEditor::rebuild(std::span<const WorldBox> boxes, std::vector<std::ui
 }
 
 bool BoxTreeEditor::needs_rebuild() const {
-  // Boxes near the limits of numbers have no finite area: their trees are rebuilt each time.
+  // Very large boxes have an infinite area: their trees are rebuilt each time.
   return lost_ || !(area_ <= kWorstArea * area_built_) || edits_ > edits_allowed_;
 }
 
@@ -209,7 +209,7 @@ void BoxTreeEditor::put_above_root(const Box& leaf, std::uint32_t object) {
   put({0, 1}, leaf, BoxTree::kLeaf | object);
 }
 
-// From a node whose children changed up to the first that does not change.
+// Refits boxes from a node whose children changed, upwards to the first that does not change.
 void BoxTreeEditor::refit(std::uint32_t node) {
   while (node != 0) {
     const Slot slot = parent_[node];

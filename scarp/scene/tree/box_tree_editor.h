@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Private to the station: edits of a BoxTree, one box at a time.
 //
-//   insert   from the root down, to the place where the boxes of nodes grow least; then up again, growing them
+//   insert   down from the root to the place where the boxes of nodes grow least; then up again, growing them
 //   remove   up from the leaf, shrinking boxes; a node that keeps one child is replaced by it
 //   move     in place while the box stays inside that of its node; else remove and insert
 //
 // Boxes are rounded outwards as in a new tree, so that edits never lose a hit. Each edit costs a path through the tree.
 //
 // Many edits make a tree slower than a new one. It must be rebuilt (needs_rebuild) when the expected number of nodes
-// that a ray visits may have doubled, by the surface area of all nodes; after 8 edits per box, by which the cost of
-// building it is spread thinly; when a box leaves the reach of the tree's numbers; and when it is too deep.
+// that a ray visits may have doubled, by the surface area of all nodes; after 8 edits per box, over which the cost of
+// the rebuild is amortised; when a box leaves the range of the tree's coordinates; and when the tree is too deep.
 //
 // Source: J. Goldsmith, J. Salmon, "Automatic creation of object hierarchies for ray tracing", IEEE Computer Graphics
 // and Applications 7(5), 1987 (insertion by surface area). Cost: 8 bytes per node and 4 per box.
@@ -28,10 +28,11 @@ class BoxTreeEditor {
   /// Edits `tree` until it is destroyed. Call rebuild() first.
   explicit BoxTreeEditor(BoxTree& tree) : tree_(tree) {}
 
-  /// Builds the tree over boxes[i] for each i of `objects`; boxes as for BoxTree.
+  /// Builds the tree over boxes[i] for each i in `objects`; boxes as for BoxTree.
   void rebuild(std::span<const WorldBox> boxes, std::vector<std::uint32_t> objects);
 
-  /// The object must not be in the tree, or must be in it, respectively. Boxes are finite and not empty.
+  /// insert() requires that the object is not in the tree; move() and remove() require that it is. Boxes are finite and
+  /// not empty.
   void insert(std::uint32_t object, const WorldBox& box);
   void remove(std::uint32_t object);
   void move(std::uint32_t object, const WorldBox& box);
@@ -51,7 +52,7 @@ class BoxTreeEditor {
     std::uint32_t node;
     int index;
   };
-  // Where to insert: as a sibling of a child, in a new node; below a child; or beside all of the root's.
+  // Where to insert: as a sibling of a child, in a new node; below a child; or beside all children of the root.
   struct Place {
     enum class Way { beside, below, above_root };
     Way way = Way::beside;

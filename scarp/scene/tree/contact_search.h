@@ -27,13 +27,13 @@ inline double overlap_bound(const TurnedBox& box, const WorldBox& other) {
   return overlaps(box, other.low - wide, other.high + wide) ? 0 : std::numeric_limits<double>::infinity();
 }
 
-/// The distance of p from a box, and the maximum distance of boxes that may contain something at a distance.
+/// The distance of p from a box, and the maximum distance of boxes that may contain something at a given distance.
 inline double distance_bound(const dvec3& p, const WorldBox& box) { return length(min(max(p, box.low), box.high) - p); }
 inline double reach_of(const dvec3& p, double distance) { return distance + kPlacing * (distance + length(p)); }
 
 /// within(most) returns the point of an object that is closest to p, if it is within `most`; this returns
-/// within(max_distance), or nullopt if `best` is closer. Which of equally close points an object finds depends on how
-/// far it looks, so the limit is always the same.
+/// within(max_distance), or nullopt if `best` is closer. Which of several equally close points an object finds depends
+/// on its search distance, so the limit is always the same.
 template <class Within>
 auto closest_of_object(const dvec3& p, double max_distance, const std::optional<double>& best, const Within& within)
     -> decltype(within(max_distance)) {

@@ -13,7 +13,7 @@ namespace scarp {
 struct FieldPlace {
   Cell cell{};             ///< height fields and tiles
   ivec3 voxel{-1};         ///< voxels
-  std::uint32_t part = 0;  ///< voxels: index of the placed model; tiles: that of the tile
+  std::uint32_t part = 0;  ///< voxels: index of the placed model; tiles: index of the tile
 };
 
 struct FieldContact : Contact {

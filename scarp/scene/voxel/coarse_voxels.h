@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Merges voxels that are smaller than pixels, 2 x 2 x 2 at a time: fewer voxels to march, and colours that are already
-// means.
+// Merges voxels that are smaller than pixels, 2 x 2 x 2 at a time: this leaves fewer voxels to march, and colours that
+// are already averaged.
 //
 // The coverage of a block of 8 is measured along the axis along which it covers most: 0 to 4 of its 4 columns. Blocks
-// that cover all 4 are solid: walls stay closed, however thin. The others are solid in the fraction that they cover:
-// every second block of a row of single voxels, a quarter for scattered points. A model's coverage of a picture thus
-// stays the same from level to level; a majority vote of the 8 would lose thin parts, and "any of 8" would thicken
+// that cover all 4 are solid: walls stay closed, however thin. The others are solid in proportion to their coverage:
+// every second block in a row of single voxels, a quarter of them for scattered points. A model therefore covers the
+// same area of a picture at every level; a majority vote of the 8 would lose thin parts, and "any of 8" would thicken
 // them. An ordered pattern (ordered_pattern.h) selects the solid blocks: 1, 2 or 3 in each run of 4 along an axis.
 //
 // A block's colour is the mean, in linear light, of its voxels with an open face, or of all if none has one. Emitted

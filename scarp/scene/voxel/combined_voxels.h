@@ -17,9 +17,9 @@ enum class VoxelCombination {
 
 /// Combines parts into one model with RGB entries. The first place of the first non-empty part defines the lattice: all
 /// other places must be offset by whole voxels and rotated by quarter turns, with voxels of the same size, within 10^-6
-/// of a voxel. Where parts overlap, colours are those of the first part that is solid
-/// there. An empty result has no places. Throws Error naming the part that is not on the lattice, or if a side of the
-/// result is longer than VoxelGrid::kMaxModelSide.
+/// of a voxel. Where parts overlap, the first part that is solid there determines the colour. An empty result has no
+/// places. Throws Error naming the part that is not on the lattice, or if a side of the result is longer than
+/// VoxelGrid::kMaxModelSide.
 PlacedVoxels combined_voxels(VoxelCombination combination, std::span<const PlacedVoxels> parts,
                              const VoxelFileOptions& options = {});
 

@@ -11,7 +11,7 @@ namespace scarp {
 
 class LatticePlace {
  public:
-  /// origin: of the grid's corner (0, 0, 0) on the lattice.
+  /// origin: position of the grid's corner (0, 0, 0) on the lattice.
   LatticePlace(const LatticeRotation& turn, const ivec3& origin)
       : turn_(turn), back_(turn.inverse()), origin_(origin) {}
 
@@ -24,7 +24,7 @@ class LatticePlace {
   ivec3 grid_voxel(const ivec3& v) const { return (back_(2 * (v - origin_) + 1) - 1) / 2; }
   /// The voxel of the lattice that a voxel of the grid covers.
   ivec3 lattice_voxel(const ivec3& v) const { return (turn_(2 * v + 1) - 1) / 2 + origin_; }
-  /// A box of the grid on the lattice; empty if it is.
+  /// A box of the grid on the lattice; empty if the box is empty.
   VoxelBox lattice_box(const VoxelBox& box) const {
     if (box.empty()) return {};
     const ivec3 a = turn_(box.low) + origin_, b = turn_(box.high) + origin_;

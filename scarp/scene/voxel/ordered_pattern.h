@@ -11,7 +11,7 @@
 
 namespace scarp {
 
-/// 0 to 3, each once in every run of four voxels along an axis that starts at a multiple of 4.
+/// Returns 0 to 3. Each rank occurs once in every run of four voxels along an axis that starts at a multiple of 4.
 inline int ordered_rank(const ivec3& voxel) {
   const ivec3 of = voxel >> 2;
   std::uint32_t moved = static_cast<std::uint32_t>(of.x) * 0x9E3779B1U ^

@@ -17,7 +17,7 @@ namespace scarp {
 
 /// Placement of a model: p_field = world_from_grid * p_grid + origin.
 struct VoxelPlace {
-  std::uint32_t model = 0;          ///< index of the models
+  std::uint32_t model = 0;          ///< index into the models
   glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times the side of a voxel in metres, > 0
   dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
 };
@@ -38,13 +38,13 @@ WorldBox world_box(const PlacedVoxels& voxels);
 /// Options of readers for the models of files.
 struct VoxelFileOptions {
   std::string_view march{};      ///< of voxel_marches(); empty: see file_voxel_march()
-  bool surface_colours = false;  ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside
+  bool surface_colours = false;  ///< VoxelGrid::drop_hidden_entries(): saves memory; interior colours are lost
   VoxelRounding rounding{};
 };
 
 /// Returns the march with this name or, if it is empty, the default for grids of these sizes: `voxel-octants` up to
 /// 2^20 voxels in total and 512 per side, else `voxel-bricks`. Octants are the fastest for small models, but take eight
-/// bytes per voxel and longer to build. Throws Error if there is no such march.
+/// bytes per voxel and more time to build. Throws Error if there is no such march.
 const VoxelMarchEntry& file_voxel_march(std::string_view name, std::span<const ivec3> sizes);
 
 }  // namespace scarp

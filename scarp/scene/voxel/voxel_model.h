@@ -21,7 +21,7 @@ using VoxelColour = std::array<std::uint8_t, 3>;
 /// Colour of voxels without their own.
 inline constexpr VoxelColour kPlainVoxels{196, 188, 170};
 
-/// Bytes that a march builds for a grid of this size.
+/// Size in bytes of the accelerator for a grid of this size.
 std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size);
 
 /// Throws Error if grids of this size are too large for a march.
@@ -37,8 +37,8 @@ class VoxelModel {
   };
 
   /// Builds what the march, a row of voxel_marches(), needs. Without a palette the entries are RGB, red in the lowest
-  /// 8 bits. `materials` are those of the palette's entries; voxels of entries beyond them are plain. Throws Error if
-  /// the grid is too large for the march.
+  /// 8 bits. `materials[i]` is the material of palette entry i; voxels of entries beyond them are plain. Throws Error
+  /// if the grid is too large for the march.
   VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette = {},
              Extent extent = Extent::bounds, std::vector<VoxelMaterial> materials = {});
   VoxelModel(VoxelModel&&) noexcept;
@@ -52,7 +52,7 @@ class VoxelModel {
     return model;
   }
 
-  /// Position of the grid in the voxels of its file: readers crop grids and rotate their axes.
+  /// Sets the position of the grid in the voxel coordinates of its file: readers crop grids and rotate their axes.
   void set_file_place(const LatticePlace& place);
   const LatticePlace& file_place() const { return *file_place_; }
 

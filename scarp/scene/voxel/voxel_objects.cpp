@@ -20,7 +20,7 @@
 namespace scarp {
 namespace {
 
-// Tolerance for the columns of a matrix to be orthogonal and equally long, relative to their squares: many roundings of
+// Tolerance for orthogonal columns of equal length in a matrix, relative to their squares: permits many roundings of
 // multiplied rotations, but no intentional shear.
 constexpr double kRigid = 1e-9;
 
@@ -82,9 +82,9 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   objects_.shrink_to_fit();
   in_tree_.shrink_to_fit();
   // Where objects meet, no coordinate of a ray, a placement or a corner is larger than `farthest_`. Their difference,
-  // the three products of a row and the sums have less than 8 units of rounding, and as much again in the elements of
-  // the inverse and in placements by readers, which are products: 2^-49; twice that covers both sides of a plane.
-  // Scenes that place the field give its rays a room for all roundings (Ray::room).
+  // the three products of a row and the sums have less than 8 units of rounding. The elements of the inverse, and
+  // placements that readers make, are products and add as much again: 2^-49. Twice that covers both sides of a plane.
+  // Scenes that place the field set Ray::room of its rays to cover all roundings.
   for (const WorldBox& box : boxes) box_ = around(box_, box);
   if (!boxes.empty()) {
     farthest_ = std::max(largest(box_.low), largest(box_.high));
@@ -101,7 +101,7 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   tree_ = BoxTree(boxes);
 }
 
-// A world ray on its path through the objects; values shared by neighbouring objects are computed once.
+// A world ray that is traced through the objects. Values shared by neighbouring objects are computed once.
 struct VoxelObjects::Query {
   const VoxelObjects& scene;
   const Ray& ray;
@@ -138,8 +138,8 @@ struct VoxelObjects::Query {
   }
 };
 
-// A ray into the rounded voxel that it starts on hits there at once, as with cubes: the walk, which starts in a
-// neighbour, would not detect this.
+// A ray that points into the rounded voxel on which it starts hits it immediately, as with cubes: the walk starts in a
+// neighbour and would not detect this.
 bool VoxelObjects::begins_into(const Ray& ray, const Hit* from) const {
   return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
 }

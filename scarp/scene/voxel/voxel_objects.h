@@ -33,8 +33,8 @@ namespace scarp {
 /// Immutable and thread-safe.
 class VoxelObjects {
  public:
-  /// Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
-  /// model that is null, a rounding out of range.
+  /// Throws Error naming the place if its model does not exist or its matrix is not a rotation with a scale. Also
+  /// throws for a model that is null, and a rounding out of range.
   explicit VoxelObjects(PlacedVoxels voxels);
 
   /// The same with voxels merged 2 x 2 x 2, `level` times; see coarse_voxels.h.
@@ -53,7 +53,7 @@ class VoxelObjects {
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
     return closest_hit(ray, from, nullptr, stats);
   }
-  /// The same for voxels that count; null: all do.
+  /// The same, restricted to voxels that the filter accepts; null: all count.
   Hit closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const;
   /// Whether anything blocks the ray.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
@@ -71,7 +71,7 @@ class VoxelObjects {
   /// Returns the outward unit normal in world space of the face or rounded edge that was hit; zero for a ray that
   /// started in the voxel.
   dvec3 normal(const Ray& ray, const Hit& hit) const { return normal(ray.at(hit.t), hit); }
-  /// The same by the point that was hit.
+  /// The same, from the point that was hit.
   dvec3 normal(const dvec3& p, const Hit& hit) const;
   VoxelColour colour(const Hit& hit) const;
   VoxelMaterial material(const Hit& hit) const;
@@ -83,12 +83,12 @@ class VoxelObjects {
   bool overlaps(const TurnedBox& box) const;
   std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
 
-  /// The voxel of a hit by its coordinates in the file (VoxelModel::file_place()).
+  /// Returns the coordinates in the file of the voxel of a hit (VoxelModel::file_place()).
   ivec3 file_voxel(const Hit& hit) const {
     return models_[objects_[hit.part].model]->file_place().lattice_voxel(hit.voxel);
   }
   const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.part].model]->grid(); }
-  /// A point of the world in the space of the object's grid.
+  /// Converts a point from world space to the space of the object's grid.
   dvec3 place_in_grid(const Hit& hit, const dvec3& p) const;
   /// Side of the object's voxels in metres.
   double voxel_side(const Hit& hit) const;
@@ -117,7 +117,7 @@ class VoxelObjects {
   };
   /// Returns the objects in the order of the tree's numbers.
   std::vector<Placed> placed() const;
-  /// Bits of the ties of a turn for each Ray::frame.
+  /// For each Ray::frame, the bits of the ties of a turn.
   using TiesByFrame = std::array<std::uint8_t, 1u << VoxelTies::kBits>;
   struct PlacedTurn {
     glm::dmat3 grid_from_world;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts of voxel objects: finds them by the hierarchy, and tests each in its grid's space.
+// Contacts of voxel objects: the hierarchy finds the objects, and each is tested in the space of its grid.
 #include "scarp/march/voxel/voxel_contact.h"
 #include "scarp/scene/tree/contact_search.h"
 #include "scarp/scene/voxel/voxel_objects.h"

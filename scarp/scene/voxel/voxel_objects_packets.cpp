@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t kRays = VoxelPacket::kRays;
 static_assert(kRays == BoxTree::Beam::kRays);
 
-// A beam that visited this many objects which few of its rays hit is abandoned: its rays could have been traced
-// individually by then. The following beams are skipped as well, twice as many each time.
+// A beam is abandoned after more than kWasted objects that fewer than kFewRays of its rays hit: its rays could have
+// been traced individually by then. The following beams are skipped as well, twice as many each time.
 constexpr int kFewRays = 8, kWasted = 24;
 constexpr std::size_t kLongestPause = 64;
-// This few objects are tested without a hierarchy.
+// Up to this number of objects, no hierarchy is used.
 constexpr std::size_t kAskedAtOnce = 1;
 
 // Calls body(i) for each bit.
@@ -42,8 +42,8 @@ class VoxelObjects::PacketQuery {
 
   explicit PacketQuery(const VoxelObjects& scene) : scene_(scene) {}
 
-  // Sets hits[i] for rays[i]; without `hits`, tests for any hit. Returns false, without a result, if they diverge too
-  // much or their directions do not have usual lengths.
+  // Sets hits[i] for rays[i]; without `hits`, tests for any hit. Returns false, without a result, if the rays diverge
+  // too much or their directions have unusual lengths.
   bool ask(std::span<const Ray> rays, From from, Hit* hits) {
     rays_ = rays, from_ = from, hits_ = hits;
     if (hits) std::fill(hits, hits + rays.size(), Hit{});

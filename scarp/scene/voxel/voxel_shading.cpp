@@ -38,7 +38,7 @@ dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius, co
   away /= std::numbers::pi * std::pow(radius, 4) / 12;
   away += std::max(0.0, 1 - 2 * length(away)) * face;
   const double size = length(away);
-  // Bound of the rounding of this many terms.
+  // Bound of the rounding error of the sum.
   return size > 1e-12 ? away / size : dvec3(0.0);
 }
 
