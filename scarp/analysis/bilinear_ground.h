@@ -3,8 +3,8 @@
 // instead of ground defined only at crossings of grid lines (sight.h).
 //
 // A ray is blocked where it is strictly below the surface, by more than rounding; a ray that grazes the surface passes.
-// Cells with a missing sample are holes: rays pass through them, but not through the ground at their rims. Rays that
-// run exactly along the line between a hole and ground may be in either. The Earth is flat.
+// Cells with a missing sample are holes: rays pass through them, but not through the ground at their rims. Rays exactly
+// along the line between a hole and ground may count as in either. The Earth is flat.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ class BilinearGround {
  public:
   /// Builds the pyramid. Throws Error for a wrapped field, and for one without cells.
   explicit BilinearGround(const HeightField& field);
-  /// Shares the pyramid of a field of the same samples with cells of other lengths.
+  /// Shares the pyramid of a field with the same samples but other cell lengths.
   BilinearGround(const HeightField& field, const BilinearGround& same_samples);
 
   const HeightField& field() const { return field_; }
@@ -29,7 +29,8 @@ class BilinearGround {
   /// Returns the shade of a node; self_shaded if the cell beside it blocks the ray.
   Shade shade(const SunRay& sun, Node node) const;
 
-  /// Answers one query, as scarp::line_of_sight() without curvature. `clearance` is that at crossings and between.
+  /// Answers one query, as scarp::line_of_sight() without curvature. `clearance` covers crossings and the points
+  /// between them.
   LineOfSight line_of_sight(const SightEnd& from, const SightEnd& to) const;
 
  private:

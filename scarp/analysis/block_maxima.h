@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The highest sample of every block of a field: sweeps skip blocks below the horizon, lines of sight those below them.
+// The highest sample of every block of a field. Sweeps skip blocks below the horizon; lines of sight skip blocks below
+// the line.
 //
-// MaxPyramid is not sufficient here: it ignores cells with a hole, whose sides count in `crossings` if their samples
+// MaxPyramid is not sufficient here: it ignores cells with a hole, but `crossings` counts their sides if the samples
 // exist.
 #pragma once
 
@@ -16,16 +17,16 @@ class BlockMaxima {
  public:
   static constexpr int kSide = 16, kCoarse = 128;  ///< samples
 
-  /// Scans the field once, on all threads. Blocks overlap: each has one sample more to every side, so that every edge
-  /// between two samples lies in a block.
+  /// Scans the field once, on all threads. Blocks overlap by one more sample on every side, so that every edge between
+  /// two samples is in a block.
   explicit BlockMaxima(const HeightField& field);
 
   /// Returns the maximum of the samples kSide * col - 1 .. kSide * (col + 1), and likewise for rows, in metres;
-  /// -infinity for holes alone.
+  /// -infinity if all are holes.
   double maximum(int col, int row) const { return fine_.at(col, row); }
 
   /// Returns an upper bound in metres of the nodes [col, col_end] x [row, row_end], ends included and inside the field,
-  /// by blocks of `side` samples: kSide or kCoarse.
+  /// from blocks of `side` samples: kSide or kCoarse.
   double highest(int side, int col, int row, int col_end, int row_end) const;
 
  private:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The upper envelope of straight segments over a line: the horizon of a viewshed sector, or of a strip of parallel
-// sun rays. Positions u run along the line, heights s across it; how edges of the ground become segments is the
-// caller's.
+// sun rays. Positions u run along the line, heights s across it; the caller converts edges of the ground to segments.
 //
 //    s        /\.  <- an implicit vertex: two edges cross. Its position is rounded
 //      ___  _/  \.
@@ -9,10 +8,10 @@
 //    o            o____o
 //                           u
 //
-// Pieces keep the line of their edge even after many cuts by others: rounding does not accumulate. Heights are compared
-// in doubles with a bound of their rounding. Where that is not sure, the end of an edge and another edge are compared
-// exactly, from the samples. At an implicit vertex that is not possible: a piece that may be lower there than what it
-// replaced remembers by how much (`slack`), and targets that close to it are left to the caller.
+// Pieces keep the line of their edge even after other edges cut them many times: rounding does not accumulate. Heights
+// are compared in doubles with a bound on their rounding. Where that is undecided, the end of an edge and another edge
+// are compared exactly, from the samples. At an implicit vertex that is not possible: a piece that may be lower there
+// than the piece it replaced stores by how much (`slack`), and targets that close to it are left to the caller.
 //
 // Source: H. J. Haverkort and L. Toma, "A comparison of I/O-efficient algorithms for visibility computation on massive
 // grid terrains", arXiv 1810.01946, 2018, model R3 (there in doubles alone). Cost: a merge copies the pieces once and
@@ -44,8 +43,8 @@ struct HorizonLine {
   bool is_ground() const { return from.side >= 0; }
 };
 
-/// A segment to merge: a line from `begin` to `end`. Ends are those of the edge; `end_cut` (`begin_cut`) if it is
-/// cut short there.
+/// A segment to merge: a line from `begin` to `end`. Its ends are those of the edge, unless `end_cut` (`begin_cut`) is
+/// set: the edge is cut short there.
 struct HorizonSegment {
   double begin = 0;
   double end = 0;
@@ -74,7 +73,7 @@ class HorizonEnvelope {
     double begin = 0;
     HorizonLine line;
     double error = 0;  ///< line.error, or more beside an implicit vertex
-    double slack = 0;  ///< the envelope may be higher by so much
+    double slack = 0;  ///< the envelope may be higher by this much
     double blur = 0;   ///< uncertainty of `begin`; 0 for a sample's position
   };
 
@@ -86,13 +85,14 @@ class HorizonEnvelope {
   /// Returns the piece that contains u, the later one of two. `hint` is a piece that starts at or before u.
   std::size_t find(double u, std::size_t hint = 0) const;
 
-  /// Merges segments that are sorted and do not overlap but in their ends.
+  /// Merges segments, which must be sorted and overlap only at their ends.
   void merge(const std::vector<HorizonSegment>& segments);
 
   enum class Answer : std::uint8_t { visible, blocked, unsure };
   /// Tests the target on a sample, at u and s: whether any merged edge is strictly above. `piece` is find(u).
   Answer test(std::size_t piece, double u, double s, double s_error, HorizonSample target) const;
-  /// Whether the line of the piece find(u), or at its very begin that of the piece before, is the highest at u.
+  /// Whether the highest line at u is certainly that of the piece find(u) or, exactly at its start, that of the
+  /// previous piece.
   bool is_sure(std::size_t piece, double u) const;
 
  private:

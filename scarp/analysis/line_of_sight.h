@@ -16,14 +16,14 @@ namespace scarp {
 struct SightEnd {
   double col = 0, row = 0;                  ///< rounded to 1/kSubcells of a cell
   double height = 0;                        ///< metres; >= 0 above ground
-  HeightDatum datum = HeightDatum::ground;  ///< what `height` counts from
+  HeightDatum datum = HeightDatum::ground;  ///< reference of `height`
 };
 
 /// Two ends of a line, ready for queries: checked, rounded, with heights.
 class SightLine {
  public:
-  /// Throws Error for an end outside the field, on a hole with its height above ground, a height below the ground or
-  /// not finite; and for a curvature out of range.
+  /// Throws Error for an end outside the field, an end on a hole whose height is above ground, a height that is below
+  /// the ground or not finite, and a curvature out of range.
   SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to, const SightCurvature& curvature);
 
   const SightGround& ground() const { return ground_; }
@@ -44,7 +44,7 @@ class SightLine {
   double distance_, eye_, target_, eye_ground_, target_ground_;
 };
 
-/// The crossing that blocks a line of sight nearest to its start.
+/// The first crossing, from the start, that blocks a line of sight.
 struct Obstruction {
   double along = 0;         ///< 0 at the start, 1 at the end
   double col = 0, row = 0;  ///< its place
@@ -57,15 +57,16 @@ struct LineOfSight {
   std::optional<Obstruction> obstruction{};  ///< set if not visible
   double distance = 0;                       ///< metres, horizontal
   double eye = 0, target = 0;                ///< metres above sea
-  /// Least height of the line above the ground at crossings in metres, negative if blocked; infinity without crossings.
+  /// Least height, in metres, of the line above the ground at crossings; negative if blocked; infinity without
+  /// crossings.
   double clearance = std::numeric_limits<double>::infinity();
-  double clearance_along = 0;  ///< where that is
+  double clearance_along = 0;  ///< position of the least clearance, 0..1 along the line
 };
 
 class BlockMaxima;
 
-/// Answers one query. Throws as SightLine does. `maxima`, those of the same field, speed up many lines over one field,
-/// with the same answers; without them every crossing is visited.
+/// Answers one query. Throws as SightLine does. `maxima` of the same field speed up many lines over one field, with the
+/// same results; without them every crossing is visited.
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
                           const SightCurvature& curvature = {}, const BlockMaxima* maxima = nullptr);
 

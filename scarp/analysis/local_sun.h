@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Shadows by the sun of every node: its position in the sky, north and the steps to the neighbours are those at the
-// node's own position on Earth, not those at the centre of the field. One ray per node. Requires a build with ERFA
+// Shadows with a separate sun for every node: the sun's position, north and the steps to the neighbours are those at
+// the node's own position on Earth, not those at the centre of the field. One ray per node. Requires a build with ERFA
 // (SCARP_ERFA).
 //
-// A ray keeps the direction that it has at its node; ground beside it is where the field's grid has it. The sun at or
-// below the horizon leaves a node self-shaded.
+// A ray keeps the direction that it has at its node; the ground along it is positioned by the field's grid. A node is
+// self-shaded if the sun is at or below its horizon.
 #pragma once
 
 #include <functional>
@@ -20,11 +20,12 @@ struct LocalSun {
   UtcTime time{};
   bool refraction = false;
   /// Sets x and y to longitude and latitude in degrees (WGS 84) of the nodes (first_col + i, row), from several threads
-  /// at once (NodePlaces, scarp/source/raster/node_places.h). Fields of one column or row need those beside it, too.
+  /// at once (NodePlaces, scarp/source/raster/node_places.h). Fields of one column or row also need the nodes beside
+  /// it.
   std::function<void(int row, int first_col, std::span<dvec3> places)> places{};
 };
 
-/// Returns the codes of the band. Throws Error for a wrapped field, an empty band, a place at a pole.
+/// Returns the codes of the band. Throws Error for a wrapped field, an empty band, or a place at a pole.
 std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                 const Progress& progress = {});
 

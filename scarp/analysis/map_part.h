@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parts of maps: bands of rows, for tasks that share one map. Every function returns those rows of the whole map, to
-// the last bit, from the part of the field that matters to them.
+// Parts of maps: bands of rows, for tasks that share one map. Every function returns its rows bit-identical to those of
+// the whole map, computed only from the part of the field that affects them.
 //
 //   viewshed   rows between the observer and the band     shadow   rows from the band towards the sun, as far as
 //                                                                  the highest ground reaches

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cumulative viewshed: how many observers see each node. Observers are swept at the same time, and all add to one map.
+// Cumulative viewshed: how many observers see each node. Observers are swept concurrently, and all add to one map.
 //
 //   std::vector<scarp::Viewpoint> views = ...;   // over one field
 //   const auto counts = scarp::observer_count(views);

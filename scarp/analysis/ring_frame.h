@@ -10,7 +10,8 @@ namespace scarp {
 enum class SweepDirection : std::uint8_t { east, west, south, north };
 
 /// A field seen along the direction of a sweep. Rings are lines of constant `ring` (a column for sweeps to the east and
-/// west, else a row); `side` counts along them. x and y are relative to an origin, x in the direction of the sweep.
+/// west, otherwise a row); `side` counts along them. x and y are relative to an origin, x in the direction of the
+/// sweep.
 class RingFrame {
  public:
   RingFrame(const HeightField& field, Node origin, SweepDirection direction)

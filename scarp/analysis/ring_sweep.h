@@ -7,8 +7,8 @@
 //      this ring        P ----- o ----- o       P-Q: a spoke; P-o: an edge of the ring
 //
 // Ring by ring: test the samples against the horizon, then merge the spokes to the previous ring, then the edges of the
-// ring. Most samples need no more than one comparison of heights: those below the horizon by more than the rounding
-// change nothing; edges between two that are above it replace what is there.
+// ring. Most samples need only one comparison of heights: samples below the horizon by more than the rounding change
+// nothing; edges between two samples above it replace the horizon there.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@
 namespace scarp {
 
 inline constexpr double kNoGround = -std::numeric_limits<double>::infinity();  ///< height of a hole
-/// Bound of the rounding of s on a line at u, in parts of its terms: at most eight operations, each off by half a unit.
+/// Bound of the rounding of s on a line at u, relative to its terms: at most eight operations, each off by half a unit.
 inline constexpr double kSweepRounding = 8 * std::numeric_limits<double>::epsilon();
 
 /// Sides [begin, end).
@@ -44,15 +44,15 @@ struct RingLine {
 };
 
 /// `Projection` derives from it and has
-///   height(sample value, node)      what heights of the sweep are, in metres
-///   begin_ring(ring)                chooses the ring for all that follows
+///   height(sample value, node) height that the sweep uses, in metres
+///   begin_ring(ring) selects the ring for all following calls
 ///   is_beyond(ring)                 whether no node from this ring on matters
-///   sides_of(ring)                  samples of the part, and one beyond to each side
+///   sides_of(ring)                  samples of the part, and one more on each side
 ///   u(side), s(height), s_previous(height), s_error(s)
 ///   height_of_slack(slack)          a bound of HorizonEnvelope's slack, in heights of the ring
-///   about_side(u)                   about the first side at or after u, by one or two
+///   about_side(u)                   the first side at or after u, to within one or two
 ///   sides_per_u()                   along a ring
-///   ring_line(line, error)          a line of the horizon in heights of the ring
+///   ring_line(line, error)          a line of the horizon, in heights of the ring
 ///   ring_edge(side)                 the edge from a sample to the next one
 ///   fill_spoke(side, segment)       the edge to the previous ring; returns whether there is one
 ///   spoke_is_right(side)            whether the spoke runs from the outer sample to larger u
@@ -84,7 +84,7 @@ class RingSweep {
   static constexpr int kLine = 64 / sizeof(double);  // of the cache
   static constexpr int kStrip = BlockMaxima::kSide;  // rings loaded together: a line of the cache if they are columns
 
-  /// [low, high]: the part of the horizon that counts. `target_raise`: height of targets above samples.
+  /// [low, high]: the part of the horizon that matters. `target_raise`: height of targets above samples.
   RingSweep(const SampleGrid<T>& grid, const RingFrame& frame, const HorizonEdges& edges, double low, double high,
             double target_raise)
       : grid_(grid),
@@ -104,9 +104,9 @@ class RingSweep {
   HorizonEnvelope horizon_;
   SweepStatistics statistics_;
   std::vector<int> uncertain_;            // samples whose spoke may be above the horizon, in no order
-  std::map<double, HorizonSample> lone_;  // by u: the highest sample there at which no edge of a ring ends
+  std::map<double, HorizonSample> lone_;  // by u: the highest sample at that u at which no edge of a ring ends
 
-  int ring_ = 0;  // the ring at work
+  int ring_ = 0;  // the current ring
   SideRange range_{};
   const double* now_ = nullptr;       // heights of the ring
   const double* previous_ = nullptr;  // heights of the previous ring
@@ -136,7 +136,7 @@ class RingSweep {
     }
   }
 
-  // Finds the blocks that may rise above the horizon. In all others, neither samples nor edges do.
+  // Finds the blocks that may rise above the horizon. Neither samples nor edges of all others do.
   void find_active(int first, int last) {
     const SideRange a = self().sides_of(first), b = self().sides_of(last);
     const SideRange range{std::min(a.begin, b.begin), std::max(a.end, b.end)};
@@ -161,7 +161,7 @@ class RingSweep {
     const T sample = grid_.at(node.col, node.row);
     return grid_.is_nodata(sample) ? kNoGround : self().height(sample, node);
   }
-  // Loads samples of the strip, with one more to each side: whether there is an edge beyond the last.
+  // Loads samples of the strip, with one more on each side to detect an edge beyond the last.
   void load(const SideRange& range, int before, int count) {
     const int begin = std::max(range.begin - 1, 0), end = std::min(range.end + 1, frame_.sides());
     const int first_slot = before >= 0 && before < frame_.rings() ? 0 : 1;
@@ -232,7 +232,7 @@ class RingSweep {
   }
 
   // Compares samples with one piece of the horizon.
-  // `on_vertex`: the first is where the piece starts, and the piece before counts there as well.
+  // `on_vertex`: the first sample is where the piece starts, so the previous piece also counts there.
   void test_under(std::size_t i, int begin, int end, bool on_vertex) {
     const HorizonEnvelope::Piece& piece = horizon_.pieces()[i];
     const RingLine line = self().ring_line(piece.line, piece.error);
@@ -291,7 +291,7 @@ class RingSweep {
         joined_ = at > before.line.at(after.begin) + before.error + before.slack &&
                   at > after.line.at(after.begin) + after.error + after.slack;
       }
-      // The edge from the sample before is merged in any case; the spoke of this one may rise as well.
+      // The edge from the previous sample is merged in any case; the spoke of this sample may also rise.
       note_unclear(side);
       return;
     }
@@ -322,8 +322,8 @@ class RingSweep {
     return heights[side] != kNoGround && (side == 0 || heights[side - 1] == kNoGround) &&
            (side + 1 == frame_.sides() || heights[side + 1] == kNoGround);
   }
-  // Spokes whose outer end is below the horizon lie below it, unless their inner end may be above: an edge of the
-  // previous ring is missing there on the spoke's side, or the projection says so.
+  // Spokes whose outer end is below the horizon are below it, unless their inner end may be above it: because an edge
+  // of the previous ring is missing there on the spoke's side, or because of the projection.
   void find_uncertain_spokes(const SideRange& range) {
     if (grid_.has_holes || frame_.sides() == 1) {
       for (int side = range.begin; side < range.end; ++side) {
@@ -335,7 +335,7 @@ class RingSweep {
     }
     if (self().has_previous()) self().find_more_spokes(range);
   }
-  // Samples that no edge along the ring ends in block lines of sight through them alone.
+  // A sample at which no edge along the ring ends blocks only lines of sight through itself.
   void add_lone(int side) {
     const HorizonSample sample{ring_, side};
     const auto [place, is_new] = lone_.try_emplace(self().u(side), sample);
@@ -362,7 +362,7 @@ class RingSweep {
     if (risen_.empty()) return;
     if (self().has_previous()) {
       segments_.clear();
-      bool clear_before = false;  // whether the edge from the risen sample before is clear
+      bool clear_before = false;  // whether the edge from the previous risen sample is clear
       int risen_before = -1;
       for (const int side : risen_) {
         const bool is_clear = side + 1 < range_.end && clear_[static_cast<std::size_t>(side)];
@@ -370,7 +370,7 @@ class RingSweep {
         clear_before = is_clear;
         risen_before = side;
         if (now_[side] == kNoGround || previous_[side] == kNoGround) continue;
-        // The spoke's inner end is not above the horizon, and that not above the edge beside.
+        // The spoke's inner end is not above the horizon, and the horizon is not above the adjacent edge.
         if (beside_clear && !grid_.has_holes && self().is_inner_known(side)) continue;
         HorizonSegment& segment = segments_.emplace_back();
         if (!self().fill_spoke(side, segment) || !in_part(segment)) {

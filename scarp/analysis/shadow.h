@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shadow of the sun on a field. sight.h defines what blocks a sun ray. The Earth is flat here: one sun direction holds
-// for the whole field, and heights are not lowered.
+// Shadows cast by the sun on a field. sight.h defines what blocks a sun ray. The Earth is flat here: one sun direction
+// holds for the whole field, and heights are not lowered.
 //
 //   const auto codes = scarp::shadow(field, {.azimuth = scarp::radians(135), .altitude = scarp::radians(20)});
 #pragma once
@@ -27,7 +27,7 @@ struct SunDirection {
   double altitude = 0;  ///< radians above the horizon, 0 < altitude <= pi/2
 };
 
-/// The way from a node to the sun, in grid units. It is rounded once; everything after is exact.
+/// The direction from a node to the sun, in grid units. It is rounded once; all later computations are exact.
 struct SunRay {
   /// A vector of cells: the larger of |col| and |row| is kUnit, the other is rounded, so the direction is off by at
   /// most 2^-27 cells per cell.
@@ -42,9 +42,9 @@ struct NodeSteps {
   dvec2 col, row;  ///< to the next column and row
 };
 
-/// Throws Error if the direction is out of range. `azimuth` counts from the north of the steps.
+/// Throws Error if the direction is out of range. `azimuth` is relative to the north of the steps.
 SunRay sun_ray(const NodeSteps& steps, const SunDirection& sun);
-/// With the field's cells, and grid north for north.
+/// The same with the field's cells and grid north.
 SunRay sun_ray(const HeightField& field, const SunDirection& sun);
 
 /// Returns the code of every node, rows from north to south. Throws Error for a direction out of range or a wrapped

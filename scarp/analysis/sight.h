@@ -6,18 +6,18 @@
 //   o-------x------o                   x  crossing of the line of sight with a grid line
 //   |     /        |
 //   |   /          | column line       Height of the ground at a crossing: linear between the two samples at the ends
-//   x/             |                   of that side. Nothing lies between crossings.
+//   x/             |                   of that side. There is no ground between crossings.
 //   o--------------o
 //
 // Surface `crossings`
 // - A *height* is HeightField::height_from_sample(): metres, a double. Seen from an observer it is *lowered* by
 //   curvature and refraction: lowered() below, rounded to double. From here on all arithmetic is exact.
-// - A crossing blocks if the ground there is strictly above the ray. A ray that grazes the ground passes.
+// - A crossing blocks if its ground is strictly above the ray. A ray that grazes the ground passes.
 // - Crossings count strictly between the two ends of a line of sight, and strictly after the start of a sun ray. The
 //   cells around an end therefore never block by themselves, and neighbouring samples always see one another.
 // - Holes: a crossing at a node counts if the node has a sample; any other crossing counts if both ends of its side
-//   have one. Rays pass where a crossing does not count. The field's outermost lines are grid lines like all others.
-//   Beyond them there is nothing: a sun ray that leaves the field is not blocked.
+//   have one. Rays pass crossings that do not count. The field's outermost lines are grid lines like all others.
+//   There is nothing beyond them: a sun ray that leaves the field is not blocked.
 //
 // Ends
 // - Observers and targets of viewsheds are nodes. Ends of single lines of sight are anywhere in the field, rounded to
@@ -25,8 +25,9 @@
 //   line, four elsewhere. It is a hole if one of them is missing.
 // - The eye is at ground + observer height, or at a height above sea. The target is at lowered ground + target height.
 //   Heights above ground are >= 0.
-// - An end outside the field, on a hole (unless its height is above sea), or an eye below the ground is an error.
-// - Distances are horizontal: sqrt(dx^2 + dy^2) of metres. Limits choose targets; ground at any distance blocks.
+// - It is an error if an end is outside the field or on a hole (unless its height is above sea), or if the eye is below
+// the ground.
+// - Distances are horizontal: sqrt(dx^2 + dy^2) of metres. Limits apply to targets only; ground at any distance blocks.
 #pragma once
 
 #include <cmath>
@@ -41,7 +42,7 @@ namespace scarp {
 
 /// Steps per cell to which ends of lines of sight are rounded. Weights of crossings are then integers below 2^53.
 inline constexpr std::int64_t kSubcells = 1024;
-/// Largest number of columns or rows of a field that this station takes.
+/// Largest number of columns or rows of a field that this station accepts.
 inline constexpr int kMaxSightSide = 1 << 20;
 
 /// A node of a field.
@@ -65,13 +66,13 @@ struct SightCurvature {
 /// Throws Error if a member is out of range.
 void validate(const SightCurvature& curvature);
 
-/// The heights of a field's nodes, as one observer sees them. `col` and `row` of the observer may lie between nodes.
-/// A plain view: the field must outlive it, without edits.
+/// The heights of a field's nodes as seen by one observer. `col` and `row` of the observer may lie between nodes. A
+/// plain view: the field must outlive it, without edits.
 class SightGround {
  public:
   /// Throws Error for a wrapped field, a side above kMaxSightSide, or a curvature out of range.
   SightGround(const HeightField& field, double observer_col, double observer_row, const SightCurvature& curvature);
-  /// Without curvature: heights as they are.
+  /// Without curvature: heights are unchanged.
   explicit SightGround(const HeightField& field);
 
   const HeightField& field() const { return *field_; }
@@ -125,8 +126,8 @@ class SightGround {
   double nodata_ = 0;
 };
 
-/// Compass azimuth from one place to another relative to grid north, in radians, 0..2pi; 0 if they are one place.
-/// `east` and `north` in metres.
+/// Compass azimuth from one place to another relative to grid north, in radians, 0..2pi; 0 if both are the same. `east`
+/// and `north` in metres.
 inline double compass_azimuth(double east, double north) {
   const double azimuth = std::atan2(east, north);
   return azimuth < 0 ? azimuth + 2 * std::numbers::pi : azimuth;

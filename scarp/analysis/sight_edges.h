@@ -37,7 +37,7 @@ class SightEdges : public HorizonEdges {
   CrossingTerms edge_terms(const HorizonLine& edge, HorizonSample sample) const;
   /// The terms of a sample that lies on the line of sight to another.
   CrossingTerms sample_terms(HorizonSample before, HorizonSample sample) const;
-  /// Whether a sample is above the line of sight to another, or its continuation.
+  /// Whether a sample is above the line of sight to another sample, or above the continuation of that line.
   bool sample_above(HorizonSample sample, HorizonSample other) const {
     CrossingTerms terms = sample_terms(sample, other);
     terms.r = lowered(other);

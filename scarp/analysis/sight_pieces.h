@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A line of sight cut into pieces of as many cells as a block of maxima has: most lie above all ground beside them.
+// A line of sight cut into pieces as long as a block of maxima: most pieces are above all ground beside them.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class SightPieces {
     largest_ = std::abs(line.eye()) + std::abs(line.target());
   }
 
-  /// Cells along the axis in which the line is longer. Pieces count along it.
+  /// Length in cells along the axis in which the line is longer. Positions of pieces are measured along that axis.
   double length() const { return length_; }
 
   SightBox box(double begin, double end) const {

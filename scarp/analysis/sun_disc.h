@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sun's disc as horizontal strips of equal height, each lit as its middle is.
+// The sun's disc as horizontal strips of equal height, each of which is visible if its middle is.
 #pragma once
 
 #include <numbers>

@@ -41,7 +41,7 @@ class SunEdges : public HorizonEdges {
     return edge_above(edge, target);
   }
   double position(HorizonSample sample) const override { return sun_.u(sample); }
-  /// Whether a sample is above the ray through another, or its continuation.
+  /// Whether a sample is above the ray through another sample, or above the continuation of that ray.
   bool sample_above(HorizonSample sample, HorizonSample other) const;
 
  private:

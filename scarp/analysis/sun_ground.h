@@ -10,7 +10,7 @@
 
 namespace scarp {
 
-/// A plain view of either. Converts implicitly from both.
+/// A plain view of either kind of ground. Converts implicitly from both.
 class SunGround {
  public:
   SunGround(const HeightField& field) : ground_(field) {}

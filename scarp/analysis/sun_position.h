@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sun's place in the sky. Requires a build with ERFA (SCARP_ERFA).
+// The sun's position in the sky. Requires a build with ERFA (SCARP_ERFA).
 //
 // The centre of the sun's disc as seen from the ground: ERFA's Earth ephemeris (epv00), precession and nutation
 // IAU 2006/2000A, aberration, parallax and the Earth's rotation. Error below 0.001 degree from 1900 to 2100 without
@@ -16,7 +16,7 @@ struct UtcTime {
 };
 
 /// Parses "2026-06-21T09:00+02:00": ISO 8601 with date, time and offset (Z, +HH, +HH:MM); seconds optional, with
-/// fractions. Throws Error: another form, a date that does not exist, a year outside 1900..2100.
+/// fractions. Throws Error for any other form, a date that does not exist, or a year outside 1900..2100.
 UtcTime parse_time(const std::string& text);
 
 /// A position on Earth, WGS 84.
@@ -33,7 +33,7 @@ struct SunPosition {
 /// The sun at one time, for many places: computes everything independent of the place once.
 class SunAtTime {
  public:
-  /// Throws Error for a time out of ERFA's range.
+  /// Throws Error for a time outside ERFA's range.
   explicit SunAtTime(const UtcTime& time);
 
   /// As sun_position().
@@ -46,8 +46,8 @@ class SunAtTime {
   double rotation_, origin_sp_;        // of the Earth, and the terrestrial origin
 };
 
-/// `refraction`: of a standard atmosphere at this height, 10 degrees Celsius; lifts the sun by 0.5 degree at the
-/// horizon. Below about 1 degree of altitude refraction is uncertain by more than 0.01 degree.
+/// `refraction`: applies that of a standard atmosphere at this height and 10 degrees Celsius, which lifts the sun by
+/// 0.5 degree at the horizon. Below about 1 degree of altitude refraction is uncertain by more than 0.01 degree.
 SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction = false);
 
 }  // namespace scarp

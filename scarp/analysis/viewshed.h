@@ -40,7 +40,7 @@ struct ViewshedSettings {
 /// Throws Error if a setting is out of range.
 void validate(const ViewshedSettings& settings);
 
-/// An observer's eye over a field, and what it may look at. Engines and judge share it.
+/// An observer's eye over a field, and its limits. Engines and judge share it.
 class Viewpoint {
  public:
   /// Throws Error for settings out of range, an observer outside the field or on a hole without `observer_z`, or an eye
@@ -74,9 +74,9 @@ std::vector<Seen> viewshed(const HeightField& field, Node observer, const Viewsh
                            const Progress& progress = {});
 
 /// Returns, for every node, the least lowered height at which a target is visible: the smallest double for which no
-/// crossing blocks. -infinity if none can (the observer's node, its neighbours); NaN for holes and targets out of
-/// range. A target of height h above ground is visible if lowered ground + h is not below it. `target_height` only
-/// matters for pitch limits.
+/// crossing blocks. -infinity if no crossing can block (the observer's node, its neighbours); NaN for holes and targets
+/// out of range. A target of height h above ground is visible if lowered ground + h is not below it. `target_height`
+/// only matters for pitch limits.
 std::vector<double> least_visible(const HeightField& field, Node observer, const ViewshedSettings& settings = {},
                                   const Progress& progress = {});
 

@@ -22,7 +22,7 @@ struct SectorPart {
 struct SectorMaps {
   Seen* codes = nullptr;    ///< `hidden` nodes that are visible are set to `visible`
   double* least = nullptr;  ///< the least visible height is set at nodes that are not NaN
-  /// Adds one for each visible node. Other sweeps may add to the same map at the same time.
+  /// Counts are increased by one at visible nodes. Other sweeps may add to the same map concurrently.
   std::uint16_t* counts = nullptr;
   const BlockMaxima* maxima = nullptr;  ///< of the field, for `codes` and `counts`; null: no block is skipped
 };

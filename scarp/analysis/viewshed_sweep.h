@@ -27,7 +27,7 @@
 namespace scarp {
 
 /// Writes the code of every node, rows from north to south. `maxima`: of the view's field, for callers with many
-/// observers; null: made here.
+/// observers; null: computed here.
 SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progress& progress = {},
                                const BlockMaxima* maxima = nullptr);
 

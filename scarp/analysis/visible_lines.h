@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lines of sight by the million: visible or not, and nothing else. Equal to line_of_sight(), several times as fast.
+// Millions of lines of sight: returns only whether they are visible. Results equal those of line_of_sight(), several
+// times faster.
 //
 //   const scarp::BlockMaxima maxima(field);
 //   const auto visible = scarp::visible_lines(field, lines, maxima);

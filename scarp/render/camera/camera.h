@@ -5,9 +5,9 @@
 //   centre at (i + 0.5, j + 0.5). World coordinates: metres, x east, y north from the field's south-west sample, z up.
 //
 // Automatic framing has a closed form. The axes of the camera are given. A point with the camera coordinates (a, b, c)
-// is inside the picture of an eye at (x, y, z) if |a - x| <= p (c - z) and |b - y| <= q (c - z), where p and q are the
-// tangents of half the angles of view. Each corner of a box thus bounds x and y from both sides, linearly in z. The
-// nearest eye has the largest z for which neither interval is empty; the middles of the intervals centre the box.
+// is inside the picture seen from an eye at (x, y, z) if |a - x| <= p (c - z) and |b - y| <= q (c - z), where p and q
+// are the tangents of half the angles of view. Each corner of a box thus bounds x and y from both sides, linearly in z.
+// The nearest eye has the largest z for which neither interval is empty; the middles of the intervals centre the box.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -76,7 +76,7 @@ class Camera {
   double reach() const { return reach_; }
 
   /// Returns the width of the surface with this unit normal that a pixel covers at `t` of one of its rays, in metres:
-  /// the mean of length and width, as surfaces seen from the side are longer.
+  /// the mean of length and width, because a pixel is longer than wide on surfaces seen from the side.
   double footprint(const Ray& ray, double t, const dvec3& normal) const;
 
   /// Returns the width of a pixel at a depth, both in metres.

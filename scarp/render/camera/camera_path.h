@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A flight through some points: smooth, through all of them, at a speed that follows their distances.
+// A smooth flight through all of a list of points, at a speed that follows their distances.
 //
 // Eye and target each run along a Catmull-Rom spline in its centripetal form (C. Yuksel et al., "Parameterization and
 // applications of Catmull-Rom curves", 2011), which has neither loops nor cusps between its points. Both share the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compass directions in world space. Azimuths count clockwise from TRUE north; the world's y axis is the north of the
-// raster's grid, which the georeference relates to the true one.
+// raster's grid; the georeference relates it to true north.
 #pragma once
 
 #include "scarp/base/vec.h"

@@ -11,9 +11,9 @@
 //   z_ndc = (f + n) / (f - n) - 2 f n / ((f - n) z) in [-1, 1], becomes (z_ndc + 1) / 2 in the window: the same number.
 //
 // The founding text on the semi-voxel caster uses r in this formula, "the distance along the ray -- the same as the
-// vertex - eye distance". That holds on the view axis only: in the corner of a 4:3 picture with a field of view of 60
-// degrees, r is 1.39 times z, and terrain written this way is behind meshes that it should hide. With `reversed`, 1 -
-// that: floats keep their precision at the far end then (n / z for an infinite far plane).
+// vertex - eye distance". That is true only on the view axis: in the corner of a 4:3 picture with a field of view of 60
+// degrees, r is 1.39 times z, and terrain written this way is behind meshes that it should hide. With `reversed`, the
+// depth is 1 minus this value, so floats keep their precision at the far end (n / z for an infinite far plane).
 #pragma once
 
 #include <limits>
@@ -31,14 +31,14 @@ struct DepthRange {
 /// Throws Error if a plane is out of range.
 void validate(const DepthRange& range);
 
-/// Returns the distance along the view axis, in metres, of the point t lengths of `direction` from the eye; `forward`
-/// is the axis, a unit vector.
+/// Returns the distance along the view axis, in metres, of the point that is t lengths of `direction` from the eye.
+/// `forward` is the axis, a unit vector.
 inline double view_depth(const dvec3& direction, double t, const dvec3& forward) { return t * dot(direction, forward); }
 
 /// Returns the depth buffer value of OpenGL (window depth, default glDepthRange) and Vulkan for a view depth in metres:
 /// 0..1 between the planes, outside this range beyond them. An infinite z means no surface.
 double device_depth(double z, const DepthRange& range);
-/// The inverse. Infinite on an infinite far plane.
+/// The inverse of device_depth(). Infinite on an infinite far plane.
 double view_depth_from_device(double depth, const DepthRange& range);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From colours of points to a picture of bytes: tiles, several samples per pixel.
+// Converts colours of points to a picture of bytes: tiles, several samples per pixel.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ struct ImageSize {
   int width = 0, height = 0;
 };
 
-/// Rows from the top, 3 bytes (red, green, blue; sRGB) a pixel, no padding.
+/// Rows from the top, 3 bytes per pixel (red, green, blue; sRGB), no padding.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
-  std::vector<std::uint8_t> alpha{};  ///< opacity, a byte a pixel; empty: all pixels are opaque
+  std::vector<std::uint8_t> alpha{};  ///< opacity, a byte per pixel; empty: all pixels are opaque
 
   Image() = default;
   /// Black.
@@ -32,7 +32,7 @@ struct Image {
   std::uint8_t& opacity(int x, int y) { return alpha[static_cast<std::size_t>(std::int64_t{y} * width + x)]; }
 };
 
-/// The byte for a fraction of a pixel's points.
+/// The opacity byte for a fraction of a pixel's points.
 std::uint8_t opacity_byte(std::size_t shown, std::size_t points);
 
 /// Sets a pixel from linear light.
@@ -49,16 +49,16 @@ struct PixelTile {
   std::size_t pixels() const { return static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0); }
 };
 
-/// A picture cut into tiles of some hundred points, neighbours in the picture.
+/// A picture cut into tiles of a few hundred neighbouring points.
 class PixelTiles {
  public:
-  /// `width`, `height` in pixels, aa x aa points each, aa 1..16.
+  /// `width` and `height` in pixels, with aa x aa points per pixel, aa 1..16.
   PixelTiles(int width, int height, int aa);
 
   std::int64_t count() const { return across_ * down_; }
   std::int64_t columns() const { return across_; }
   std::int64_t rows() const { return down_; }
-  /// Pixels along the side of a tile that the picture does not cut off.
+  /// Side in pixels of a tile that is not clipped at the border of the picture.
   int side() const { return side_; }
   PixelTile operator[](std::int64_t i) const;
 

@@ -27,9 +27,9 @@ struct RayRound {
   };
   Question question = Question::closest;
   std::vector<Ray> rays;
-  /// Hits on whose surfaces the rays start, as in Scene::closest_hits(); empty: by Ray::start.
+  /// Hits on whose surfaces the rays start, as in Scene::closest_hits(); empty: rays start as Ray::start states.
   std::vector<const Hit*> from;
-  /// Question::closest: what a fan has found of the rays, for the next query alone; empty: nothing.
+  /// Question::closest: what a fan has found for the rays, valid only for the next query; empty: nothing.
   std::vector<FanSight> sights;
   std::vector<Hit> hits;
   std::vector<std::uint32_t> steps;
@@ -55,8 +55,8 @@ using MakeTileWork = std::function<std::unique_ptr<TileWork>(const PixelTile&)>;
 void work_on_tiles(const Scene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
                    const Progress& progress);
 
-/// The same for a picture of width x height pixels with aa x aa points each. Camera rays are looked for by a fan, which
-/// the work receives, if that pays; otherwise it receives null.
+/// The same for a picture of width x height pixels with aa x aa points each. If it is faster, a fan traces the camera
+/// rays, and the work receives its results; otherwise the work receives null.
 using MakeCameraWork = std::function<std::unique_ptr<TileWork>(const PixelTile&, const CameraSights*)>;
 void work_on_camera_tiles(const Scene& scene, const Camera& camera, int width, int height, int aa,
                           std::size_t most_rays, const MakeCameraWork& make, const Progress& progress);

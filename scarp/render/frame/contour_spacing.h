@@ -11,9 +11,10 @@
 
 namespace scarp {
 
-/// Returns an interval at which half of the ground has all lines and nearly all of it the heavy ones, 1, 2 or 5 times a
-/// power of ten in metres, not exaggerated, if the interval of the settings is too small for nearly all of the ground
-/// in the picture. Returns nullopt if lines are visible, or there is no sloping ground. Follows some thousand rays.
+/// If the interval in the settings is too small for nearly all of the ground in the picture, returns an interval at
+/// which half of the ground has all lines and nearly all of it has the heavy ones: 1, 2 or 5 times a power of ten in
+/// metres, not exaggerated. Returns nullopt if lines are visible, or there is no sloping ground. Traces a few thousand
+/// rays.
 std::optional<double> better_contours(const Scene& scene, const Camera& camera, const PictureSettings& settings);
 
 }  // namespace scarp

@@ -3,8 +3,8 @@
 //
 //   a part of the picture ──▶ rays, march, take, water, ..., resolve, point by point ──▶ its pixels ──▶ the next part
 //
-// Between stages only counts come back. A part has as many pixels as take kMemory together: 428 bytes each, or 1,032
-// with water, whose pixels may have two rays at once.
+// Between stages only counts come back. A part is as large as fits in kMemory: a pixel takes 428 bytes, or 1,032 with
+// water, where it may have two rays at once.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@
 
 namespace scarp {
 
-/// A picture, as the stages need it.
+/// A picture in the form that the stages need.
 struct FrameWork {
   const glsl::FrameSettings* numbers = nullptr;
   std::uint64_t settings = 0;  ///< address of the numbers

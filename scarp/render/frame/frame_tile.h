@@ -21,8 +21,8 @@ bool counts_steps(const FrameView& view);
 
 class FrameTile {
  public:
-  /// aa x aa points per pixel. `fan`: has looked for the camera rays of the tile, or null. `view` and `fan` must
-  /// outlive the tile.
+  /// aa x aa points per pixel. `sights`: what a fan has found for the camera rays of the tile, or null. `view` and
+  /// `sights` must outlive the tile.
   FrameTile(const FrameView& view, const PixelTile& tile, int aa, const CameraSights* sights = nullptr);
   ~FrameTile();
   FrameTile(const FrameTile&) = delete;
@@ -60,7 +60,7 @@ class FrameTile {
     Hit hit;
     std::uint32_t point = 0;
     std::uint32_t steps = 0;  // of the march, if it was counted
-    vec3 colour{0.0f};        // of a lit surface, before any air; of everything else including the air
+    vec3 colour{0.0f};        // of lit surfaces without the air in front; of everything else with it
     bool lit = false;         // whether it is such a surface
   };
   // A surface whose light rays have been requested.
@@ -71,13 +71,13 @@ class FrameTile {
   };
   enum class RoundKind { look, sent, light };
 
-  // Pictures of iterations: there are no colours.
+  // Whether the picture shows iterations, without colours.
   bool shows_steps() const;
   bool look(RayRound& round);
   void take_look(const RayRound& round);
   bool ask_sent(RayRound& round);
   void take_sent(const RayRound& round);
-  // By index, those of seen_ first; null after the last.
+  // By index, seen_ before sent_; null after the last.
   Seen* seen_or_sent(std::size_t i);
   bool ask_light(RayRound& round);
   void take_light(const RayRound& round);
@@ -104,7 +104,7 @@ class FrameTile {
   std::vector<Seen> seen_, sent_;
   std::vector<WaterPoint> water_;
   std::vector<MirrorPoint> mirrors_;
-  std::vector<const Hit*> sent_from_;                    // surfaces on which rays of sent_ start; null: those of water
+  std::vector<const Hit*> sent_from_;  // surfaces on which rays of sent_ start; null for rays from water
   std::vector<std::optional<Water::Meeting>> meetings_;  // by point; empty without water
   RoundKind round_ = RoundKind::look;                    // of the current round
   bool asked_ = false;

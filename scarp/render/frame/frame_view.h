@@ -57,7 +57,7 @@ class FrameView {
   /// Whether the horizon's colour fills the sky below the horizon, for ground beyond the picture's reach.
   bool horizon_below() const { return scene_.endless() || settings_.look == Look::comanche; }
 
-  /// Whether light rays are needed there: not for walls, and not inside a voxel.
+  /// Whether the surface needs light rays: walls and the inside of voxels do not.
   static bool is_lit(const SceneSurface& surface) { return !surface.wall && surface.normal != dvec3(0.0); }
   /// The surface's colour without light.
   vec3 surface_colour(const Ray& ray, const Hit& hit, const SceneSurface& surface) const;
@@ -71,7 +71,8 @@ class FrameView {
   /// Light from beyond the scene, attenuated by the fog along the ray.
   vec3 from_beyond(vec3 light, const Ray& ray) const;
 
-  /// Colour of walls in linear light, and the fraction of it on walls that face away from the sun: 1 in unlit pictures.
+  /// Colour of walls in linear light, and the fraction of it that walls facing away from the sun have: 1 in unlit
+  /// pictures.
   vec3 earth() const;
   float unlit_wall() const;
 
@@ -85,7 +86,7 @@ class FrameView {
   Lighting lighting_;
   SurfaceColours colours_;
   GroundPaint paint_;
-  vec3 wall_light_;  // on cut earth: that of level ground
+  vec3 wall_light_;  // light on cut earth: that on level ground
   Fog fog_;
   Haze haze_;
   std::optional<Water> water_;

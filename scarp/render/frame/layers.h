@@ -10,7 +10,7 @@
 namespace scarp {
 
 /// Rows from the top, no padding. `colour` is the mean of the pixel's aa x aa samples; all others hold the hit of the
-/// ray through the pixel's centre, never a mean: a depth between two ridges belongs to neither.
+/// ray through the pixel's centre, never a mean: a mean depth between two ridges would belong to neither.
 struct PictureLayers {
   int width = 0;
   int height = 0;

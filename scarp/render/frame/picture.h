@@ -41,10 +41,10 @@ struct PictureSettings {
   GroundPaintSettings ground{};       ///< ground colours; overlay, patches and contours apply to all surfaces
   std::string ramp{};                 ///< one of ramp_names(); empty: viridis for `steps`, else hypsometric
   std::shared_ptr<const RampStops> ramp_stops{};  ///< replaces `ramp` unless null
-  /// Heights of the first and last colour of ramps and of grey, in metres, not exaggerated; low < high; nullopt: those
-  /// of the scene. Values outside have the colour of the nearer end.
+  /// Heights of the first and last colour of ramps and of grey, in metres, not exaggerated; low < high; nullopt: the
+  /// lowest and highest of the scene. Values outside have the colour of the nearer end.
   std::optional<ReliefRange> ramp_range{};
-  /// Range of heights for `ramp` and `ground`, and extent of the overlay; nullopt: those of the scene.
+  /// Range of heights for `ramp` and `ground`, and extent of the overlay; nullopt: the scene's.
   std::optional<WorldBox> ground_box{};
 
   // Environment.
@@ -58,8 +58,8 @@ struct PictureSettings {
   FogSettings fog{};                  ///< replaces haze unless its kind is `none`
   std::optional<WaterSettings> water{};
 
-  /// Whether Image::alpha is filled with the fraction of each pixel that shows ground, a model or water. Colours then
-  /// are means over that share alone, and black where it is 0.
+  /// Whether Image::alpha is filled with the fraction of each pixel that shows ground, a model or water. Colours are
+  /// then means over that part only, and black where it is empty.
   bool alpha = false;
 
   bool tone_curve = true;  ///< whether `shaded` and `comanche` compress bright colours (toned()); layers never do

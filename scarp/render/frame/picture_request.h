@@ -84,14 +84,14 @@ struct PictureSubject {
   ReliefRange heights{};          ///< of the ground, exaggerated
   double exaggeration = 1;
   std::optional<double> function_extent{};  ///< side of the shown ground in metres, and the distance of its haze
-  WorldBox box{};                           ///< from which cameras keep a distance; see resolve()
-  std::optional<WorldBox> map{};            ///< extent of a map; without a requested size the picture has its shape
-  ImageSize size{1280, 720};                ///< default size in pixels
-  bool interpolate = true;                  ///< ComancheSettings::interpolate
-  bool alpha = false;                       ///< PictureSettings::alpha
+  WorldBox box{};                           ///< used for the distance of cameras; see resolve()
+  std::optional<WorldBox> map{};  ///< extent of a map; a picture without a requested size has its aspect ratio
+  ImageSize size{1280, 720};      ///< default size in pixels
+  bool interpolate = true;        ///< ComancheSettings::interpolate
+  bool alpha = false;             ///< PictureSettings::alpha
 };
 
-/// Returns the size of a map of a box: its longer side has the requested number of pixels.
+/// Returns the size in pixels of a map of a box, given that of its longer side.
 ImageSize size_of_map(const WorldBox& box, int longer_side);
 
 /// The material of terrain functions in the settings of their pictures.

@@ -4,15 +4,15 @@
 //
 //   rays ──▶ march ──▶ take ──▶ water ──▶ march ──▶ take ──▶ light ──▶ march ──▶ take ──▶ ... ──▶ paint ──▶ resolve
 //   of the             what is  only if there is:            a ray to sun or sky for each       ground     pixels
-//   camera             met      mirrored, to the bottom      ground that is seen
+//   camera hit mirrored, to the bottom visible ground point
 //
 //   FramePush ──settings──▶ FrameSettings ──ramp──▶ pieces and colours of a ramp;  ──drape──▶ a picture on the ground
 //       │  ├──ground────▶ GroundBuffers
 //       │  ├──seens─────▶ FrameSeen, the camera's of all pixels; then mirrored ones, then those to the water's bottom
 //       │  ├──waters────▶ FrameWater of each pixel, if there is water
 //       │  ├──rays──────▶ RayBlock for the march, ray after ray, for all purposes;  ──hits──▶ its answers
-//       │  ├──owners────▶ of each ray the index of its FrameSeen
-//       │  ├──grounds───▶ indices of those that see ground, which is to be lit and painted
+//       │  ├──owners────▶ index of the FrameSeen of each ray
+//       │  ├──grounds───▶ indices of those that see ground, to be lit and painted
 //       │  ├──counters──▶ FrameCounters: how many rays and grounds there are
 //       │  ├──sums──────▶ FrameSum of each pixel, over its points
 //       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | opacity << 24
@@ -40,9 +40,9 @@ const uint kFrameHasPatches = 4u;  ///< detail by noise, or natural ground
 const uint kFrameHasDrape = 8u;
 const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
-const uint kFrameHasSamples = 64u;  ///< of sun and sky
+const uint kFrameHasSamples = 64u;  ///< rays to sun and sky
 const uint kFrameHasPlinth = 128u;  ///< below the terrain
-/// Walls at the rims of holes of the plinth; the march handles those of solid ground.
+/// Walls of the plinth at the rims of holes; the march handles those of solid ground.
 const uint kFrameHasRims = 256u;
 const uint kFrameHasScattering = 512u;  ///< sky
 const uint kFrameHasTexture = 1024u;    ///< detail by an image
@@ -144,7 +144,7 @@ struct FrameSettings {
   vec3 sun_line_low;
   int sun_rays;     ///< of a point: 0 without shadows, 1 where the sun is a point
   int sky_rays;     ///< of a point
-  float sun_depth;  ///< of its disc as a cap, 1 - cos(radius); 0: a point
+  float sun_depth;  ///< of the sun's disc as a cap, 1 - cos(radius); 0: a point
   float ao_distance;
   int samples;  ///< of a point, for each purpose: 0 without soft light
   uint seed;    ///< of SamplePattern
@@ -199,7 +199,7 @@ struct FramePush {
   uint count;        ///< pixels
   uint threads;      ///< pixels, rays or grounds that the stage is for
   int point;         ///< of the pixels
-  int light;         ///< which of the rays to sun and sky
+  int light;         ///< index of the current ray among those to sun and sky
   uint tell_sights;  ///< 1
 };
 
@@ -240,7 +240,7 @@ struct FrameSeen {
   vec2 place;
   float sun_cosine;  ///< visible sun: the sum over its rays
   float sky;         ///< visible sky: its unblocked rays
-  float weight;      ///< of the ray of light that is under way
+  float weight;      ///< of the light ray that is being traced
   vec3 normal;       ///< of ground, for shading
   vec3 light;        ///< of ground, before the air between
   uint steps;

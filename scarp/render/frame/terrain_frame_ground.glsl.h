@@ -27,7 +27,7 @@ vec3 ramp_colour(float height) {
   Settings s = settings();
   int first = 0;
   int last = s.is.ramp_count - 1;
-  // The first piece that ends at or above it.
+  // The first piece that ends at or above the value.
   while (first < last) {
     int middle = (first + last) / 2;
     if (RampPieces(s.is.ramp_pieces).pieces[middle].high < height)
@@ -83,7 +83,7 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction) {
   Settings s = settings();
   float metres = seen.t.high * seen.metres;
   vec3 normal = normal_of(scarp_slope(field, seen.cell, seen.place));
-  // A pixel's footprint is longer than wide on ground seen from the side: uses the mean of both.
+  // A pixel's footprint is longer than wide on ground seen from the side. Uses the mean of length and width.
   float footprint =
       s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres) / sqrt(max(0.05, -dot(direction, normal)));
   ScarpCell cell = scarp_cell(field, seen.cell.x, seen.cell.y, s.is.base_of_heights);

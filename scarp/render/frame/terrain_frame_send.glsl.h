@@ -3,7 +3,7 @@
 
 #include "scarp/march/height/ray_blocks.glsl.h"
 
-// Writes the known state of a ray before it is marched. The rest is defined if it hits ground.
+// Writes the state of a ray that is known before it is marched. The rest is set if the ray hits ground.
 void keep(uint i, FrameSeen seen) {
   Seens(push.seens).of[i].line = seen.line;
   Seens(push.seens).of[i].metres = seen.metres;

@@ -35,7 +35,7 @@ uint seen_index(int ray, uint slot) { return uint(ray) * push.count + slot; }
 
 ScarpTwoFloat two(float high, float low) { return ScarpTwoFloat(high, low); }
 
-// Between unit vectors of the world and directions of the grid.
+// Convert between unit vectors in world space and directions in grid space.
 vec3 world_direction(vec3 grid) {
   Settings s = settings();
   return vec3(grid.x * s.is.cell.x, -grid.y * s.is.cell.y, grid.z * s.is.metres_per_sample);
@@ -65,7 +65,7 @@ ScarpField shown_field() {
   return field;
 }
 
-// Whether the rays of light that are under way go to the sun, those before the others; else to the sky.
+// Whether the current light rays go to the sun; rays to the sky follow them.
 bool goes_to_sun() { return has_samples ? push.light < settings().is.sun_rays : has_shadows; }
 
 // Ground to light and paint.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Haze, fog and the light of sun and sky: the formulas of fog.h and light.h. Text of C++ and of GLSL.
+// Haze, fog and the light of sun and sky: the formulas of fog.h and light.h. Compiles as C++ and GLSL.
 #ifndef SCARP_RENDER_AIR_GLSL_H
 #define SCARP_RENDER_AIR_GLSL_H
 
@@ -22,7 +22,7 @@ const int kScarpFogByDistance = 1;
 const int kScarpFogByHeight = 2;
 const int kScarpFogByIterations = 3;
 
-/// (1 - exp(-x)) / x, which is 1 at 0: by its series where the difference would cancel.
+/// (1 - exp(-x)) / x, which is 1 at 0. Uses the series where the difference would cancel.
 SCARP_FN real scarp_mean_of_decay(real x) {
   if (abs(x) >= real(0.0625)) return (real(1.0) - exp(-x)) / x;
   real sum = real(1.0);
@@ -31,7 +31,7 @@ SCARP_FN real scarp_mean_of_decay(real x) {
 }
 
 /// Transmittance of fog over t metres along a ray that starts at height `z` and rises by `rise` per metre. `per_metre`
-/// is the density at the height `base`; by height it decreases by the factor e every `falloff` metres.
+/// is the density at the height `base`; it decreases upwards by the factor e every `falloff` metres.
 SCARP_FN real scarp_fog_transmittance(int kind, real per_metre, real base, real falloff, real z, real rise, real t) {
   if (kind == kScarpFogByDistance) return exp(-per_metre * t);
   if (kind != kScarpFogByHeight) return real(1.0);
@@ -46,7 +46,7 @@ SCARP_FN real scarp_fog_transmittance_of_sky(int kind, real per_metre, real base
 }
 
 /// Colour of fog in linear light, looking along a unit vector: that of the sky at the horizon. Below a plain sky it is
-/// warm towards the sun with the 8th power of the angle's cosine.
+/// warmer towards the sun, by the 8th power of the cosine of the angle to it.
 SCARP_FN vec3 scarp_fog_colour(ScarpSky sky, real3 direction, real sun_tint) {
   if (sky.scattering != 0) return scarp_horizon_colour(sky, direction);
   real towards = max(real(0.0), dot(direction, real3(sky.to_sun)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours: conversion between sRGB and linear light, and interpolation. Text of C++ and of GLSL.
+// Colours: conversion between sRGB and linear light, and interpolation. Compiles as C++ and GLSL.
 #ifndef SCARP_RENDER_COLOUR_GLSL_H
 #define SCARP_RENDER_COLOUR_GLSL_H
 
@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Interpolates from one to the other, share 0..1.
+/// Interpolates from `from` to `to`, share 0..1.
 SCARP_FN vec3 scarp_between(vec3 from, vec3 to, real share) {
   float f = float(share);
   return from * (1.0f - f) + to * f;
@@ -36,7 +36,7 @@ const float kScarpToneFull = 1.75f;
 SCARP_FN vec3 scarp_toned(vec3 linear) {
   float most = max(linear.x, max(linear.y, linear.z));
   if (!(most > kScarpToneBegin)) return linear;
-  if (most > 1e30f) return vec3(1.0f);  // infinite, say
+  if (most > 1e30f) return vec3(1.0f);  // may be infinite
   float range = 1.0f - kScarpToneBegin;
   float full = (kScarpToneFull - kScarpToneBegin) / range;
   float at = min((most - kScarpToneBegin) / range, full);

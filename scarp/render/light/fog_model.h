@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours seen through fog, by the formulas of fog.h.
+// Computes colours seen through fog, by the formulas of fog.h.
 #pragma once
 
 #include "scarp/base/ray.h"

@@ -21,7 +21,7 @@ class Light {
   const dvec3& to_sun() const { return to_sun_; }
   /// Angular radius of the disc.
   double sun_radius() const { return sun_radius_; }
-  /// Unit vector to where the sky is brightest.
+  /// Unit vector to the brightest side of the sky.
   const dvec3& sky_side() const { return sky_side_; }
   /// The sun's light on a surface that faces it.
   vec3 sun() const { return sky_.sunlight(); }

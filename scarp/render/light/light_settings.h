@@ -17,7 +17,7 @@ struct LightSettings {
   bool shadows = true;            ///< whether surfaces block the sun
   bool unlit = false;             ///< surfaces keep their own colours
   int samples = 0;                ///< rays to the sun's disc, and as many to the sky, per point; 0: hard shadows
-  int points_per_pixel = 1;       ///< that share a pattern of samples
+  int points_per_pixel = 1;       ///< number of points that share a pattern of samples
   std::uint32_t seed = 0;         ///< seed of the pattern
 };
 

@@ -24,8 +24,8 @@ struct LightRays {
 
 class Lighting {
  public:
-  /// Rays to the sky end after `ao_distance` metres. `highest`, for wrapped ground: there is nothing above it, and rays
-  /// to the sun end there.
+  /// Rays to the sky end after `ao_distance` metres. `highest`, for wrapped ground: height above which there is
+  /// nothing, where rays to the sun end.
   Lighting(const LightSettings& settings, double ao_distance, std::optional<double> highest = {});
 
   /// Maximum number of rays appended by ask().

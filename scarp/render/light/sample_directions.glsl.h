@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maps points of the unit square to directions: the formulas of sample_directions.h. Text of C++ and of GLSL.
+// Maps points of the unit square to directions: the formulas of sample_directions.h. Compiles as C++ and GLSL.
 #ifndef SCARP_RENDER_SAMPLE_DIRECTIONS_GLSL_H
 #define SCARP_RENDER_SAMPLE_DIRECTIONS_GLSL_H
 
@@ -17,7 +17,7 @@ SCARP_FN real2 scarp_on_disc(real2 square) {
   return real2(b * sin(quarter * (a / b)), b * cos(quarter * (a / b)));
 }
 
-/// Two unit vectors that make a right-handed frame with the unit vector `axis`.
+/// Two unit vectors that form a right-handed frame with the unit vector `axis`.
 struct ScarpSides {
   real3 side;
   real3 other;
@@ -31,7 +31,7 @@ SCARP_FN ScarpSides scarp_sides(real3 axis) {
   sides.other = real3(b, sign_z + axis.y * axis.y * a, -axis.y);
   return sides;
 }
-/// `v` has its z along the axis.
+/// Rotates `v` so that its z is along the axis.
 SCARP_FN real3 scarp_round_axis(real3 axis, real3 v) {
   ScarpSides sides = scarp_sides(axis);
   return v.x * sides.side + v.y * sides.other + v.z * axis;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From points of the unit square to directions; neighbouring points stay neighbours and areas keep their proportions,
-// so what is well spread in the square is well spread in the sky.
+// Maps points of the unit square to directions. Neighbouring points stay neighbours and areas keep their proportions,
+// so points that are well distributed in the square are well distributed in the sky.
 #pragma once
 
 #include "scarp/base/vec.h"
@@ -10,10 +10,10 @@ namespace scarp {
 /// Point of the unit disc, uniform in area (Shirley and Chiu 1997, concentric squares to concentric circles).
 dvec2 on_disc(dvec2 square);
 
-/// Two unit vectors that make a right-handed frame with a unit vector (Duff et al. 2017, without branches).
+/// Two unit vectors that form a right-handed frame with a unit vector (Duff et al. 2017, without branches).
 struct Frame {
   explicit Frame(const dvec3& axis);
-  /// `v` has its z along the axis.
+  /// The z of `v` is along the axis.
   dvec3 to_world(const dvec3& v) const { return v.x * side + v.y * other + v.z * axis; }
 
   dvec3 axis, side, other;
@@ -23,8 +23,8 @@ struct Frame {
 /// sphere).
 dvec3 cosine_weighted(dvec2 square);
 
-/// Unit vector of the cap round +z out to `radius` radians, 0 to pi/2, uniform in solid angle (the disc lifted by
-/// Lambert's equal-area projection).
+/// Unit vector of the cap around +z with an angular radius of `radius` radians, 0 to pi/2, uniform in solid angle (the
+/// disc lifted by Lambert's equal-area projection).
 dvec3 in_cap(dvec2 square, double radius);
 /// 1 - cos(radius), without cancellation for the few milliradians of the sun.
 double cap_depth(double radius);

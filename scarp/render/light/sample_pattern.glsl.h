@@ -40,8 +40,8 @@ SCARP_FN uint scarp_reverse_bits(uint number) {
   return (x << 16) | (x >> 16);
 }
 
-/// Flips each bit or not as a function of all bits above it and of the seed: on the reversed number, where "above" is
-/// below, sums and products with constants do just that.
+/// Flips each bit or not, depending on all bits above it and on the seed: on the bit-reversed number, where "above" is
+/// below, sums and products with constants have this effect.
 SCARP_FN uint scarp_owen_scramble(uint number, uint seed) {
   uint x = scarp_reverse_bits(number);
   x ^= x * 0x3d20adeau;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Positions of a pixel's samples in the unit square: low-discrepancy points that depend only on pixel and seed, and so
-// are the same on every run and for every number of threads.
+// Positions of a pixel's samples in the unit square: low-discrepancy points that depend only on pixel and seed, and are
+// therefore the same in every run and for any number of threads.
 //
 //   points   the first two dimensions of Sobol's sequence (Sobol 1967), a (0,2)-sequence: of 2^m consecutive points
 //   from
@@ -8,12 +8,13 @@
 //   random   Owen's nested uniform scrambling (Owen 1995), by hashing (Laine and Karras 2011; the hash is Vegdahl's of
 //            2021): unbiased, and the intervals keep their one point each
 //   pixels   take blocks of ONE sequence, in Morton order with its digits shuffled (Ahmed and Wonka 2020): neighbours
-//            share out what is left over, so the error of the picture is blue noise, which the eye averages
+//            complement each other, so the error of the picture is blue noise, which the eye averages
 //
-//            and take their points in a shuffled order, again nested (Burley 2020): else the upper left corner of every
-//            pixel would look at the same part of the sun
+//            and take their points in a shuffled order, again nested (Burley 2020); otherwise the upper left corner of
+//            every pixel would look at the same part of the sun
 //
-// A pixel's samples may be drawn in several goes, one after another: each go is stratified, and all of them together.
+// A pixel's samples may be drawn in several consecutive passes: each pass is stratified, and so are all of them
+// together.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sky: a plain gradient, or one in which sunlight is scattered: the formulas of sky_model.h. Text of C++ and of
+// The sky: a plain gradient, or one in which sunlight is scattered: the formulas of sky_model.h. Compiles as C++ and
 // GLSL.
 #ifndef SCARP_RENDER_SKY_GLSL_H
 #define SCARP_RENDER_SKY_GLSL_H
@@ -58,7 +58,7 @@ SCARP_FN vec3 scarp_scattered(ScarpSky sky, real3 direction) {
 }
 
 /// Colour of the sky at the horizon, in linear light, in the direction of a unit vector. Towards zenith and nadir,
-/// where directions lie close together, it becomes the mean of all.
+/// where horizontal directions converge, it becomes the mean of all.
 SCARP_FN vec3 scarp_horizon_colour(ScarpSky sky, real3 direction) {
   if (sky.scattering == 0) return kScarpHorizon;
   real square = min(direction.x * direction.x + direction.y * direction.y, real(1.0));
@@ -69,7 +69,7 @@ SCARP_FN vec3 scarp_horizon_colour(ScarpSky sky, real3 direction) {
 }
 
 /// Colour of the sky in linear light towards a unit vector, without the sun's disc. The plain gradient follows the 3rd
-/// power of 1 - z; below the horizon it changes to pale ground with its power of 1.5.
+/// power of 1 - z; below the horizon it changes to pale ground by the power 1.5.
 SCARP_FN vec3 scarp_sky_colour(ScarpSky sky, real3 direction) {
   real far = real(1.0) - min(abs(direction.z), real(1.0));
   bool scatters = sky.scattering != 0;

@@ -7,9 +7,9 @@
 //                     650, 550 and 450 nm, with the air mass of Kasten (1965)
 //   skylight          cosine-weighted mean of the sky over the hemisphere
 //
-// One exposure scales everything: white level ground has the luminance 1 under a high sun, and less where the sky above
-// a low sun is brighter than the ground. The sun's disc is more than ten thousand times as bright as the sky; it is
-// limited to kBrightest so that its edge can be anti-aliased.
+// One exposure scales everything: white level ground has the luminance 1 under a high sun, and less under a low sun,
+// where the sky above the sun is brighter than the ground. The sun's disc is more than ten thousand times as bright as
+// the sky; it is limited to kBrightest so that its edge can be anti-aliased.
 #pragma once
 
 #include "scarp/base/vec.h"

@@ -2,12 +2,12 @@
 // Fraction of the sky and of the sun's disc visible from a surface point, sampled with any-hit rays. The rays start on
 // the surface without an offset, so nothing is lit through a ridge and a plane does not shade itself.
 //
-//   ask_...(point, ..., rays)  appends rays    ──▶  Scene::occluded  ──▶    sky_occlusion, sun_cosine of those
+//   ask_...(point, ..., rays)  appends rays    ──▶  Scene::occluded  ──▶    sky_occlusion, sun_cosine of the results
 //
 // Two normals are involved. Visibility depends on the surface alone: the sky is above its tangent plane, and rays below
-// it are blocked. Brightness depends on the shading normal, which is continuous from cell to cell. Occlusion round the
-// surface's normal steps little from cell to cell: both sides of a hollow crease hide the same fraction of each other's
-// sky, and those of a ridge hide nothing. Round the shading normal a ridge would be dark.
+// it are blocked. Brightness depends on the shading normal, which is continuous from cell to cell. Occlusion around the
+// surface's normal changes little from cell to cell: the two sides of a concave crease hide the same fraction of each
+// other's sky, and the two sides of a ridge hide nothing. Around the shading normal a ridge would be dark.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The look `comanche`: endless terrain in few large pixels, as in flight simulators of the nineties and the founding
+// The look `comanche`: endless terrain in a few large pixels, as in flight simulators of the nineties and the founding
 // text on a ray caster for semi-voxel terrain. With the march `fixed-step` it reproduces the picture of that text,
 // including its artefacts; with an exact march it shows the same picture without them.
 //
@@ -8,8 +8,8 @@
 //                     the picture, or on spheres (`shells`)
 //   coast             the first sample below the level (plain), or   the plane itself
 //                     between the last two samples
-//   crests            what is thinner than a step is passed          all
-//   looking up        left where nothing is higher                   the same
+//   crests            parts thinner than a step are missed all
+//   looking up ends where nothing is higher the same
 //
 // `step_by_view` implements the text's proposal, long steps looking down and short ones at grazing angles: samples are
 // equally spaced on the map, not along the ray, so steep rays take steps up to kLongestStep times as long.
@@ -27,7 +27,7 @@ struct Image;
 
 struct ComancheSettings {
   int scale = 3;              ///< sides of the picture's large pixels in pixels of the image, 1..64
-  int steps = 256;            ///< of `fixed-step` over the reach, 1..65536
+  int steps = 256;            ///< number of steps of `fixed-step` over the reach, 1..65536
   bool shells = false;        ///< samples on spheres around the eye, as with normalised rays; otherwise on planes
   bool step_by_view = false;  ///< longer steps looking down
   bool interpolate = true;    ///< whether a hit is interpolated between the last two samples
@@ -41,7 +41,7 @@ void validate(const ComancheSettings& settings);
 /// Longest step at a grazing angle, with `step_by_view`.
 constexpr double kLongestStep = 8;
 
-/// A camera low over the field's south, looking north: the usual view of endless ground.
+/// A camera low over the southern part of the field, looking north: the usual view of endless ground.
 Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height);
 
 /// Reach of a picture of an unbounded field: once across the field.
@@ -59,9 +59,9 @@ class StepMarch {
     double t = 0;
     std::uint32_t steps = 0;
   };
-  /// For a ray of the camera; directions have length 1. `water` may be null.
+  /// Marches a camera ray, whose direction has length 1. `water` may be null.
   Answer march(const Ray& ray, const Water* water) const;
-  /// For a ray that does not start at the camera: it has no planes.
+  /// Marches a ray that does not start at the camera, without planes.
   Hit march(const Ray& ray) const;
   int most_steps() const { return settings_.steps; }
 

@@ -6,13 +6,13 @@
 // `lipschitz-local` misses no crossing. Pictures of one function verify this: one pixel in 64 is also judged by
 // interval bisection (function_exhaustive.h), and contradictions are counted.
 //
-//   grey       both hit the same place, within the tolerance (hill-shaded)
+//   grey       both hit the same point, within the tolerance (hill-shaded)
 //   dark grey  both miss
-//   red        lost: there is ground, the march found none
-//   magenta    invented: there is none, the march found some
+//   red        lost: there is ground, but the march found none
+//   magenta    invented: there is no ground, but the march found some
 //   blue       early: the march stopped before the ground, or at something nearer
 //   orange     late: the march hit behind the first ground
-//   yellow     gave up: the march came to its step limit
+//   yellow     gave up: the march reached its step limit
 //   brown      not judged: the ray starts or enters below the surface and never hits it from above
 #pragma once
 
@@ -51,7 +51,7 @@ void validate(const ErrorSettings& settings);
 
 struct ErrorCounts {
   std::array<std::int64_t, kVerdicts> pixels{};  ///< by Verdict
-  std::string judges{};                          ///< names of their marches
+  std::string judges{};                          ///< names of the judges' marches
   std::vector<std::string> caveats{};            ///< Scene::caveats() of the judged scene
   double tolerance_m = 0;           ///< along the ray, of the field with the smallest cells; 0: fields have no cells
   double share = 0;                 ///< of the distance, the tolerance of fields without cells

@@ -11,7 +11,7 @@
 
 namespace scarp {
 
-/// Returns the tolerance along the ray of a true hit, in metres; `judges` is the scene that found it.
+/// Returns the tolerance along the ray for a true hit, in metres; `judges` is the scene that found the hit.
 double hit_tolerance(const Scene& judges, const Hit& truth, const ErrorSettings& settings);
 
 struct JudgedRays {
@@ -21,8 +21,8 @@ struct JudgedRays {
   int operator[](Verdict verdict) const { return rays[static_cast<std::size_t>(verdict)]; }
 };
 
-/// Judges the hits of `scene` for these rays by `judges`, Scene::judge() of the same objects. Throws Interrupted if
-/// `progress` returns false.
+/// Judges the hits of these rays on `scene` by those on `judges`, the result of Scene::judge() for the same objects.
+/// Throws Interrupted if `progress` returns false.
 JudgedRays judge_rays(const Scene& scene, const Scene& judges, std::span<const Ray> rays, const ErrorSettings& settings,
                       const Progress& progress = {});
 

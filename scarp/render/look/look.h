@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The looks of a picture: a table of names and properties, as marches have one. A look maps the hits of camera rays to
-// colours.
+// The looks of a picture: a table of names and properties, like that of the marches. A look maps the hits of camera
+// rays to colours.
 //
 //   shaded    materials lit by sun and sky, with exact hard shadows (or, with `samples`, soft shadows and ambient
 //             occlusion); water, haze or fog, sky

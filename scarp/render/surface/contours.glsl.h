@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contour lines of constant width in pixels over the colour of a surface: see ground_paint.h. Text of C++ and of GLSL.
+// Contour lines of constant width in pixels over the colour of a surface: see ground_paint.h. Compiles as C++ and GLSL.
 #ifndef SCARP_RENDER_CONTOURS_GLSL_H
 #define SCARP_RENDER_CONTOURS_GLSL_H
 
@@ -16,7 +16,7 @@ SCARP_FN real scarp_smooth(real from, real to, real x) {
   return s * s * (real(3.0) - real(2.0) * s);
 }
 
-/// Cosine to straight up that keeps slopes of walls finite.
+/// Minimum cosine to the vertical, which keeps the slopes of walls finite.
 const float kScarpLeastUpright = 1e-9f;
 
 /// Number of contour lines per heavy one, from height 0 on.
@@ -30,8 +30,9 @@ const float kScarpClearContours = 8.0f;
 /// picture: its slope there is only rounding of its samples.
 const float kScarpLevelContours = 1048576.0f;
 
-/// Metres of height that a pixel `footprint` metres wide covers; 0: level. The slope is limited to 1: no more than its
-/// length on the surface. Computed from x and y, because the rounding of 1 - z^2 would give level surfaces a slope.
+/// Metres of height that a pixel `footprint` metres wide covers; 0: level. The slope is limited to 1, so the result is
+/// at most the length on the surface. Computed from x and y, because the rounding of 1 - z^2 would give level surfaces
+/// a slope.
 SCARP_FN real scarp_height_per_pixel(real3 normal, real footprint) {
   real slope = sqrt(normal.x * normal.x + normal.y * normal.y) / max(normal.z, real(kScarpLeastUpright));
   return min(slope, real(1.0)) * footprint;
@@ -45,7 +46,7 @@ SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real f
   if (per_pixel * real(kScarpLevelContours) <= interval) return colour;
   real line = floor(height / interval + real(0.5));
   real pixels = abs(height - line * interval) / per_pixel;
-  // A tenth of a line, more than the rounding of the quotient.
+  // 0.1 is a tenth of a line, more than the rounding of the quotient.
   real fifth = abs(line) - real(kScarpHeavyContour) * floor(abs(line) / real(kScarpHeavyContour) + real(0.1));
   bool heavy = fifth == real(0.0);
   real width = heavy ? real(2.0) : real(1.1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Looks up a DetailTexture (detail_texture.h). Text of C++ and of GLSL. The including file must define before:
+// Looks up a DetailTexture (detail_texture.h). Compiles as C++ and GLSL. The including file must first define:
 //   struct ScarpTexels                                refers to the texels of all levels
 //   real scarp_texel(ScarpTexels texels, int index)   returns a texel: rows from the north, the finest level first
 #ifndef SCARP_RENDER_DETAIL_TEXTURE_GLSL_H

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Colours of ground: the formulas of ground_paint.h. Compiles as C++ and GLSL. The including file must define before:
+// Colours of ground: the formulas of ground_paint.h. Compiles as C++ and GLSL. The including file must first define:
 //   struct ScarpPaintPlace, a point on the ground, and
 //   real scarp_paint_noise(ScarpPaintPlace place, int set, int octave, real size)
-//                                              Perlin noise, seed octave + 1, of patches of so many metres; `set` and
+//                                              Perlin noise, seed octave + 1, of patches `size` metres large; `set` and
 //                                              `octave` name them: see scarp_patches()
 #ifndef SCARP_RENDER_GROUND_PAINT_GLSL_H
 #define SCARP_RENDER_GROUND_PAINT_GLSL_H
@@ -53,8 +53,9 @@ SCARP_FN real scarp_patches(ScarpPaintPlace place, int set, real detail_size, re
   return sum;
 }
 
-/// Rock, grass and snow, in linear light: `share` of the relief that the ground is high, `normal` unit, `from_sun` x
-/// and y away from the sun, `snow_share` where snow begins, `blur` and `rough` the patches of these sets.
+/// Rock, grass and snow, in linear light. `share`: height of the ground as a fraction of the relief; `normal`: unit;
+/// `from_sun`: x and y away from the sun; `snow_share`: fraction of the relief where snow begins; `blur` and `rough`:
+/// the patches of these sets.
 SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_share, real blur, real rough) {
   real steep = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z));
   vec3 colour =
@@ -64,7 +65,7 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   // Sines of slopes between which grass gives way to rock.
   colour = scarp_between(
       colour, rock, scarp_smooth(real(0.45), real(0.68), steep + real(0.10) * blur + real(0.35) * (share - real(0.5))));
-  // How much lower the snow line is on the shadowed side, the width of its border, and cosines below which it slides
+  // How much lower the snow line is on the shadowed side, the width of its border, and cosines below which snow slides
   // off.
   real line = snow_share - real(0.10) * (normal.x * from_sun.x + normal.y * from_sun.y);
   real snow = scarp_smooth(line - real(0.05), line + real(0.05), share + real(0.07) * blur) *
@@ -72,8 +73,8 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   return scarp_linear_from_srgb(scarp_between(colour, kScarpSnow, snow));
 }
 
-/// Position in a picture, 0..1 from its north-west corner, of a fraction of the extent; beyond 0..1 outside the
-/// picture. See Drape in ground_paint.h.
+/// Converts a fraction of the extent to a position in a picture: 0..1 from its north-west corner, beyond 0..1 outside
+/// the picture. See Drape in ground_paint.h.
 SCARP_FN real2 scarp_drape_place(real2 share, real2 first, real2 last, bool mirrored) {
   // The border of the extent, up to rounding.
   share = clamp(share, real2(0.0), real2(1.0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Colours of surfaces before any light, in two layers. The ground's own colour is a ramp by height, or `natural`. On
-// top of any colour, the ground's or a material's, lie an overlay, noise and contour lines.
+// Colours of surfaces before any light, in two layers. The ground's own colour is a ramp by height, or `natural`. An
+// overlay, noise and contour lines are painted over any colour, the ground's or a material's.
 //
 //   natural   rock on steep slopes; snow above a line that is lower on the shadowed side, where slopes hold it; else
 //             grass, darker below and drier above; noise blurs the borders
@@ -26,7 +26,7 @@ namespace scarp {
 struct Drape {
   int width = 0;                   ///< pixels, >= 1
   int height = 0;                  ///< pixels, >= 1
-  std::vector<std::uint8_t> rgba;  ///< 4 bytes a pixel, sRGB, from the north-west; opacity 0 shows the ground below
+  std::vector<std::uint8_t> rgba;  ///< 4 bytes per pixel, sRGB, from the north-west; opacity 0 shows the ground below
   dvec2 first{0.0}, last{1.0};     ///< corners of the first and the last pixel, last > first
   bool mirrored = false;  ///< for an extent mirrored as by source/mirrored.h; fractions then refer to its quarter
 };
@@ -38,14 +38,14 @@ struct GroundPaintSettings {
   double detail_size = 0;   ///< metres of the largest patches, or the width of the texture, >= 0;
                             ///< 0: sixteen cells
   std::shared_ptr<const DetailTexture> detail_texture{};  ///< instead of noise; null: noise
-  double contours = 0;                                    ///< metres from line to line, not exaggerated, >= 0; 0: none
+  double contours = 0;                                    ///< interval in metres, not exaggerated, >= 0; 0: none
   std::shared_ptr<const Drape> drape{};                   ///< null: none
 };
 
 /// Throws Error naming the first setting out of range.
 void validate(const GroundPaintSettings& settings);
 
-/// Every this many contour lines, one is heavy.
+/// Number of contour lines per heavy one.
 int lines_per_heavy_contour();
 
 /// Reference measures of the paint, in world space.
@@ -54,7 +54,7 @@ struct PaintExtent {
   double exaggeration = 1;       ///< factor contained in heights
   double cell = 1;               ///< metres of a cell or voxel
   dvec2 origin{0.0}, size{1.0};  ///< of the overlay, in metres: its south-west corner, and east and north from there
-  bool repeats = false;          ///< whether the overlay does
+  bool repeats = false;          ///< whether the overlay repeats
 };
 
 class GroundPaint {
@@ -70,7 +70,7 @@ class GroundPaint {
 
   const GroundPaintSettings& settings() const { return settings_; }
   const Ramp& ramp() const { return ramp_; }
-  /// Horizontally, with the sun's cosine.
+  /// Horizontal vector away from the sun; its length is the cosine of the sun's altitude.
   const dvec2& away_from_sun() const { return away_from_sun_; }
   /// Metres of the largest patches, or the width of the texture.
   double detail_size() const { return detail_size_; }
@@ -79,9 +79,9 @@ class GroundPaint {
     dvec2 along, across;
   };
   Patch patch(int set, int octave) const;
-  /// Exaggerated metres from line to line.
+  /// Interval between lines in exaggerated metres.
   double contour_interval() const;
-  double heavy_contour_interval() const;  ///< from one of those to the next
+  double heavy_contour_interval() const;  ///< between heavy lines
 
  private:
   vec3 draped(const dvec3& position, vec3 below) const;

@@ -19,8 +19,8 @@ struct ReliefRange {
 /// Names of all ramps: viridis, magma, inferno, plasma, grey, hypsometric.
 std::span<const std::string_view> ramp_names();
 
-/// A ramp laid over a range of values. `hypsometric` breaks at sea level: blues up to 0 (elevation models store the
-/// sea as 0), land colours above, each scaled to its own part of the range; the others run from end to end.
+/// A ramp over a range of values. `hypsometric` has a break at sea level: blues up to 0 (elevation models store the sea
+/// as 0), land colours above, each scaled to its own part of the range; the others span the whole range.
 class Ramp {
  public:
   /// low <= high. Throws Error listing the names if the ramp is unknown.
@@ -35,7 +35,7 @@ class Ramp {
     double low, high;
     std::vector<vec3> colours;  ///< evenly spaced from low to high, at least two
   };
-  /// From low to high; a value belongs to the first one that ends at or above it, or to the last.
+  /// From low to high; a value belongs to the first piece that ends at or above it, or to the last.
   std::span<const Piece> pieces() const { return pieces_; }
 
  private:

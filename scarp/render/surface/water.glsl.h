@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light in water: the formulas of water.h. Text of C++ and of GLSL.
+// Light in water: the formulas of water.h. Compiles as C++ and GLSL.
 #ifndef SCARP_RENDER_WATER_GLSL_H
 #define SCARP_RENDER_WATER_GLSL_H
 
@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// The reflected fraction, by Schlick's formula; `cosine` of the angle to the normal, `index` of refraction.
+/// The reflected fraction, by Schlick's formula. `cosine`: of the angle to the normal; `index`: index of refraction.
 SCARP_FN real scarp_schlick(real cosine, real index) {
   real root = (index - real(1.0)) / (index + real(1.0));
   real r0 = root * root;
@@ -15,11 +15,11 @@ SCARP_FN real scarp_schlick(real cosine, real index) {
   return r0 + (real(1.0) - r0) * c * c * c * c * c;
 }
 
-/// Mirrored at a unit normal against `direction`.
+/// Direction mirrored at a unit normal that points against it.
 SCARP_FN real3 scarp_reflected(real3 direction, real3 normal) {
   return direction - real(2.0) * dot(direction, normal) * normal;
 }
-/// Refracted on the way in (Snell).
+/// Direction refracted on entering the water (Snell).
 SCARP_FN real3 scarp_refracted(real3 direction, real3 normal, real index) {
   real ratio = real(1.0) / index;
   real cosine = -dot(direction, normal);
@@ -37,8 +37,8 @@ SCARP_FN real3 scarp_kept_above(real3 mirrored) {
 
 const int kScarpWaves = 7;
 
-/// Visible fraction of a wave of this length where a pixel is `footprint` metres wide: 0 if it is as long as two
-/// pixels, 1 if it is as long as four.
+/// Visible fraction of a wave of this length where a pixel is `footprint` metres wide: 0 if it is two pixels long or
+/// less, 1 if it is four or more.
 SCARP_FN real scarp_wave_seen(real wavelength, real footprint) {
   return clamp(wavelength / (real(2.0) * footprint) - real(1.0), real(0.0), real(1.0));
 }
@@ -73,17 +73,17 @@ SCARP_FN vec3 scarp_glitter(ScarpSky sky, vec3 sunlight, real3 view, real3 norma
   return vec3(min(seen.x, sky.disc.x), min(seen.y, sky.disc.y), min(seen.z, sky.disc.z));
 }
 
-/// The remaining fraction of light, per colour, after some metres (Beer).
+/// The remaining fraction of light, per colour, after `metres` of water (Beer).
 SCARP_FN vec3 scarp_left_after(vec3 per_metre, float metres) {
   return vec3(exp(-per_metre.x * metres), exp(-per_metre.y * metres), exp(-per_metre.z * metres));
 }
-/// The colour behind, seen through some metres of water of the colour `deep`.
+/// The colour `behind`, seen through `metres` of water of the colour `deep`.
 SCARP_FN vec3 scarp_through_water(vec3 behind, vec3 deep, vec3 per_metre, float metres) {
   vec3 left = scarp_left_after(per_metre, metres);
   return behind * left + deep * (vec3(1.0f) - left);
 }
-/// Metres that sunlight goes through the water to a bottom `depth` metres below its level. Below the surface the sun
-/// stands higher: sin = cos(altitude) / n from the vertical.
+/// Length in metres of the path of sunlight through the water to a bottom `depth` metres below its level. Below the
+/// surface the sun stands higher: sin = cos(altitude) / n from the vertical.
 SCARP_FN real scarp_sun_way(real depth, real to_sun_z, real index) {
   real sideways = sqrt(max(real(0.0), real(1.0) - to_sun_z * to_sun_z)) / index;
   return max(real(0.0), depth) / sqrt(real(1.0) - sideways * sideways);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Still water over the ground, up to a level: where rays hit it, and its reflection, refraction and absorption.
 //
-//    eye \      / reflected        the level is a plane, met in closed form: a coast is where the ground goes through
-//   ______\____/_______            it, to the last bit, and no step of any march can fray it
+//    eye \      / reflected        the level is a plane, intersected in closed form: a coast is where the ground
+//    crosses
+//   ______\____/_______            it, to the last bit, and no step size of a march can fray it
 //          \  .'  .               R  = R0 + (1 - R0) (1 - cos)^5, R0 = ((n - 1) / (n + 1))^2     (Schlick 1994)
 //           \    .                 the rest continues, refracted by Snell's law, to the bottom
 //      ______\_.'__                 and comes back as bottom * exp(-c d) + the water's own colour * (1 - exp(-c d))
@@ -47,7 +48,7 @@ class Water {
   Water(const WaterSettings& settings, const Scene& scene);
 
   const WaterSettings& settings() const { return settings_; }
-  /// Metres of world z: exaggerated as the terrain of the scene.
+  /// World z in metres, exaggerated like the terrain of the scene.
   double level() const { return level_; }
 
   struct Meeting {
@@ -93,9 +94,10 @@ class Water {
   vec3 deep_, per_metre_;
 };
 
-/// Mirrored at a unit normal that points against `direction`.
+/// Returns the direction mirrored at a unit normal that points against it.
 dvec3 reflected(const dvec3& direction, const dvec3& normal);
-/// Refracted on the way from air into water (Snell); both unit vectors, `normal` against `direction`.
+/// Returns the direction refracted on entering water from air (Snell). Both are unit vectors; `normal` points against
+/// `direction`.
 dvec3 refracted(const dvec3& direction, const dvec3& normal, double index = kWaterIndex);
 
 }  // namespace scarp
