@@ -44,8 +44,8 @@ struct RingLine {
 };
 
 /// `Projection` derives from it and has
-///   height(sample value, node) height that the sweep uses, in metres
-///   begin_ring(ring) selects the ring for all following calls
+///   height(sample value, node)      height that the sweep uses, in metres
+///   begin_ring(ring)                selects the ring for all following calls
 ///   is_beyond(ring)                 whether no node from this ring on matters
 ///   sides_of(ring)                  samples of the part, and one more on each side
 ///   u(side), s(height), s_previous(height), s_error(s)

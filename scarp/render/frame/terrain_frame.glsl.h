@@ -4,7 +4,7 @@
 //
 //   rays ──▶ march ──▶ take ──▶ water ──▶ march ──▶ take ──▶ light ──▶ march ──▶ take ──▶ ... ──▶ paint ──▶ resolve
 //   of the             what is  only if there is:            a ray to sun or sky for each       ground     pixels
-//   camera hit mirrored, to the bottom visible ground point
+//   camera             hit      mirrored, to the bottom      visible ground point
 //
 //   FramePush ──settings──▶ FrameSettings ──ramp──▶ pieces and colours of a ramp;  ──drape──▶ a picture on the ground
 //       │  ├──ground────▶ GroundBuffers

@@ -7,9 +7,8 @@
 //   height      T = exp(-integral of s exp(-(z - z0) / H)), air that thins out upwards by the factor e every H metres:
 //               with the ray's z = z_eye + t d the integral is s exp(-(z_eye - z0) / H) t (1 - exp(-x)) / x, x = t d /
 //               H
-//   iterations  T = 1 - steps / most steps              the cost of the march, as in the founding text on the
-//   semi-voxel
-//               caster: it depends on how the march steps, and is kept for comparison
+//   iterations  T = 1 - steps / most steps              cost of the march, as in the founding text on the semi-
+//               voxel caster: it depends on how the march steps, and is kept for comparison
 //
 // s follows from the visibility V, at which 2 % of a contrast are left: s = ln(50) / V (Koschmieder 1924). The colour
 // of the fog is that of the sky at the horizon. Below a plain sky, which has no sun disc, it blends to the colour of

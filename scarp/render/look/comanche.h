@@ -8,8 +8,8 @@
 //                     the picture, or on spheres (`shells`)
 //   coast             the first sample below the level (plain), or   the plane itself
 //                     between the last two samples
-//   crests            parts thinner than a step are missed all
-//   looking up ends where nothing is higher the same
+//   crests            parts thinner than a step are missed         all
+//   looking up        ends where nothing is higher                 the same
 //
 // `step_by_view` implements the text's proposal, long steps looking down and short ones at grazing angles: samples are
 // equally spaced on the map, not along the ray, so steep rays take steps up to kLongestStep times as long.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Still water over the ground, up to a level: where rays hit it, and its reflection, refraction and absorption.
 //
-//    eye \      / reflected        the level is a plane, intersected in closed form: a coast is where the ground
-//    crosses
+//    eye \      / reflected        the level is a plane, intersected in closed form: a coast is where ground crosses
 //   ______\____/_______            it, to the last bit, and no step size of a march can fray it
 //          \  .'  .               R  = R0 + (1 - R0) (1 - cos)^5, R0 = ((n - 1) / (n + 1))^2     (Schlick 1994)
 //           \    .                 the rest continues, refracted by Snell's law, to the bottom
