@@ -36,7 +36,7 @@ struct BulletPeer::Shape {
   double build_s = 0;
   bool accelerated = false;
 
-  // Bullet takes segments: the part of a ray over the field.
+  // Bullet takes segments. Returns the end of the part of a ray over the field.
   float end_of(const BenchRay& ray) const {
     float end = ray.t_max;
     const float o[3] = {ray.ox, ray.oy, ray.oz}, d[3] = {ray.dx, ray.dy, ray.dz};
@@ -72,7 +72,7 @@ BulletPeer::BulletPeer(const HeightField& field, bool accelerated) : shape_(std:
     }
   });
   const auto low = static_cast<float>(field.min_height()), high = static_cast<float>(field.max_height());
-  // The edge of a cell from its south-west to its north-east corner is Bullet's "flipped" one; Embree's is the other.
+  // Bullet's "flipped" diagonal runs from a cell's south-west to its north-east corner; Embree uses the other diagonal.
   shape_->shape = std::make_unique<btHeightfieldTerrainShape>(cols, rows, shape_->heights.data(), low, high, kUpAxis,
                                                               /*flipQuadEdges=*/true);
   if (accelerated) shape_->shape->buildAccelerator(kChunk);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bullet 3.24 on the same samples: btHeightfieldTerrainShape with its accelerator (a grid of height ranges over chunks
-// of 16 x 16 cells), queried by performRaycast() with its own triangle callback, one ray at a time.
+// of 16 x 16 cells), queried by performRaycast() with a custom triangle callback, one ray at a time.
 #pragma once
 
 #include <memory>

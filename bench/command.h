@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the commands of scarp-bench share: a command, its options and those of the report.
+// Shared by the commands of scarp-bench: a command, its options and those of the report.
 #pragma once
 
 #include <memory>

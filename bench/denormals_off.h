@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Embree recommends this for each thread that calls it. Undone afterwards: Scarp does not need it.
+// Flushes denormals to zero, as Embree recommends for each thread that calls it. Restored afterwards: Scarp does not
+// need it.
 #pragma once
 
 #include <pmmintrin.h>

@@ -12,7 +12,7 @@
 
 namespace scarp::bench {
 
-/// Returns the sum of the passes by the device's clock, in seconds. Throws Error if the device has none.
+/// Returns the total time of the passes in seconds, by the device's clock. Throws Error if the device has none.
 inline double device_seconds(const Device& device, std::span<const PassTime> passes) {
   constexpr double kNanosecond = 1e-9;
   double sum = 0;

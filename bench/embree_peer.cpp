@@ -156,7 +156,7 @@ std::vector<Engine> EmbreePeer::engines() const {
   for (const EmbreeMode& mode : embree_modes()) {
     Engine engine = common;
     engine.mode = mode.name;
-    // The reference is always measured.
+    // The reference is always measured in full.
     engine.on_trial = s.surface == EmbreeSurface::grid || !s.robust || engines.size() > 0;
     engine.trace = [&mode, scene = s.scene](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
       mode.trace(scene, mode, set, begin, end, answers);

@@ -22,7 +22,7 @@ EmbreeQuality find_embree_quality(std::string_view name);
 class EmbreePeer {
  public:
   /// Builds the scene and measures the time, including that for its vertices and indices. Throws Error with Embree's
-  /// own words. `robust`: RTC_SCENE_FLAG_ROBUST, else no flag.
+  /// message. `robust`: sets RTC_SCENE_FLAG_ROBUST; otherwise no flag is set.
   EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality, bool robust = true);
   ~EmbreePeer();
   EmbreePeer(const EmbreePeer&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the protocol measures: an engine that traces batches of rays.
+// The subject of the protocol: an engine that traces batches of rays.
 #pragma once
 
 #include <cstdint>
@@ -23,16 +23,17 @@ struct Engine {
   double bytes = 0;       ///< memory that tracing needs: samples or vertices, and the acceleration structure
   double peak_bytes = 0;  ///< peak memory during the build
   double build_s = 0;     ///< from samples to ready for tracing
-  /// One of many variants: timed in full only if it is among the fastest in a short trial.
+  /// Whether it is one of many variants, which are timed in full only if they are among the fastest in a short trial.
   bool on_trial = false;
-  /// Takes RaySet::fan: rays are numbered as there, and begin and end are those of strips of 16 columns.
+  /// Whether it takes RaySet::fan: rays are numbered as in the fan, and `begin` and `end` are bounds of strips of 16
+  /// columns.
   bool in_fans = false;
   /// Answers rays [begin, end) of a set, begin a multiple of 16, into answers[0 ...]. Called from several threads.
   std::function<void(const RaySet& set, std::int64_t begin, std::int64_t end, float* answers)> trace;
 
-  // For the judge; null in peers, whose surface differs.
-  std::function<Hit(const Ray& ray, MarchStats& stats)> closest;  ///< as the closest-hit function says
-  std::function<bool(const Ray& ray)> blocked;                    ///< as the function says that trace uses for any_hit
+  // For the judge; null for peers, whose surface differs.
+  std::function<Hit(const Ray& ray, MarchStats& stats)> closest;  ///< result of the closest-hit function
+  std::function<bool(const Ray& ray)> blocked;  ///< result of the function that `trace` uses for any_hit
 };
 
 }  // namespace scarp::bench

@@ -19,7 +19,7 @@
 namespace scarp::bench {
 namespace {
 
-// Like the metres of SRTM at 30 m.
+// Like SRTM, which has steps of 1 m at 30 m spacing.
 constexpr double kInt16Step = 0x1p-5;
 
 Surface surface_of(const FieldOptions& options) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ground of the benchmarks: procedural or a real DEM, always in cells. One world unit is the distance between two
-// columns, so that all engines see the same small numbers and an error in t is an error in cells.
+// The ground of the benchmarks: procedural or a real DEM, always in units of cells. One world unit is the distance
+// between two columns, so all engines get the same small numbers and an error in t is an error in cells.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct FieldOptions {
   std::uint64_t seed = 1;
   std::string dem;                   ///< a raster file instead of a procedural DEM
   std::string samples = "float32";   ///< of a procedural DEM; "int16": in steps of 1/32 cell
-  std::string surface = "bilinear";  ///< of Scarp, or "triangles"
+  std::string surface = "bilinear";  ///< surface of Scarp: this or "triangles"
 };
 
 /// A field and its description in results.
@@ -25,18 +25,18 @@ struct BenchField {
   HeightField field;
   std::string name;           ///< "ridged, seed 1" or the file's path
   double relief = 0;          ///< highest minus lowest point, in cells
-  double mean_slope_deg = 0;  ///< mean angle of the cells' slope in their middle
+  double mean_slope_deg = 0;  ///< mean slope angle at the centres of the cells
 };
 
-/// The samples, not exaggerated. Throws Error when the file cannot be used: unreadable, a
-/// single row or column, or with holes (over which the engines would answer different questions).
+/// The samples, not exaggerated. Throws Error if the file cannot be used: it is unreadable, has a single row or column,
+/// or has holes (which the engines treat differently).
 BenchField load_field(const FieldOptions& options);
 
 /// The same samples, not copied, under another exaggeration; `ground` must outlive the result.
 BenchField exaggerated(const BenchField& ground, double exaggeration);
 
 /// Height at (x, y) of the surface that triangle engines trace: two triangles per cell, split from (col+1, row) to
-/// (col, row+1). Nothing outside the field.
+/// (col, row+1). Nullopt outside the field.
 std::optional<double> triangle_height(const HeightField& field, double x, double y);
 
 }  // namespace scarp::bench

@@ -13,7 +13,7 @@
 
 namespace scarp::bench {
 
-/// `gpu`: the marches on a Vulkan device, and the article's comparison there.
+/// `gpu`: the marches on a Vulkan device, and the comparison of the max-mip article there.
 struct GpuOptions {
   FieldOptions field;
   std::string device = "auto";    ///< DeviceSettings::choice
@@ -28,8 +28,8 @@ struct GpuOptions {
   double pass_limit_s = 10;
   bool raster = false;
 };
-/// Primary rays beside the same triangles drawn; sizes 1025, 2049, 4097, 16385, on CPU devices 257, 513, 1025, 2049,
-/// 4097.
+/// Compares primary rays with drawing the same triangles. Sizes are 1025, 2049, 4097, 16385; on CPU devices 257, 513,
+/// 1025, 2049, 4097.
 void run_gpu_raster(const GpuOptions& options, const ReportOptions& report);
 
 }  // namespace scarp::bench

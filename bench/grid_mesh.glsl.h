@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-// Cells along the side of a patch: an instance, so that one small list of indices serves all of the grid.
+// Cells along the side of a patch. Each patch is an instance, so one small index list serves the whole grid.
 const uint kGridPatch = 64u;
 
 struct GridMeshPush {

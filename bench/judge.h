@@ -25,7 +25,7 @@ struct Judgement {
       0;  ///< fraction of the judge's hits that are reported more than kNear behind: the first hit was lost
   double early_rate = 0;  ///< the same, in front of it
   double off_rate = 0;    ///< fraction of all rays that are wrong, late or early
-  double exhausted = 0;   ///< fraction of rays that the engine gave up; they count as not reported
+  double exhausted = 0;   ///< fraction of rays on which the engine gave up; they count as not reported
   double steps = 0;       ///< mean positions evaluated per ray, MarchStats::steps
   double cell_tests = 0;  ///< mean cells intersected per ray
 };
@@ -38,7 +38,7 @@ class Judge {
   /// For engines that have `closest` and `blocked`. For any-hit sets, the answer comes from `blocked`, t and the cost
   /// from `closest`.
   Judgement judge(const Engine& engine) const;
-  /// For engines that take fans, over a set that is one.
+  /// For engines that take fans, over a set that is a fan.
   Judgement judge_fan(const Engine& engine) const;
 
   /// Indices of the sample's rays in the set, ascending.
@@ -49,7 +49,7 @@ class Judge {
     double t;
     MarchStats stats;
   };
-  /// The same for engines that have answered the sample, in its order.
+  /// The same for engines that have already answered the sample, in its order.
   Judgement score(const std::vector<Answer>& answers) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The grounds of `scarp-bench leaks`: every kind on which engines are known to lose rays, small enough for a core's
-// cache, and one large field.
+// The grounds of `scarp-bench leaks`: every kind on which engines are known to lose rays. All fit in a core's cache,
+// except one large field.
 #pragma once
 
 #include <cstdint>
@@ -37,11 +37,12 @@ struct Node {
 struct LeakField {
   std::string name;
   HeightField field;
-  std::optional<ProceduralDem> generator;  ///< where the samples are those of a procedural DEM
+  std::optional<ProceduralDem> generator;  ///< set if the samples are those of a procedural DEM
   MaxPyramid pyramid{field};
   HoleCounts holes{field};
   std::vector<Node> rim{};  ///< nodes with a height and with a hole beside them
-  /// Embree's triangles over the same samples: for fields with an end and without holes, in float32 alike.
+  /// Embree's triangles over the same samples: only for bounded fields without holes whose samples are exact in
+  /// float32.
   std::unique_ptr<EmbreePeer> embree{};
 
   HeightTarget target() const { return {&field, &pyramid}; }

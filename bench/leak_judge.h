@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Decides with certainty about one ray in O(1), without a march: whether it must hit, and whether a reported hit can be
-// one.
+// right.
 //
-// All is computed in 64-bit-mantissa long double from world coordinates, so the judge's own rounding is 2^-11 of the
-// marches'. B below is the bound of rounding errors of a clearance in a march: 16 u (abs(o_z) + abs(d_z t) + max
-// abs(sample) + (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md. Decisions
-// within B are not judged. None of the marches' own rules are used.
+// Everything is computed from world coordinates in long double with a 64-bit mantissa, so the judge's own rounding is
+// 2^-11 of the marches'. B below is the bound of rounding errors of a clearance in a march: 16 u (abs(o_z) + abs(d_z t)
+// + max abs(sample) + (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md.
+// Decisions within B are not judged. None of the marches' own rules are used.
 #pragma once
 
 #include <optional>
@@ -21,34 +21,36 @@ class LeakJudge {
 
   /// Whether the ray certainly hits: above the ground by more than B where it starts (or from the surface, which is
   /// above by definition), below it by more than B where it ends, and no hole among the cells that it can touch in
-  /// between: the clearance is continuous, so it goes through zero. Or, in solid ground, it enters through the border
-  /// below the surface. Or it passes from above all ground to below it, and moves so little sideways that rounding
-  /// cannot distinguish it from a vertical ray through a point of ground, borders and rims included.
+  /// between: the clearance is continuous, so it passes through zero. Or, in solid ground, the ray enters through the
+  /// border below the surface. Or it passes from above all ground to below it, and moves so little sideways that
+  /// rounding cannot distinguish it from a vertical ray through a point of the ground, borders and rims included.
   bool must_hit() const { return must_hit_; }
 
-  /// Why an answer has lost a hit, or null: it reports none, or one behind a position where a ray from above is already
-  /// below the ground by more than B, with no hole in between. The position is at the fraction `share` (0..1) of the
-  /// way to the hit.
+  /// Why an answer has lost a hit, or null. A hit is lost if the answer reports no hit, or a hit behind a position
+  /// where a ray from above is already below the ground by more than B, with no hole in between. The position is at the
+  /// fraction `share` (0..1) of the distance to the hit.
   const char* lost(const Hit& hit, double share) const;
 
   /// Why a reported hit is false, or null.
   ///  - It is not on the ray: cell, u and v against ray.at(t), by more than the sideways part of B.
-  ///  - It is not on the surface: there the clearance is at most 2 B, one for the signs that decided and one for the
-  ///    root (a backward-stable formula: the exact root for coefficients off by some u of their size).
-  ///  - It is a way out: along the piece of the cell before it, where the clearance is one parabola, the ray has risen
-  ///    monotonically from more than 2 B below. If the hit is at the entry of its cell, the cell before counts.
-  ///  - The ray is from the surface and in that cell never strictly below: by 5/16 B at least, since a hit needs a
-  ///    computed clearance below -B and numerics.md counts 11 of its 16 roundings.
-  ///  - A wall: not at a border or rim, or above the ground there by more than B.
+  ///  - It is not on the surface: there the clearance is at most 2 B: one B for the signs that decided and one for the
+  ///  root (a backward-stable formula gives the exact root for coefficients off by some u of their size).
+  ///  - It is an exit from the ground: along the piece of the cell before it, where the clearance is one parabola, the
+  ///  ray has risen monotonically from more than 2 B below. If the hit is at the entry of its cell, the previous cell
+  ///  counts.
+  ///  - The ray starts on the surface and is never strictly below it in that cell, by at least 5/16 B: a hit needs a
+  ///  computed clearance below -B, and numerics.md counts 11 of its 16 roundings.
+  ///  - It is on a wall, but not at a border or rim, or above the ground there by more than B.
   const char* false_hit(const Hit& hit) const;
 
   /// Why the status of an answer without a hit is wrong, or null: `below` for a ray that started above by more than B,
   /// `miss` for one that started below by more than B.
   const char* false_status(const Hit& hit) const;
 
-  /// A time after a hit at which the ray is below by more than 2 B and has been falling since, in the hit's cell: a ray
-  /// cut there still hits. And one before the hit, from which it has been falling from more than 2 B above: cut there
-  /// it does not hit, if nothing was hit before. Nullopt if rounding leaves no room.
+  /// cut_behind() returns a time after a hit, in the hit's cell, at which the ray is below by more than 2 B and has
+  /// been falling since the hit: a ray cut there still hits. cut_before() returns a time before the hit from which the
+  /// ray has been falling, from more than 2 B above: a ray cut there does not hit, if nothing was hit before. Nullopt
+  /// if rounding leaves no room.
   std::optional<double> cut_behind(const Hit& hit) const;
   std::optional<double> cut_before(const Hit& hit) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rays of `scarp-bench leaks`. Each is a function of seed, index, class and field alone: threads change nothing,
-// and a single ray can be reproduced without the others.
+// The rays of `scarp-bench leaks`. Each ray is a function only of seed, index, class and field: it does not depend on
+// the number of threads, and can be reproduced without the others.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class LeakClass : std::uint8_t {
   diagonals,  ///< the same at points of both diagonals
   axis,       ///< parallel to an axis, most of them along a grid line
   vertical,   ///< straight up and down, over nodes, edges and anywhere
-  tangent,    ///< level, at the height of a node on their way
+  tangent,    ///< level, at the height of a node on their path
   two_nodes,  ///< through two nodes
   border,     ///< starting on the border, along it, through its nodes and corners
   rims,       ///< at nodes beside holes, and past them
@@ -42,8 +42,8 @@ std::string_view name_of(LeakClass leak_class);
 bool suits(LeakClass leak_class, const LeakField& ground);
 
 /// A ray of the class; its range is finite. In the classes nodes, edges and diagonals, `in_float32` rays consist of
-/// float32 numbers, so that an engine in float gets the same rays; the others reach their point at exactly t = 1, if
-/// the field's own numbers allow it.
+/// float32 numbers, so that an engine in float gets the same rays; all other rays reach their point at exactly t = 1,
+/// if the field's own numbers allow it.
 Ray make_leak_ray(LeakClass leak_class, const LeakField& ground, Random& random, bool in_float32);
 
 }  // namespace scarp::bench

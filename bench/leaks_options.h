@@ -17,7 +17,7 @@ struct LeaksOptions {
   std::int64_t judge_every = 4096;        ///< one in this many rays over a small field is also traced by exhaustive
   std::int64_t embree_rays = 10'000'000;  ///< at most about this many are also traced by Embree; 0: none
   std::string dump;                       ///< file for the first failing rays; empty: leaks-SEED.txt
-  bool fans = false;                      ///< instead: fans beside the scalar march
+  bool fans = false;                      ///< instead: fans compared with the scalar march
   double fan_margin = 1;                  ///< factor of their margin; below 1, hits may be lost
 };
 /// Throws Error, after the report, when a ray was lost, false or contradictory.

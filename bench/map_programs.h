@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Programs that make viewsheds and shadows: `scarp` and its peers, as whole processes from one file to another.
+// Programs that compute viewsheds and shadows: `scarp` and its peers, run as whole processes from file to file.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,15 +13,15 @@ namespace scarp::bench {
 
 class MapPrograms {
  public:
-  /// Notes on stderr which of options.programs are not installed, and measures the others.
+  /// Prints to stderr which of options.programs are not installed. Only the others are measured.
   explicit MapPrograms(const MapsOptions& options);
 
-  /// Makes the DEM of this size and returns a row for each program, as README.md describes. A program that exceeds
-  /// options.program_limit_s gets no time, and no row in later calls.
+  /// Creates the DEM of this size and returns a row for each program, as README.md describes. A program that exceeds
+  /// options.program_limit_s has no time in its row, and no row in later calls.
   std::vector<nlohmann::ordered_json> measure(int size);
 
-  /// Number of options.observers at random positions that see each pixel: one run of scarp, and one run of
-  /// gdal_viewshed for each.
+  /// Measures cumulative viewsheds: for each pixel, the number of options.observers at random positions that see it.
+  /// Takes one run of scarp, and one run of gdal_viewshed per observer.
   std::vector<nlohmann::ordered_json> measure_cumulative(int size);
 
  private:

@@ -25,8 +25,8 @@ std::vector<scarp::Node> random_nodes(const HeightField& field, std::int64_t cou
 std::int64_t wrong_nodes(const HeightField& field, const std::vector<scarp::Node>& nodes,
                          const std::function<bool(scarp::Node, std::size_t)>& is_right);
 
-/// Up to 2048 x 2048 samples, all nodes by a sweep that is compared with a ray at `judged` random nodes. Above that
-/// size, this many random nodes by rays. Throws Error if a sweep and a ray differ.
+/// For up to 2048 x 2048 samples, computes all nodes by a sweep, and compares it with rays at `judged` random nodes.
+/// For larger fields, computes this many random nodes by rays. Throws Error if a sweep and a ray differ.
 MapTruth viewshed_truth(const Viewpoint& view, std::int64_t judged);
 MapTruth shadow_truth(const HeightField& field, const SunDirection& sun, std::int64_t judged);
 

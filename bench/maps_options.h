@@ -8,7 +8,8 @@
 
 namespace scarp::bench {
 
-/// `maps`: viewsheds, shadows and least visible heights of all nodes of procedural DEMs; `scarp` beside other programs.
+/// `maps`: viewsheds, shadows and least visible heights of all nodes of procedural DEMs; `scarp` compared with other
+/// programs.
 struct MapsOptions {
   std::vector<int> sizes{1024, 2048, 4096};
   std::string kind = "fbm";  ///< or "ridged"

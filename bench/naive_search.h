@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Finds settings at which naive is fine enough. Two settings let it step over ground: the minimum step, and the
-// fraction of the vertical distance that it assumes to be free. On steep ground the second alone loses hits at any
-// minimum step, so both are searched.
+// Finds settings at which naive is fine enough. Two settings can make it step over ground: the minimum step, and the
+// fraction of the vertical distance that it assumes to be free. On steep ground the fraction alone causes lost hits at
+// any minimum step, so both are searched.
 #pragma once
 
 #include <functional>
@@ -21,13 +21,13 @@ struct NaiveTrial {
   double steps = 0;  ///< mean per ray
 };
 
-/// The settings at which naive is good and takes the fewest steps: for each factor, halved from 0.7 on, the coarsest
-/// least step, halved from 1/64 on, at which it is good. Settings beyond the first of a factor that takes more than
-/// `most_steps` per ray are not tried. Nullopt if there are none.
+/// Returns the settings at which naive is good with the fewest steps. For each factor (0.7, halved repeatedly), tries
+/// minimum steps (1/64, halved repeatedly) until naive is good. Stops a factor at the first setting that takes more
+/// than `most_steps` per ray. Returns nullopt if no settings are good.
 std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
                                             double most_steps = std::numeric_limits<double>::infinity());
 
-/// Makes good settings of `cheapest_naive` coarser, first the tolerance, then the least step, then the factor (at most
+/// Coarsens good settings from `cheapest_naive`: first the tolerance, then the minimum step, then the factor (at most
 /// 1), each as long as naive stays good and takes fewer steps.
 NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // NanoVDB 32 over the same voxels: a grid of floats, 1 where a voxel is solid, followed by its own hierarchical DDA
-// from active node to active voxel, one ray at a time, in float as its documentation has it.
+// from active node to active voxel, one ray at a time, in float, as in its documentation.
 #pragma once
 
 #include <functional>
@@ -21,8 +21,8 @@ class NanovdbPeer {
   NanovdbPeer(NanovdbPeer&&) noexcept;
   ~NanovdbPeer();
 
-  /// Rays in the space of the grid. Modes: the distance by which the point that selects the next voxel is pushed across
-  /// a border, NanoVDB's own 1.0001 voxels or a ten-thousandth. The peer outlives its engines.
+  /// Rays are in the space of the grid. The modes are the distances by which the point that selects the next voxel is
+  /// pushed across a border: NanoVDB's own 1.0001 voxels, or a ten-thousandth. The peer outlives its engines.
   std::vector<VoxelEngine> engines() const;
 
  private:

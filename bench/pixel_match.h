@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A picture of voxels, ray by ray, compared with the same picture drawn as quads.
 //
-// The error of a ray, which is also the width of the margin about edges: quantised where it enters an object of L
-// voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel/voxel_ray.h),
-// sqrt(3) e in space. In the picture, at the depth W, that is at most
+// The error of a ray, which is also the width of the margin around edges: a ray that is quantised where it enters an
+// object of L voxels a side stays within e = 2^-21 + 2^-29 L voxel of the exact ray along each axis
+// (scarp/march/voxel/voxel_ray.h), sqrt(3) e in space. In the picture, at the depth W, that is at most
 //
 //   sqrt(3) e side sqrt(1 + x^2 + y^2) / (W pixel)     x, y: tangents of the angles at the picture's corner
 //
@@ -28,10 +28,10 @@ struct PixelMatch {
   std::int64_t pixels = 0, hits = 0;
   std::int64_t near_edges = 0;  ///< pixels closer to an edge than the margin
   std::int64_t differ = 0;  ///< of the others: another object, voxel or face than the quads, or t off by more than e
-  std::int64_t near_edge_wrong = 0;  ///< near an edge, and none of the faces that meet there
-  double ray_pixels = 0;             ///< derived bound of the error of a ray at the least depth of the picture
-  double t_error = 0;                ///< the largest of all t, in multiples of e
-  std::string first;                 ///< pixel that differs
+  std::int64_t near_edge_wrong = 0;  ///< near an edge, but the hit is on none of the faces that meet there
+  double ray_pixels = 0;             ///< derived bound on the error of a ray at the smallest depth in the picture
+  double t_error = 0;                ///< the largest error of t, in multiples of e
+  std::string first;                 ///< first pixel that differs
 };
 
 /// The rays of all pixels, row by row, and their hits.
@@ -47,8 +47,8 @@ struct NamedFrame {
   PictureFrame frame;
 };
 
-/// That of the post; from eight octants; along the axes, with and without perspective; out of an object. All except the
-/// first show 32 x 4 x 32 objects.
+/// The frame of the post; from eight octants; along the axes, with and without perspective; from inside an object. All
+/// except the first show 32 x 4 x 32 objects.
 std::vector<NamedFrame> pixel_match_frames(int width, int height);
 
 }  // namespace scarp::bench

@@ -49,9 +49,9 @@ inline std::set<std::string> names_in(const std::string& text) {
   return {std::sregex_token_iterator(text.begin(), text.end(), name), std::sregex_token_iterator()};
 }
 
-/// The fields of the rows are those that bench/README.md describes: each is named in the section of the command, or in
-/// those that it refers to, and each in the first column of its table of fields is in some row. "a_runs, b_size, ..."
-/// means all fields with these endings.
+/// Expects that rows have exactly the fields that bench/README.md describes: each field is named in the section of the
+/// command or in a section that it refers to, and each name in the first column of the table of fields is in some row.
+/// "a_runs, b_size, ..." means all fields with these endings.
 inline void expect_documented(const nlohmann::json& all, const std::string& command) {
   for (const char* field : {"machine", "command", "date", "rows"}) EXPECT_TRUE(all.contains(field)) << field;
   EXPECT_TRUE(all["machine"].is_string());

@@ -10,7 +10,7 @@ namespace scarp::bench {
 
 struct ProgramRun {
   double wall_s = 0;
-  double cpu_s = 0;  ///< of the program and all that it started
+  double cpu_s = 0;  ///< of the program and all processes that it started
   /// Peak resident memory of the largest of these processes in MB; nullopt without GNU time.
   std::optional<double> peak_mb = std::nullopt;
 };
@@ -19,10 +19,10 @@ struct ProgramRun {
 /// stopped with its children. Throws Error if it cannot be started or fails.
 std::optional<ProgramRun> run_program(std::vector<std::string> words, const std::string& folder, double limit_s);
 
-/// Whether a program of this name is on PATH.
+/// Whether a program with this name is on PATH.
 bool is_installed(const std::string& program);
 
-/// A folder for temporary files, removed with all that is in it.
+/// A folder for temporary files, removed with all its contents.
 class ScratchFolder {
  public:
   ScratchFolder();

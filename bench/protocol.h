@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How time is measured: each engine is warmed up by a whole pass, then passes of all engines take turns (A, B, C, A, B,
-// C, ...), so that disturbances of the machine affect all of them; the median counts.
+// Time measurement: each engine is warmed up by a whole pass, then passes of all engines take turns (A, B, C, A, B, C,
+// ...), so that disturbances of the machine affect all of them; the median counts.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Stopwatch {
   std::int64_t wall_ns_, cpu_ns_;
 };
 
-/// The median; of two middle values the lower. `values` must not be empty.
+/// The median, or the lower of two middle values. `values` must not be empty.
 double median(std::vector<double> values);
 
 struct ProtocolOptions {
@@ -35,10 +35,11 @@ struct Timing {
   double mrays_per_s = 0;      ///< median pass, by the wall clock
   double mrays_per_cpu_s = 0;  ///< median pass, by the processor time of all threads: least affected by other processes
   double spread = 0;           ///< (slowest - fastest pass) / median pass, by the wall clock
-  double busy = 0;  ///< processor time / (wall time * threads) of all counted passes; well below 1: others were running
+  double busy =
+      0;  ///< processor time / (wall time * threads) of all counted passes; well below 1: other processes were running
   std::int64_t rays = 0;  ///< traced per pass
   std::int64_t hits = 0;
-  bool in_full = true;  ///< false: a trial pass, of an engine that is not among the fastest
+  bool in_full = true;  ///< false: only a trial pass, because the engine is not among the fastest
 };
 
 /// One Timing per engine. All engines get the same threads, blocks and repeats.

@@ -4,8 +4,8 @@
 //
 //   corner  (X, Y, W) = (right, up, forward) . (corner - eye), X and Y in pixels; W = 1 without perspective
 //   edge    e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign gives the side, e / |(e_x, e_y)| pixels away
-//   inside  all four edges have the sign of the quad; right for quads that reach behind the eye, too
-//   depth   at (x, y) that of the plane: t = (k - eye_a) / direction_a
+//   inside  all four edges have the sign of the quad; also right for quads that reach behind the eye
+//   depth that of the plane at (x, y): t = (k - eye_a) / direction_a
 //
 // Sources: M. Olano, T. Greer, "Triangle scan conversion using 2D homogeneous coordinates", Graphics Hardware 1997;
 // J. Pineda, "A parallel algorithm for polygon rasterization", SIGGRAPH 1988.
@@ -14,8 +14,8 @@
 // by less than 2^-29 pixel (three products of 2^19 pixels), an edge of length L by that and 2^-29 / L (a product of two
 // coordinates, 2^22 pixels, divided by L). That is below 2^-20 pixel for L above 2^-9; faces with a shorter edge are
 // narrower than two margins of 1e-3 and cover nothing. A pixel that is farther than the margin from all edges is
-// therefore decided. Two faces that cover it meet at edges, if at all: at the pixel they are a margin's width apart,
-// 2^-20 voxel or more, and depths are known to 2^-40.
+// therefore decided. Two faces that cover the pixel can meet only at edges. At the pixel they are therefore a margin's
+// width apart, 2^-20 voxel or more, and depths are known to 2^-40.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct PictureFrame {
   Ray ray(int col, int row) const;
 };
 
-/// Looks from `eye` at `target`; top: which way is up. The picture is `fov` radians high, or, without perspective,
+/// Looks from `eye` at `target`; `top` is the up direction. The picture is `fov` radians high, or, without perspective,
 /// `high` long.
 PictureFrame frame_looking(const dvec3& eye, const dvec3& target, const dvec3& top, double fov, int width, int height);
 PictureFrame frame_along(const dvec3& eye, const dvec3& forward, const dvec3& top, double high, int width, int height);
@@ -57,11 +57,11 @@ struct VoxelFaceAt {
   ivec3 voxel;
   VoxelFace face;
 };
-/// All of them.
+/// All faces between a solid and an empty voxel.
 std::vector<VoxelFaceAt> faces_of(const VoxelGrid& grid);
 
 struct SeenFace {
-  double t = std::numeric_limits<double>::infinity();  ///< of PictureFrame::ray(); infinity: nothing is seen
+  double t = std::numeric_limits<double>::infinity();  ///< of PictureFrame::ray(); infinity: nothing is visible
   FaceOf face;
 };
 
@@ -74,7 +74,7 @@ struct NearEdge {
 
 struct RasterPicture {
   std::vector<SeenFace> seen;        ///< the nearest per pixel that covers it by more than the margin
-  std::vector<NearEdge> near_edges;  ///< by pixel, only visible ones: in part nearer than `seen`
+  std::vector<NearEdge> near_edges;  ///< by pixel; only faces that are partly nearer than `seen`
   double least_depth = std::numeric_limits<double>::infinity();  ///< along `forward`, of visible faces
 };
 

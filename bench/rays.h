@@ -7,14 +7,14 @@
 //   ao        from the primary hits, cosine-distributed about the surface normal; in their order
 //   grazing   from random points of the surface, 3 degrees above the horizon, any azimuth
 //   nodes     from far above at nodes, points of edges and points of diagonals, ending below the ground: each must hit
-//   lidar     a scanner 2 cells above the ground: rows of elevation, each all around
+//   lidar     a scanner 2 cells above the ground: rows of equal elevation over all azimuths
 //   lidar-ground  the same scanner on the ground
-//   near      the pixels of primary by a camera 3 cells above the ground that looks along it
+//   near      the pixels of `primary` from a camera 3 cells above the ground that looks along it
 //   lidar64   the scanner of lidar with 64 rows, as on cars
 //   chunk     from points spread evenly over the field to the same sun, as for a shadow map of it; in tiles of 8 x 8
 //
-// Rays from the surface start slightly above both surfaces, the bilinear one and the two triangles (kLift), so that no
-// engine benefits from special rules for rays that start on its surface.
+// Rays from the surface start slightly above both the bilinear surface and the two triangles (kLift), so that no engine
+// benefits from special rules for rays that start on its surface.
 #pragma once
 
 #include <cstdint>
@@ -65,7 +65,7 @@ struct alignas(16) RayRecord {
 /// The same rays, from t = 0, with all bits of the mask.
 std::vector<RayRecord> records_of(const std::vector<BenchRay>& rays);
 
-/// The rays of a camera or a scanner as fans want them: in strips of 16 columns, row by row in each.
+/// The rays of a camera or a scanner in the layout of fans: strips of 16 columns, row by row in each.
 struct RayFan {
   dvec3 origin{0.0};
   int columns = 0, rows = 0;  ///< columns: a multiple of 16; 0: the set is not a fan
@@ -83,7 +83,7 @@ struct RaySet {
   std::vector<RayPacket> packets{};  ///< the same rays in the layout of packet engines
   std::vector<RayRecord> records{};  ///< the same rays one after the other, in Embree's layout
   std::vector<Ray> library_rays{};   ///< the same rays in the library's layout
-  RayFan fan{};                      ///< the same rays, if they are one
+  RayFan fan{};                      ///< the same rays, if they form a fan
 
   std::int64_t size() const { return static_cast<std::int64_t>(rays.size()); }
 };
@@ -100,7 +100,8 @@ struct RayCounts {
 /// The camera of the primary rays and the sun of the shadow rays.
 struct RayView {
   std::string_view name = "over the south";
-  dvec3 eye{0.5, 0.02, 0.05};    ///< fractions of width and depth, and of the longer of them above the highest point
+  dvec3 eye{0.5, 0.02,
+            0.05};  ///< fractions of width and depth; height above the highest point as a fraction of the longer side
   dvec3 target{0.5, 0.5, 0.5};   ///< fractions of width, depth and relief
   double sun_azimuth_deg = 315;  ///< compass
   double sun_altitude_deg = 20;

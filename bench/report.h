@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results for programs and for people: the JSON and CSV of all commands, and plain tables.
+// Output for programs and for human readers: the JSON and CSV of all commands, and plain tables.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,11 +15,12 @@ struct ReportOptions {
   std::string csv{};    ///< likewise
 };
 
-/// Throws Error if the file cannot be written, so that a long run does not lose its figures.
+/// Throws Error if the file cannot be written, so that a long run does not lose its results.
 void require_writable(const std::string& path);
 
 /// Writes the files of `options`: JSON is {machine, command, date, rows}; CSV has the first three as comments, and the
-/// rows as bench/results keeps them. Throws Error if a file cannot be written; it is then not left or changed.
+/// rows in the format of bench/results. Throws Error if a file cannot be written; it is then neither created nor
+/// changed.
 void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows);
 
 /// A number with this many significant digits, as short as possible; "-" for null.

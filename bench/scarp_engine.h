@@ -22,10 +22,10 @@ class ScarpGround {
   /// One march of the table under the given settings. Any-hit rays use the march's any-hit function if it has one.
   Engine engine(const HeightMarchEntry& march, const MarchSettings& settings = {}) const;
 
-  /// The same, but any-hit rays are answered by the closest hit.
+  /// The same, but any-hit rays use the closest-hit function.
   Engine closest_only(const HeightMarchEntry& march, const MarchSettings& settings = {}) const;
 
-  /// `max-mip` in vectors, with all optimisations or some.
+  /// `max-mip` in vectors, with all or some of the optimisations.
   Engine vectors(const std::string& mode, const VectorOptions& options = {}) const;
 
   /// `max-mip` in fans, for sets that are fans.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Contacts in scenes of many objects: voxel balls of 2 m and hills of 2 x 2 m, at the placements of `objects`, whose
+// Contacts in scenes with many objects: voxel balls of 2 m and hills of 2 x 2 m, at the placements of `objects`, whose
 // fields are 0 or 1. Spheres of 0.5 m move by 1 m, boxes of 1 m do not move, closest points are searched without a
 // limit, all at random positions in the cube of the objects.
 #pragma once

@@ -13,7 +13,7 @@
 
 namespace scarp::bench {
 
-/// Every shader of the library, as its owners list them.
+/// Every shader of the library, from the lists of its components.
 std::vector<ShaderProgram> library_shaders();
 
 /// Returns the compilers of SPIR-V and of RADV for a family of cards ("navi21"), with their versions. Changes

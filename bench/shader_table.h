@@ -32,22 +32,22 @@ inline constexpr std::array<ShaderFigure, 10> kShaderFigures = {{
 /// One shader in one specialisation, compiled for one family of cards.
 struct ShaderRow {
   std::string shader, specialisation, family;
-  std::array<std::optional<std::int64_t>, kShaderFigures.size()> figures{};  ///< empty: the driver does not report it
+  std::array<std::optional<std::int64_t>, kShaderFigures.size()> figures{};  ///< empty if the driver does not report it
 
   bool operator==(const ShaderRow&) const = default;
 };
 
 struct ShaderTable {
-  std::string compilers;  ///< of SPIR-V and of the driver, with versions: other versions, other figures
+  std::string compilers;  ///< compilers of SPIR-V and of the driver, with versions; other versions give other figures
   std::vector<ShaderRow> rows;
 };
 
-/// A CSV file after one line of comment. Throws Error if it cannot be read or has other columns.
+/// Reads a CSV file that starts with one line of comment. Throws Error if it cannot be read or has other columns.
 ShaderTable read_shader_table(const std::string& file);
 /// Throws Error if the file cannot be written.
 void write_shader_table(const std::string& file, const ShaderTable& table);
 
-/// Returns one line for each judged figure of `found` that is above that of `kept`, and for each row missing in either.
+/// Returns one line for each judged figure in `found` that exceeds that in `kept`, and for each row missing in either.
 std::vector<std::string> shader_breaches(const ShaderTable& kept, const ShaderTable& found);
 
 }  // namespace scarp::bench

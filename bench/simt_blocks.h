@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Blocks of the marches' shaders, as SCARP_COUNT (vk/glsl_cpp.h) names them in the text, and the cost of each for a
+// Blocks of the marches' shaders, as SCARP_COUNT (vk/glsl_cpp.h) names them in the source, and the cost of each for a
 // bundle of rays: instructions of the compiled shader.
 //
 // bench/simt_blocks.csv keeps the counts: Mesa's RADV for navi21, rays in wavefronts of 64, float32 samples, no holes,
 // walls, wraps or triangles. A row is one block of one shader, with the basic blocks of the disassembly that belong to
 // it. Every basic block belongs to one block, so the counts add up to the shader's instructions. A basic block is
-// counted with the block of the text whose lanes execute it; what joins two branches counts with the block around them.
+// counted with the source block whose lanes execute it; code that joins two branches counts with the block around them.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@
 namespace scarp::bench {
 
 enum class SimtBlock : std::uint8_t {
-  begin,   ///< once: code that is the same for all rays
-  frame,   ///< the ray is read and a frame starts where it has got to; also the end of a frame, after the inner loop
-  walk,    ///< max-mip: an iteration of the walk
-  cell,    ///< the surface in a cell
-  probe,   ///< sampling marches: an iteration
-  hit,     ///< where a march ends at a point
+  begin,  ///< once: code that is the same for all rays
+  frame,  ///< the ray is read and a frame starts at its current position; also the end of a frame, after the inner loop
+  walk,   ///< max-mip: an iteration of the walk
+  cell,   ///< the surface in a cell
+  probe,  ///< sampling marches: an iteration
+  hit,    ///< where a march ends at a point
   answer,  ///< the answer is written: in the shader's main, which is not compiled as C++
   end,     ///< once
   unused,  ///< code for settings that are not counted, and for rays that are left to the second pass
@@ -31,7 +31,7 @@ enum class SimtBlock : std::uint8_t {
   // Voxel marches: their walk is an iteration of the march, and their frame is a node of the hierarchy over the
   // objects.
   object,  ///< the ray is quantised in an object's box
-  turned,  ///< its direction is quantised, for objects rotated differently from the last
+  turned,  ///< the ray's direction is quantised, for objects rotated differently from the previous one
   cross,   ///< one plane is crossed
   skip,    ///< planes up to the end of empty space
   sector,  ///< a sector is read, around an empty brick
@@ -71,8 +71,8 @@ constexpr SimtNesting nesting(SimtBlock block) {
 /// Cost for a bundle each time that one of its rays enters the block.
 struct SimtCost {
   int instructions = 0;  ///< all, memory instructions included
-  int vector = 0;        ///< arithmetic of the rays' own values
-  int memory = 0;        ///< loads and stores of the rays' own addresses
+  int vector = 0;        ///< arithmetic on the rays' own values
+  int memory = 0;        ///< loads and stores at the rays' own addresses
 
   bool operator==(const SimtCost&) const = default;
 };
@@ -93,12 +93,12 @@ struct SimtShaders {
   std::string compilers;  ///< with versions
   std::vector<SimtShader> shaders;
 
-  /// Throws Error if there is none of this name.
+  /// Throws Error if there is no shader with this name.
   SimtShader& find(std::string_view name);
 };
 
-/// Reads a table as write_simt_shaders() writes it. Throws Error if it cannot be read, or if the blocks of a shader do
-/// not add up to its instructions.
+/// Reads a table in the format of write_simt_shaders(). Throws Error if it cannot be read, or if the blocks of a shader
+/// do not add up to its instructions.
 SimtShaders read_simt_shaders(const std::string& file);
 /// Throws Error if the file cannot be written.
 void write_simt_shaders(const std::string& file, const SimtShaders& shaders);
@@ -108,8 +108,8 @@ struct SimtOptions;
 struct ReportOptions;
 void run_simt_voxels(const SimtOptions& options, SimtShaders shaders, const ReportOptions& report);
 
-/// Recounts the blocks of a shader, by its basic blocks, in RADV's disassembly of it. Throws Error that names the basic
-/// blocks that belong to none or to several blocks, or to one that the disassembly lacks.
+/// Recounts the blocks of a shader, by its basic blocks, in RADV's disassembly of it. Throws Error naming the basic
+/// blocks that belong to no block or to several, or that the disassembly lacks.
 SimtShader count_blocks(const SimtShader& shader, std::string_view disassembly);
 
 }  // namespace scarp::bench

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Rays in lockstep: the cost of a bundle of rays on a device whose lanes share one instruction stream.
 //
-//   SimtTrace of each ray ──▶ replay: loops go on until the slowest ray is done, ──▶ SimtBundle
+//   SimtTrace of each ray ──▶ replay: loops run until the slowest ray is done, ──▶ SimtBundle
 //                             a block is paid for if any ray enters it
 //
-// Lanes meet again after each branch and behind each loop, nested loops included. That is what compilers for such
-// devices make of structured control flow.
+// Lanes reconverge after each branch and after each loop, nested loops included. Compilers for such devices translate
+// structured control flow in this way.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace scarp::bench {
 class SimtTrace {
  public:
   void enter(SimtBlock block) { events_.push_back(kBlockBit | static_cast<std::uint64_t>(block)); }
-  /// At most 16 bytes, by one instruction; the address is below 2^56.
+  /// Records a read of at most 16 bytes by one instruction; the address must be below 2^56.
   void fetch(std::uint64_t address, std::uint64_t bytes) { events_.push_back(address | bytes << kBytesShift); }
   void clear() { events_.clear(); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The record of the current ray, for files that compile the shaders' text as C++. Include this before any of that text:
-// it defines SCARP_COUNT.
+// The record of the current ray, for files that compile the shader source as C++. Include this before any shader
+// source: it defines SCARP_COUNT.
 #pragma once
 
 #define SCARP_COUNT(block) ::scarp::bench::note_block(::scarp::bench::SimtBlock::block)

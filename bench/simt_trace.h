@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shader text of max-mip and naive, run on the CPU one ray at a time, with a record of what each ray does.
+// The shader source of max-mip and naive, run on the CPU one ray at a time, with a record of what each ray does.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace scarp::bench {
 
-/// A field in the layout that it has in device memory (accel/ground_buffers.glsl.h). float32 samples without holes;
-/// neither copied nor owned.
+/// A field in its device-memory layout (accel/ground_buffers.glsl.h). float32 samples without holes; neither copied nor
+/// owned.
 class SimtGround {
  public:
   /// Builds the quads, on all threads. Throws Error for a field for which the counted shaders are not compiled.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shader text of voxel marches, run on the CPU one ray at a time, with a record of what each ray does
+// The shader source of voxel marches, run on the CPU one ray at a time, with a record of what each ray does
 // (simt_bundle.h). The walk through the hierarchy over the objects, which is not compiled as C++, is reimplemented
 // here.
 #pragma once
@@ -12,14 +12,14 @@
 
 namespace scarp::bench {
 
-/// Voxel objects in the layout that they have in device memory.
+/// Voxel objects in their device-memory layout.
 class SimtVoxels {
  public:
   /// All models have the same march, which must run on devices. Their voxels count as cubes.
   explicit SimtVoxels(const PlacedVoxels& voxels);
   ~SimtVoxels();
 
-  /// The answer as computed by a device. `trace` may be null.
+  /// Returns the hit that a device would compute. `trace` may be null.
   Hit trace(const Ray& ray, SimtTrace* trace) const;
 
  private:

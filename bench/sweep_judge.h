@@ -24,7 +24,7 @@ inline double to_segment(const dvec3& p, const dvec3& a, const dvec3& b) {
   return length(a + along * (b - a) - p);
 }
 
-// To the plane where the foot is inside, else to the nearest side.
+// The distance to the plane if the foot of the perpendicular is inside, otherwise to the nearest side.
 inline double to_triangle(const dvec3& p, const JudgedTriangle& t) {
   const auto& [a, b, c] = t;
   const dvec3 n = cross(b - a, c - a);
@@ -34,7 +34,7 @@ inline double to_triangle(const dvec3& p, const JudgedTriangle& t) {
   return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
 }
 
-// The least of the ends' distances and, where both feet are inside, that of the two lines.
+// The smallest distance of the ends and, if both feet are inside, of the two lines.
 inline double between_segments(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
   double best = std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
   const dvec3 u = b - a, v = d - c, n = cross(u, v), w = c - a;
@@ -96,8 +96,8 @@ struct JudgedSweep {
   double rounding() const { return 64 * 0x1p-53 * (length(a) + length(b) + length(motion) + radius); }
 
  private:
-  // Triangles farther out of reach than this, in metres, are skipped: far more than rounding over the few metres of
-  // judged fields.
+  // Triangles that are out of reach by more than this, in metres, are skipped: far more than rounding over the few
+  // metres of judged fields.
   static constexpr double kMargin = 0x1p-20;
 
   bool out_of_reach(const JudgedTriangle& t, double end) const {
@@ -135,7 +135,7 @@ inline std::vector<JudgedTriangle> all_triangles(const HeightField& field, int p
 }
 
 /// Error of an answer: the capsule's penetration before the contact, in metres, and the distance of the contact from a
-/// touch. 0 for both within rounding. `off`: metres that the triangles are off the surface.
+/// touch. 0 for both within rounding. `off`: distance in metres of the triangles from the surface.
 struct SweepError {
   double tunnelled = 0;
   double untouched = 0;
@@ -147,7 +147,7 @@ inline SweepError judge_sweep(const JudgedSweep& sweep, const std::vector<Judged
   double nearest = std::numeric_limits<double>::infinity();
   for (const JudgedTriangle& triangle : triangles) {
     const double deepest = sweep.deepest(triangle, end);
-    // A capsule that overlaps at its start touches at once, at any depth.
+    // A capsule that overlaps at its start touches immediately, at any depth.
     if (!(hit && t == 0)) error.tunnelled = std::max(error.tunnelled, sweep.radius - slack - deepest);
     if (hit && deepest <= sweep.radius + slack) nearest = std::min(nearest, sweep.distance(triangle, end));
   }

@@ -14,7 +14,7 @@ namespace scarp::bench {
 
 constexpr int kLeastSize = 33, kMostSize = 32767;  ///< samples per side; the limit of Embree's grids
 
-/// Which ground, rays and threads; shared by the commands that trace rays.
+/// Ground, rays and threads; shared by the commands that trace rays.
 struct TraceOptions {
   FieldOptions field;
   RayCounts rays;
@@ -39,11 +39,11 @@ void add_pass_limit_option(cli::Command& command, double& seconds, const char* w
 void add_classes_option(cli::Command& command, std::vector<std::string>& classes, std::vector<std::string> known = {});
 /// --threads, --repeats, --ray-seed, --pass-limit and --rays.
 void add_measure_options(cli::Command& command, TraceOptions& trace);
-/// Those, --dem, --kind, --seed, --exaggerations and --judged.
+/// The options of add_measure_options(), and --dem, --kind, --seed, --exaggerations and --judged.
 void add_trace_options(cli::Command& command, TraceOptions& trace);
 /// --target, --samples and --surface.
 void add_field_options(cli::Command& command, TraceOptions& trace);
-/// --rays full or small: reads(size).
+/// Declares --rays full or small, which calls reads(size).
 void add_ray_size_option(cli::Command& command, cli::Setter reads, const char* note);
 
 }  // namespace scarp::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `scarp-bench voxels` measures: an engine that traces batches of rays at voxels.
+// The subject of `scarp-bench voxels`: an engine that traces batches of rays against voxels.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ struct VoxelEngine {
   std::string mode;  ///< x1: one ray at a time; x64, x8: this many neighbours at once
   std::string box;   ///< part of objects that rays traverse: grid or bounds
   double mib = 0;    ///< with one model for all objects
-  /// hits[i] answers rays[i]: status, t, voxel and part. On one thread.
+  /// Sets hits[i] for rays[i]: status, t, voxel and part. Uses one thread.
   std::function<void(std::span<const Ray> rays, std::span<Hit> hits)> trace;
 };
 

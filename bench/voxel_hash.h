@@ -4,8 +4,8 @@
 //
 //   place(p) = (p + offset[p mod r]) mod m     m^3 places for n voxels, r^3 offsets, no two voxels in one place
 //
-// Whether a voxel is solid is known from its bit, so no key is stored. Source: S. Lefebvre, H. Hoppe, "Perfect spatial
-// hashing", SIGGRAPH 2006. Cost: entry_bits per place and three bytes per offset; building it is a search.
+// A bit states whether a voxel is solid, so no key is stored. Source: S. Lefebvre, H. Hoppe, "Perfect spatial hashing",
+// SIGGRAPH 2006. Cost: entry_bits per place and three bytes per offset; building it is a search.
 #pragma once
 
 #include <array>

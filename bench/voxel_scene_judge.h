@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Judges scenes of turned voxel objects: all of them are written into one grid, and a ray is followed through it in
+// Judges scenes of turned voxel objects: all of them are written into one grid, and a ray is traced through it in
 // integers. Shares no code and no rounding with the marches.
 //
-//   scene   objects in all 48 orientations at whole places, touching and overlapping
+//   scene   objects in all 48 orientations at integer positions, touching and overlapping
 //   grid    cell (x, y, z) of the lattice -> solid or not
 //   ray     origin in halves of a voxel, direction of whole numbers, ends in whole multiples of it
 //
@@ -10,9 +10,9 @@
 // plane belongs to the upper side, and a ray that starts on a plane to the cell that it enters.
 //
 // Half of the scenes have sides and places that are rounded, such as 0.1 m at 371.3 m: there a plane has a slightly
-// different place in each object, and a ray a slightly different one than any plane. Rays along planes must be answered
-// all the same, exactly by the rule. Where a rounded ray crosses several planes at once, any order is admissible, but
-// none may lead it between two cells that touch.
+// different position in each object, and a ray one that differs slightly from any plane. Results for rays along planes
+// must nevertheless follow the rule exactly. Where a rounded ray crosses several planes at once, any order is
+// admissible, but the ray must not pass between two cells that touch.
 #pragma once
 
 #include <algorithm>
@@ -117,7 +117,7 @@ class VoxelSceneJudge {
 
   const PlacedVoxels& placed() const { return placed_; }
 
-  /// Whether a ray's numbers are exact in every object.
+  /// Whether a ray's coordinates are exact in every object.
   bool exact(const LatticeRay& ray) const { return ray.exact && !rounded_; }
 
   /// The same objects as separate fields, rotated and partly scaled by their placements; mirrored ones are mirrored in
@@ -171,7 +171,7 @@ class VoxelSceneJudge {
     }
     if (ray.direction == std::array<std::int64_t, 3>{})
       ray.direction[static_cast<std::size_t>(random.below(3))] = random.below(2) ? 1 : -1;
-    // Outside of the scene, or in it.
+    // Outside the scene or in it.
     if (random.below(2)) {
       const std::int64_t back = random.below(64);
       for (std::size_t i = 0; i < 3; ++i) ray.origin[i] -= back * ray.direction[i];
@@ -210,7 +210,7 @@ class VoxelSceneJudge {
       for (std::size_t i = 0; i < 3; ++i) at[i] -= axes >> i & 1 ? step[i] : 0;
       return at;
     };
-    // A rounded start may lie behind its planes.
+    // A rounded start may be behind its planes.
     if (rounded_) {
       for (unsigned axes = begun; axes != 0; axes = (axes - 1) & begun) enter(behind(axes), 0, 1, answer);
     }
@@ -285,8 +285,8 @@ class VoxelSceneJudge {
     return true;
   }
 
-  // Enters the cells around planes that are crossed at once, in any order; behind(axes) is the cell that has those
-  // still ahead. Returns whether no order leads past all solid ones.
+  // Enters the cells around planes that are crossed at the same time, in any order. behind(axes) is the cell before the
+  // planes of these axes are crossed. Returns whether every order leads into a solid cell.
   template <class Behind>
   bool enter_around(const Behind& behind, unsigned axes, std::int64_t num, std::int64_t den,
                     LatticeAnswer& answer) const {
@@ -314,7 +314,7 @@ class VoxelSceneJudge {
   }
 
   std::vector<std::uint8_t> solid_;
-  bool rounded_;  // whether sides or places are
+  bool rounded_;  // whether sides or positions are rounded
   double side_;
   dvec3 base_;             // of the lattice in the world, in metres
   ivec3 corner_;           // and from there, in voxels

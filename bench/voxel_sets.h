@@ -32,7 +32,7 @@ std::vector<VoxelPlace> object_places(int n);
 std::vector<Ray> camera_rays(int stride);
 
 /// Rays at a box at the origin from eight sides, one per octant of directions, twice its diagonal away: width x width
-/// pixels each, in tiles likewise. All numbers are floats.
+/// pixels each, also in tiles. All numbers are exact in float.
 std::vector<Ray> octant_rays(const dvec3& size, int width);
 
 }  // namespace scarp::bench

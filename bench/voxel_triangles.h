@@ -2,7 +2,7 @@
 // Voxels drawn by a Vulkan device as two triangles per face between a solid and an empty voxel: a peer of the marches,
 // and a second judge of their pictures.
 //
-// Rasterisers round corners to a fraction of a pixel, so near edges they show neighbouring faces. A corner is off by at
+// Rasterisers round corners to a fraction of a pixel, so they show neighbouring faces near edges. A corner is off by at
 // most
 //
 //   2^-(bits + 1)               the device's sub-pixel grid, along either axis
@@ -24,7 +24,7 @@ namespace scarp::bench {
 
 class VoxelTriangles {
  public:
-  /// Objects as rasterise() has them.
+  /// Objects as for rasterise().
   VoxelTriangles(const Device& device, const VoxelGrid& grid, std::span<const VoxelPlace> places);
   VoxelTriangles(VoxelTriangles&&) noexcept;
   VoxelTriangles& operator=(VoxelTriangles&&) noexcept;
@@ -49,7 +49,7 @@ class VoxelTriangles {
 struct TrianglesMatch {
   std::int64_t pixels = 0;
   std::int64_t near_edges = 0;  ///< pixels within the snap of an edge
-  std::int64_t other = 0;       ///< of these, those that do not show the face that the ray hits
+  std::int64_t other = 0;       ///< pixels among these that do not show the face that the ray hits
   std::int64_t differ = 0;      ///< of the others
   std::string first;            ///< pixel that differs
 };
@@ -58,7 +58,7 @@ struct TrianglesMatch {
 TrianglesMatch compare_with_triangles(const RasterPicture& quads, std::span<const Hit> drawn, std::span<const Hit> hits,
                                       const PictureFrame& frame);
 
-/// The picture in the types of the library's calls.
+/// Converts the picture to the library's type.
 VoxelPicture picture_of(const PictureFrame& frame);
 
 }  // namespace scarp::bench

@@ -27,14 +27,15 @@ HeightField solid(const HeightField& field) {
       [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
 
-// The first cell of a ray that starts at a place and moves by (cols, rows) per t.
+// The first cell of a ray that starts at a position and moves by (cols, rows) per t.
 struct FirstCell {
   Cell cell;
   bool ground;  // not a hole
   double exit;  // t
 };
 
-// Nullopt if the ray leaves the field at once. A ray along a line between two cells is in one with ground.
+// Nullopt if the ray leaves the field immediately. A ray along the line between two cells is in a cell with ground, if
+// there is one.
 std::optional<FirstCell> first_cell(const HeightField& field, double col, double row, double cols, double rows) {
   const auto index = [](double at, double step, int cells) {
     return step > 0   ? static_cast<int>(std::floor(at))
@@ -60,7 +61,7 @@ std::optional<FirstCell> first_cell(const HeightField& field, double col, double
   return first;
 }
 
-// Starts a ray on the surface, or where it is inside a hole.
+// Starts a ray on the surface, or free inside a hole.
 void start_in(const FirstCell& first, Ray& ray) {
   if (first.ground) {
     ray.start = RayStart::on_surface;
@@ -70,7 +71,7 @@ void start_in(const FirstCell& first, Ray& ray) {
   }
 }
 
-// Least clearance between the ends, at crossings and where a bilinear cell is nearest to the line.
+// Finds the least clearance between the ends, at crossings and where a bilinear cell is nearest to the line.
 void find_clearance(const HeightField& field, const SightLine& line, LineOfSight& result) {
   std::vector<double> times{0, 1};
   const auto cross = [&](double from, double to) {
@@ -92,7 +93,7 @@ void find_clearance(const HeightField& field, const SightLine& line, LineOfSight
                     std::min(static_cast<int>(line.row(middle)), field.cell_rows() - 1)};
     const auto corners = field.cell_heights(cell);
     if (!corners) continue;
-    // A quadratic, by three of its values.
+    // A quadratic, determined from three of its values.
     const auto clearance = [&](double along) {
       const double u = line.col(along) - cell.col, v = line.row(along) - cell.row;
       return line.eye() + along * (line.target() - line.eye()) -
@@ -134,7 +135,7 @@ Shade BilinearGround::shade(const SunRay& sun, Node node) const {
 Hit BilinearGround::block(Ray ray) const {
   const Hit hit = march_max_mip(target(), ray);
   if (!hit || ray.start == RayStart::on_surface || hit.wall) return hit;
-  // A free ray hits what it touches. From there on it hits only where it is strictly below.
+  // A free ray hits ground that it only touches. From there on it hits only where it is strictly below.
   if (!(hit.t < ray.t_max)) return {};
   ray.t_min = hit.t;
   ray.start = RayStart::on_surface;
@@ -171,7 +172,7 @@ LineOfSight BilinearGround::line_of_sight(const SightEnd& from, const SightEnd& 
   if (!hit) {
     const Hit from_target = block(back);
     if (!from_target) return result;
-    // The first obstruction as seen by the observer.
+    // The obstruction nearest to the observer.
     forth.t_max = 1 - from_target.t;
     hit = block(forth);
     if (!hit) {

@@ -13,7 +13,7 @@ constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 int blocks(int samples, int side) { return (samples + side - 1) / side; }
 
-// Writes the maximum of each column over rows [begin, end); `none` for holes alone.
+// Writes the maximum of each column over rows [begin, end); `none` if all are holes.
 template <class T>
 void column_maxima(const SampleGrid<T>& grid, int begin, int end, T none, T* out) {
   std::fill(out, out + grid.cols, none);
@@ -33,7 +33,7 @@ BlockMaxima::BlockMaxima(const HeightField& field) {
   const int rows = blocks(field.rows(), kSide), cols = blocks(field.cols(), kSide);
   fine_ = {cols, std::vector<double>(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows))};
   field.visit([&]<class T>(const SampleGrid<T>& grid) {
-    // Integers have no -infinity: a block of holes alone then counts as its type's lowest value.
+    // Integers have no -infinity, so a block with only holes counts as the lowest value of its type.
     const T none =
         std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity() : std::numeric_limits<T>::lowest();
     parallel_for(rows, 4, [&](std::int64_t first, std::int64_t last) {

@@ -52,7 +52,7 @@ namespace {
 // least_clearing() in long doubles. Returns false if their rounding may change the answer: always where they are
 // doubles.
 bool quick_clearing(const CrossingTerms& t, double& least) {
-  // Each difference, product, sum and quotient is off by half a unit; terms are taken from e, where they are small.
+  // Each difference, product, sum and quotient is off by half a unit; terms are relative to e, where they are small.
   constexpr long double kRounding = 4 * std::numeric_limits<long double>::epsilon();
   if (t.w0 + t.w1 != t.v0 + t.v1) return false;
   const long double a = (static_cast<long double>(t.g0) - t.e) * t.w0,

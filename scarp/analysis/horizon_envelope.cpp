@@ -27,7 +27,7 @@ HorizonEnvelope::HorizonEnvelope(const HorizonEdges& edges) : edges_(edges) {
 }
 
 std::size_t HorizonEnvelope::find(double u, std::size_t hint) const {
-  // Callers move on by few pieces at a time.
+  // Callers advance by a few pieces at a time.
   for (int i = 0; i < 4; ++i, ++hint) {
     if (hint + 1 >= pieces_.size() || pieces_[hint + 1].begin > u) return hint;
   }
@@ -46,7 +46,7 @@ bool HorizonEnvelope::is_sure(std::size_t i, double u) const {
   return !blurred(i, u) && pieces_[i].slack == 0 && (pieces_[i].begin != u || pieces_[i - 1].slack == 0);
 }
 
-// Whether u is so near to an end of the piece that rounding may have put it on the wrong side.
+// Whether u is so close to an end of the piece that rounding may have put it on the wrong side.
 bool HorizonEnvelope::blurred(std::size_t i, double u) const {
   return (pieces_[i].blur > 0 && u - pieces_[i].begin <= kBeside * pieces_[i].blur) ||
          (pieces_[i + 1].blur > 0 && pieces_[i + 1].begin - u <= kBeside * pieces_[i + 1].blur);
@@ -65,7 +65,7 @@ HorizonEnvelope::Answer HorizonEnvelope::test(std::size_t i, double u, double s,
   };
   const Piece& piece = pieces_[i];
   if (blocks(piece)) return Answer::blocked;
-  // Drops: the edge before ends here, and is closed.
+  // Drops: the previous edge ends here and includes its end.
   if (piece.begin == u && blocks(pieces_[i - 1])) return Answer::blocked;
   if (blurred(i, u) && std::abs(piece.line.at(u) - s) <= piece.error + s_error) return Answer::unsure;
   return visible ? Answer::visible : Answer::unsure;

@@ -26,7 +26,7 @@ SightEnd rounded(const HeightField& field, SightEnd end, std::string_view name) 
   return end;
 }
 
-// Metres above sea of an end; `ground` becomes the ground below it.
+// Returns the height of an end in metres above sea; sets `ground` to the ground below it.
 double height_of(const SightGround& heights, const SightEnd& end, std::string_view name, double& ground) {
   const auto found = heights.height_at(end.col, end.row);
   ground = found.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -53,9 +53,9 @@ SightLine::SightLine(const HeightField& field, const SightEnd& from, const Sight
 
 namespace {
 
-// Looks for the obstruction and the least clearance, piece by piece along the line, outwards. Pieces are skipped if the
-// line passes above all their nodes by more than the least clearance so far: they can neither block the line nor reduce
-// the clearance.
+// Searches for the obstruction and the least clearance, piece by piece, outwards along the line. Pieces are skipped if
+// the line passes above all their nodes by more than the least clearance so far: they can neither block the line nor
+// reduce the clearance.
 class Search {
  public:
   Search(const SightLine& line, const BlockMaxima* maxima) : line_(line) {

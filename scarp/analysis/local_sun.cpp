@@ -20,7 +20,8 @@ dvec2 metres_per_degree(double latitude) {
   return {kRadians * kAxis / w * std::cos(latitude * kRadians), kRadians * kAxis * (1 - kEccentricity2) / (w2 * w)};
 }
 
-// The nodes [first, first + count) of an axis of `nodes`, and those beside them: an axis of one node has two outside.
+// The nodes [first, first + count) of an axis of `nodes`, and their neighbours: on an axis of one node, both neighbours
+// are outside the field.
 struct Reach {
   int first, count;
   Reach(int from, int to, int nodes)
@@ -114,7 +115,7 @@ std::vector<float> local_lit_share(const SunGround& ground, const LocalSun& sun,
       return altitude <= 0 || ground.shade(sun_ray(steps, {at.azimuth, altitude}), node) != Shade::lit;
     };
     const auto is_up = [&](const SunStrip& strip) { return at.altitude + strip.rise <= std::numbers::pi / 2; };
-    // A strip above a lit one is lit: its ray is higher at every crossing.
+    // A strip above a lit strip is lit: its ray is higher at every crossing.
     const auto end = std::partition_point(strips.begin(), strips.end(), is_up);
     float lit = 0;
     for (auto strip = std::partition_point(strips.begin(), end, is_dark); strip != end; ++strip) lit += strip->share;

@@ -57,7 +57,7 @@ std::vector<Value> fill_rows(const Viewpoint& view, const RowBand& band, Value g
   return map;
 }
 
-// A ray blocks no more once it is above all ground.
+// A ray is no longer blocked once it is above all ground.
 RowBand rows_towards(const HeightField& field, const SunDirection& sun, const RowBand& band) {
   const SunRay ray = sun_ray(field, sun);
   const double relief = field.max_height() - field.min_height();

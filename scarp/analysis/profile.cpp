@@ -40,7 +40,7 @@ std::vector<ProfilePoint> profile(const SightLine& line) {
       ++hole;
     }
   }
-  // Seen from the eye, the steepest point so far hides what is below it.
+  // The steepest point so far, as seen from the eye, hides everything below it.
   double steepest = -std::numeric_limits<double>::infinity();
   for (ProfilePoint& point : points) {
     if (point.along == 0) continue;

@@ -63,7 +63,7 @@ class ShadowStrip : public RingSweep<ShadowStrip<T>, T> {
   int about_side(double u) const { return static_cast<int>((u - u_of_ring_) / kUnit); }
   double sides_per_u() const { return 1 / kUnit; }
   bool has_previous() const { return x_ > 1; }
-  // Through the previous ring's edge on the spoke's side, which is also in the part.
+  // Known from the previous ring's edge on the spoke's side, which is also in the part.
   bool is_inner_known(int side) const { return across_ > 0 ? side + 1 < frame_.sides() : side > 0; }
   bool spoke_is_right(int) const { return across_ < 0; }
 

@@ -78,7 +78,7 @@ Shade shade(const SightGround& ground, const SunRay& sun, Node node) {
     // The ray rises: once above all ground it is free.
     return sign_of({highest, w, 0, 0, *height, w, sun.rise, steps}) > 0;
   };
-  // The first line of the larger axis is the first of both.
+  // The first grid line crossed is always one of the larger axis.
   const int larger = std::abs(sun.col) >= std::abs(sun.row) ? 0 : 1;
   visit_crossings(line, larger, field.cols(), field.rows(), false, clears);
   if (blocked) return at_first ? Shade::self_shaded : Shade::cast_shadow;

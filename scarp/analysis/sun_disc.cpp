@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kDiscStrips = 16;
 
-// Area of the unit disc below a height of -1 to 1, as a share.
+// Fraction of the unit disc's area that is below a height of -1 to 1.
 double area_below(double y) { return 0.5 + (y * std::sqrt(1 - y * y) + std::asin(y)) / std::numbers::pi; }
 
 std::array<SunStrip, kDiscStrips> make_strips() {

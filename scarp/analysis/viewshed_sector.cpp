@@ -39,7 +39,7 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
     x_ = frame_.x(ring);
     x_previous_ = x_ - 1;
   }
-  // By the distance of the node straight ahead: rounding keeps the order of distances.
+  // Decided by the distance of the node straight ahead: rounding preserves the order of distances.
   bool is_beyond(int ring) const {
     const Node ahead = frame_.node(ring, frame_.side(0));
     const double limit = view_.settings().max_distance;
@@ -82,8 +82,8 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
     line.to = {ring_, side + 1};
     return line;
   }
-  // From the sample (ring, side) towards the observer, to the previous ring. There s = inner / x, or, where that ring
-  // is the observer's, the line is that of the plane through the observer and both samples.
+  // From the sample (ring, side) towards the observer, to the previous ring. On that ring, s = inner / x; if it is the
+  // observer's ring, the line is that of the plane through the observer and both samples.
   HorizonLine spoke(int side) const {
     const double y = frame_.y(side), outer = now_[side], inner = previous_[side], rise = outer - inner;
     HorizonLine line;
@@ -203,7 +203,7 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
   static constexpr double kCut = 2;  // beyond the sector: where spokes from the observer's ring are cut
 
   std::ptrdiff_t index(Node node) const { return static_cast<std::ptrdiff_t>(node.row) * grid_.cols + node.col; }
-  // Whether the result of a node with a sample is needed.
+  // Whether the result is needed for a node that has a sample.
   bool is_asked(Node node) const {
     if (maps_.codes) return maps_.codes[index(node)] == Seen::hidden;
     return !view_.has_limits() || view_.in_range(node, view_.target(*view_.ground().lowered(node)));

@@ -19,7 +19,7 @@ constexpr double kMachineEpsilon = std::numeric_limits<double>::epsilon();
 struct AxisCrossings {
   int first, last;  // grid lines strictly between the ends
   double start;     // cells along the axis
-  double per_line;  // of the line from end to end
+  double per_line;  // fraction of the line per grid line
   double across;    // cells at the start, along the other axis
   double slope;     // cells of the other axis per grid line
 };
@@ -44,7 +44,7 @@ class VisibleLine {
     const SightEnd &from = line.from(), &to = line.to();
     axes_[0] = axis_crossings(from.col, to.col, from.row, to.row);
     axes_[1] = axis_crossings(from.row, to.row, from.col, to.col);
-    // A position has two roundings of numbers below the field's sides, and a factor with two more.
+    // A position has two roundings of numbers smaller than the field's sides, and a factor with two more.
     place_error_ = 4 * kMachineEpsilon * std::max(grid.cols, grid.rows);
     // Each of at most eight operations has an error of half a unit of terms no larger than these.
     ends_error_ = 8 * kMachineEpsilon * (std::abs(line.eye()) + std::abs(line.target()));
@@ -83,7 +83,7 @@ class VisibleLine {
     for (int k = std::max(low, lines.first); k <= std::min(high, lines.last); ++k) {
       const double steps = k - lines.start, place = lines.across + lines.slope * steps;
       const double below = std::floor(place), part = place - below;
-      // Beside a node, which samples count is not certain.
+      // Next to a node, it is uncertain which samples count.
       if (part < place_error_ || part > 1 - place_error_) {
         if (blocks(axis, k)) return false;
         continue;
@@ -105,7 +105,7 @@ class VisibleLine {
     const double height = field_.height_from_sample(static_cast<double>(sample));
     return axis == 0 ? line_.ground().lowered(height, k, j) : line_.ground().lowered(height, j, k);
   }
-  // Exactly.
+  // Decides exactly.
   bool blocks(int axis, int k) const {
     bool blocked = false;
     visit_sight(line_, axis,

@@ -13,10 +13,10 @@
 namespace scarp {
 namespace {
 
-// Share of the picture that automatic framing leaves free on each side.
+// Fraction of the picture that automatic framing leaves free on each side.
 constexpr double kMargin = 0.03;
-// Minimum distance from the box, as a fraction of its diagonal: a level view of flat ground would otherwise fit from
-// its very border.
+// Minimum distance from the box, as a fraction of its diagonal: otherwise a level view would fit flat ground from its
+// very border.
 constexpr double kLeastDistance = 0.05;
 
 void require_fov(double fov_deg) {
@@ -25,8 +25,8 @@ void require_fov(double fov_deg) {
 
 bool finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// The eye's positions across one axis of the picture at which all points are between its two edges: `low` + tangent * z
-// to `high` - tangent * z, for an eye at depth z.
+// The positions of the eye along one axis of the picture at which all points are inside its two edges: `low` + tangent
+// * z to `high` - tangent * z, for an eye at depth z.
 struct Across {
   double tangent;
   double low = -std::numeric_limits<double>::infinity();
@@ -101,7 +101,7 @@ Camera Camera::framed(const WorldBox& box, const ViewSettings& settings, double 
   camera.eye_ = middle + sideways.middle() * camera.right_ + upwards.middle() * camera.up_ +
                 std::max(1.0, settings.distance) * depth * camera.forward_;
   if (settings.distance < 1) {
-    // Its position beside the box's centre is also that of an eye with the whole box in front of it.
+    // The lateral position is that of an eye with the whole box in front of it.
     const dvec3 near = focus.value_or(middle);
     camera.eye_ = near + settings.distance * (camera.eye_ - near);
   }
@@ -117,7 +117,7 @@ Camera Camera::top(const WorldBox& box, int width, int height) {
   camera.width_ = width;
   camera.height_ = height;
   camera.orthographic_ = true;
-  // Any height above the field will do: the rays are parallel.
+  // Any height above the field is suitable: the rays are parallel.
   camera.eye_ = box.middle() + dvec3(0, 0, size.x + size.y + size.z);
   return camera;
 }
@@ -158,7 +158,7 @@ std::optional<dvec2> Camera::pixel(const dvec3& p_world) const {
 }
 
 glm::dmat4 Camera::camera_from_world() const {
-  // The axes are orthonormal: the inverse turns by the transpose. GLM's matrices are written down column by column.
+  // The axes are orthonormal, so the inverse rotation is the transpose. GLM's matrices are listed column by column.
   const dvec3 eye(dot(right_, eye_), dot(up_, eye_), dot(forward_, eye_));
   return {right_.x, up_.x, forward_.x, 0, right_.y, up_.y,  forward_.y, 0,
           right_.z, up_.z, forward_.z, 0, -eye.x,   -eye.y, -eye.z,     1};

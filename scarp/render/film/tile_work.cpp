@@ -20,10 +20,11 @@ namespace {
 using Question = RayRound::Question;
 
 constexpr std::size_t kRaysAtOnce = 1 << 18;  // on a device
-// Areas that fans look at: enough for many threads, and as high as possible. With most tiles: 2^17 points, 1 MiB.
+// Areas that are traced by fans: enough for many threads, and as high as possible. An area of the maximum size has 2^17
+// points, 1 MiB.
 constexpr std::int64_t kAreas = 128, kMostTilesOfArea = 128;
 
-// A round whose memory the next tile reuses.
+// A round whose memory is reused by the next tile.
 struct KeptRound : RayRound {
   KeptRound() { borrow(rays), borrow(from), borrow(sights), borrow(hits), borrow(steps), borrow(blocked); }
   ~KeptRound() { keep(rays), keep(from), keep(sights), keep(hits), keep(steps), keep(blocked); }
@@ -54,7 +55,7 @@ struct OpenTile {
   std::unique_ptr<TileWork> work;
   RayRound round;
   bool open = true;
-  std::size_t first = 0;  // of its rays in the batch
+  std::size_t first = 0;  // index of its first ray in the batch
 };
 
 // One batch for all tiles with the same query.
@@ -166,8 +167,8 @@ void work_on_camera_tiles(const Scene& scene, const Camera& camera, int width, i
     return work_on_tiles(
         scene, tiles, most_rays, [&](const PixelTile& tile) { return make(tile, nullptr); }, progress);
   }
-  // The first tile of an area looks for all of it; the others wait. Tiles are the pieces, so that a picture ends soon
-  // when it is stopped.
+  // The first tile of an area traces the fans of the whole area; the others wait. Work is divided by tiles, so that a
+  // picture ends soon after it is stopped.
   struct Area {
     std::once_flag looked;
     std::optional<CameraSights> sights;

@@ -11,9 +11,9 @@
 namespace scarp {
 namespace {
 
-// The lattice of rays: its meshes are 20 pixels wide in a picture of the default size.
+// The lattice of rays: they are 20 pixels apart in a picture of the default size.
 constexpr int kAcross = 64, kDown = 36;
-// Lines on less of the sloping ground than this are easily missed.
+// Lines on a smaller fraction of the sloping ground than this are easily missed.
 constexpr double kSeen = 0.01;
 
 // The smallest of 1, 2 and 5 times a power of ten that is not below x > 0.
@@ -25,7 +25,7 @@ double rounded_up(double x) {
   return 10 * power;
 }
 
-// Metres of height that a pixel covers, where the ground slopes.
+// The heights, in metres, that pixels cover, where the ground slopes.
 std::vector<double> heights_per_pixel(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
   std::vector<Ray> rays;
   for (int row = 0; row < kDown; ++row) {

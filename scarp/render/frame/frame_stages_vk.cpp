@@ -32,8 +32,8 @@ constexpr std::uint32_t kResolveWords[] = {
 #include "scarp/render/frame/terrain_frame_resolve.comp.inc"
 };
 
-// Pixels with water have three rays, of which the mirrored one and the one to the bottom are under way together. Their
-// hits are also lit together; where there is water, the camera sees no ground.
+// Pixels with water have three rays. The mirrored ray and the ray to the bottom are traced together, and their hits are
+// lit together; where there is water, the camera sees no ground.
 std::uint64_t seens_per_pixel(bool water) { return water ? glsl::kFrameSeens : 1; }
 std::uint64_t rays_per_pixel(bool water) { return water ? 2 : 1; }
 
@@ -53,7 +53,7 @@ int lights(const glsl::FrameSettings& s, std::uint32_t parts) {
   return (parts & glsl::kFrameHasShadows) != 0 ? 1 : 0;
 }
 
-// For rays whose cell_time is the time between two samples.
+// Sampling for rays whose cell_time is the time between two samples.
 glsl::ScarpSampling samples(int interpolate, int max_steps) {
   return glsl::scarp_fixed_step(1, interpolate != 0 ? glsl::kScarpRefineSecant : glsl::kScarpRefineNone, max_steps);
 }
@@ -120,7 +120,7 @@ ShaderProgram FrameStages::program_of(const Stage& stage, Take take, bool steppe
   parts &= stage.parts;
   // The purpose of a ray determines how its hit is stored.
   if (stage.number == Stage::kTake.number && take != Take::light) parts = 0;
-  // Constants that a shader does not have are ignored.
+  // Constants that a shader does not declare are ignored.
   return {stage.file,
           stepped ? "fixed-step" : "max-mip",
           stage.words,

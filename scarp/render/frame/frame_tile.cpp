@@ -20,13 +20,13 @@ constexpr std::size_t kPointsAhead = 8;
 // Surfaces of voxels, shapes and meshes in the plane of the water: rounding decides which of the two a ray hits first.
 // Relative to the distance, or to the diagonal of the scene if that is longer. Rays through voxels are rounded most, by
 // 2^-20 of a voxel (and 2^-28 of the direction), and no voxel is longer than the diagonal. For terrain, the samples
-// themselves determine where it is level with the water.
+// themselves determine where the ground is level with the water.
 constexpr double kCoincident = 0x1p-20;
 
 }  // namespace
 
 std::size_t most_rays_of(const FrameView& view) {
-  // A point is water, which sends two rays on, or a surface, which sends one at most.
+  // A point is either water, which sends two further rays, or a surface, which sends at most one.
   const std::size_t per_point = std::max<std::size_t>(view.water() ? 2 : 1, view.lighting().most_rays());
   return std::min(kMostRaysOfRound, kMostPointsOfTile * per_point);
 }
@@ -72,7 +72,7 @@ bool FrameTile::shows_steps() const {
   return view_.settings().look == Look::comanche && view_.settings().comanche.iterations;
 }
 
-// Returns false if it is resolved here, without the scene.
+// Returns false if the round is resolved here, without the scene.
 bool FrameTile::look(RayRound& round) {
   asked_ = true;
   if (const StepMarch* march = view_.step_march()) {
@@ -130,7 +130,7 @@ double FrameTile::coincidence(double t) const {
   return kCoincident * std::max(t, box.empty() ? 1.0 : length(box.high - box.low));
 }
 
-// The water is in front of surfaces in its plane; sides of the basin are behind.
+// Water is in front of surfaces in its plane; the sides of the basin are behind them.
 bool FrameTile::is_before(const Water::Meeting& meeting, const Hit& hit) const {
   const double margin = coincidence(meeting.t);
   return meeting.t < (meeting.normal.z > 0 ? hit.t + margin : hit.t - margin);
@@ -189,7 +189,7 @@ void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting, bool
   dvec3 normal = meeting.normal;
   double roughness = 0;
   if (normal.z > 0) {
-    // A pixel is longer on the water than it is wide, seen at a grazing angle.
+    // At a grazing angle, the footprint of a pixel on the water is longer than wide.
     const double cosine = -ray.direction.z, wide = view_.camera().pixel_width(meeting.t);
     const double footprint = wide / std::sqrt(std::max(cosine, 0.01));
     normal = water.normal_at(ray.at(meeting.t), footprint);
@@ -205,7 +205,7 @@ void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting, bool
                                         found.reflectance);
   }
   found.mirror = send(point, meeting, mirrored, water.settings().reflection ? reach : 0);
-  // Also above surfaces in the plane of the water.
+  // Starts above surfaces in the plane of the water as well.
   if (const double margin = coincidence(meeting.t); meeting.normal.z > 0 && margin > 0)
     sent_.back().ray.origin.z = water.level() + margin;
   if (deep && water.settings().refraction && !meeting.sea) {
@@ -297,7 +297,7 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
   if (found.bottom) {
     const Seen& bottom = sent_[*found.bottom];
     if (bottom.hit) {
-      // Walls below the surface are dark.
+      // Walls under water are dark.
       const vec3 ground = bottom.lit ? bottom.colour : vec3(0.0f);
       const double depth = water.level() - bottom.ray.at(bottom.hit.t).z;
       body = water.through(ground * water.sunlight(depth, view_.lighting().to_sun()), bottom.hit.t);

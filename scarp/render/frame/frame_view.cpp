@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
 constexpr float kUnlitWall = 0.55f;
 
-// Rays over wrapped ground need an end: the top of everything.
+// Rays over wrapped ground need an end: the highest point of the scene.
 std::optional<double> ceiling_of(const Scene& scene) {
   if (const HeightField* field = scene.only_heights()) return field->max_height();
   double top = !scene.box().empty() ? scene.box().high.z : -kInfinity;
@@ -50,7 +50,7 @@ double ao_distance_of(const Scene& scene, const PictureSettings& settings) {
                                         : std::min(settings.ao_distance, length(box.high - box.low));
 }
 
-// The settings' haze covers the scene, not the space between it and a distant camera.
+// The haze in the settings applies to the scene, not to the space between it and a distant camera.
 Haze haze_of(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
   if (settings.look == Look::comanche || settings.fog.kind != FogKind::none) return {};
   if (std::isfinite(settings.haze_distance)) return {1 / settings.haze_distance, 0};

@@ -51,7 +51,7 @@ class ImageTile final : public TileWork {
   }
 
  private:
-  // Colours of pixels without the points that show nothing; sets the opacity.
+  // Mean colours of pixels over the points that show something; sets the opacity.
   std::vector<vec3> means_of_shown() {
     const std::vector<vec3> colours = frame_.colours();
     const std::vector<bool> shown = frame_.shown();
@@ -152,7 +152,7 @@ std::vector<double> heights_of_whole_frame(const Scene& scene, const Camera& cam
 }
 #endif
 
-// Pictures of one terrain can be compared: they share its range. Nullopt: that of the heights in the picture.
+// Pictures of one terrain can be compared: they share its range. Nullopt: the range of the heights in the picture.
 std::optional<ReliefRange> range_of_grey(const Scene& scene, const PictureSettings& settings) {
   if (settings.ramp_range) return ramp_heights(scene, settings);
   const HeightField* field = scene.terrain();
@@ -372,7 +372,7 @@ Picture render_look(const Scene& scene, const Camera& camera, const PictureSetti
   return {render_shaded(scene, camera, settings, progress)};
 }
 
-// For looks of one ray per pixel.
+// For looks with one ray per pixel.
 void find_alpha(const Scene& scene, const Camera& camera, const PictureSettings& settings, Image& image) {
   image.make_transparent();
   look_through_middles(scene, camera, size_of(settings), false, {},

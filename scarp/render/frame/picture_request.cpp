@@ -9,7 +9,7 @@ namespace scarp {
 namespace {
 
 constexpr double kFaintest = 64;   // rays over functions end where haze hides all but 1 / 64 of a colour
-constexpr double kLongReach = 64;  // extents, where there is less haze
+constexpr double kLongReach = 64;  // in extents, where there is less haze
 
 template <class T>
 void take(std::optional<T>& asked, const std::optional<T>& own) {
@@ -31,7 +31,7 @@ std::vector<Material> function_materials(const ReliefRange& range, const std::st
 
 double haze_distance_of(double haze, double extent) { return haze > 0 ? -extent / std::log1p(-haze) : kUnlimited; }
 
-// Metres from the camera to the nearest point of a box.
+// Distance in metres from the camera to the nearest point of a box.
 double way_to(const WorldBox& box, const Camera& camera) {
   return length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray to the sun or the sky from each visible ground point, those of Lighting::ask(), in its order: a stage of
+// A ray to the sun or the sky from each visible ground point, in the order of Lighting::ask(): a stage of
 // terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -38,7 +38,7 @@ LightRay light_ray(ScarpField field, FrameSeen seen, uint pixel) {
   vec3 direction = s.is.to_sun;
   bool to_sun = goes_to_sun();
   if (has_samples && (!to_sun || s.is.sun_depth > 0.0)) {
-    // A single call for points keeps the shader small.
+    // A single call of sample_point() keeps the shader small.
     vec2 at = sample_point(pixel, to_sun ? kScarpPointsOfSun : kScarpPointsOfSky,
                            to_sun ? push.light : push.light - s.is.sun_rays);
     vec3 axis = to_sun ? s.is.to_sun : normal_of(scarp_slope(field, seen.cell, seen.place));

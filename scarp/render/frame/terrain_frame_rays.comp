@@ -66,12 +66,12 @@ float end_of_steps(ScarpField field, float step, inout FrameSeen seen, inout Fra
     seen.steps = 1u;
     water.kind = 0;
   } else if (water.kind != 0) {
-    // Known at the first step past it, if the ray gets that far.
+    // The water is detected at the first step past it, if the ray gets that far.
     float stop = stop_of(field, seen, step, water.t.high);
     if (stop > last) water.kind = 0;
     last = min(last, stop);
     if (settings().is.interpolate == 0) water.t = scarp_two(stop);
-    // Its side and its bottom are not needed.
+    // The side of the water and its bottom are not needed.
     water.sea = 0;
     water.normal = vec3(0.0, 0.0, 1.0);
   }
@@ -82,7 +82,7 @@ float end_of_steps(ScarpField field, float step, inout FrameSeen seen, inout Fra
 bool limit(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTwoFloat end, inout FrameSeen seen,
            inout FrameWater water) {
   ScarpLine line = seen.line;
-  // Above the highest ground there is nothing to hit.
+  // There is nothing to hit above the highest ground.
   if (line.direction.z > 0.0) {
     float leaves = (field.highest - line.origin.z) / line.direction.z;
     end = scarp_two_earlier(end, scarp_two(max(0.0, leaves)));

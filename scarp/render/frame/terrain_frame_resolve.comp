@@ -16,7 +16,7 @@ float eye_height(FrameSeen seen) { return height_of(seen.line.origin.z); }
 
 ScarpSky the_sky() {
   ScarpSky sky = settings().is.sky;
-  if (!has_scattering) sky.scattering = 0;  // a constant to the compiler
+  if (!has_scattering) sky.scattering = 0;  // a constant for the compiler
   return sky;
 }
 
@@ -49,7 +49,7 @@ vec3 sky_behind(FrameSeen seen, vec3 direction) {
 
 vec3 wall_colour(FrameSeen seen, vec3 direction) {
   Settings s = settings();
-  // It is on the side of its cell through which the ray entered.
+  // A wall is on the side of its cell through which the ray entered.
   float from_x = direction.x > 0.0 ? seen.place.x : 1.0 - seen.place.x;
   float from_y = direction.y > 0.0 ? 1.0 - seen.place.y : seen.place.y;
   bool on_x = direction.y == 0.0 || (direction.x != 0.0 && from_x <= from_y);
@@ -58,7 +58,7 @@ vec3 wall_colour(FrameSeen seen, vec3 direction) {
   return s.is.earth * (s.is.unlit_wall + (1.0 - s.is.unlit_wall) * lit);
 }
 
-// Light that leaves the water at its surface; `behind` is the colour seen by its ray.
+// Light that leaves the water at its surface; `behind` is the colour that its ray sees.
 vec3 water_body(FrameSeen bottom, vec3 behind) {
   Settings s = settings();
   vec3 light = behind;
@@ -72,8 +72,8 @@ vec3 water_body(FrameSeen bottom, vec3 behind) {
   return ends ? scarp_through_water(light, s.is.deep, s.is.water_per_metre, metres) : s.is.deep;
 }
 
-// Colour of the point, seen by the camera. A single place for the colours of all rays keeps the shader small: from the
-// water's bottom through the mirrored ray to the camera's.
+// Colour of the point, seen by the camera. One loop over all rays, from that to the water's bottom through the mirrored
+// one to the camera ray, keeps the shader small.
 vec3 colour_of_point(uint slot, FrameWater water) {
   Settings s = settings();
   vec3 body = vec3(0.0);

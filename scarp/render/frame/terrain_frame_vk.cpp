@@ -64,7 +64,7 @@ void set_camera(glsl::FrameSettings& s, const HeightField& field, const Camera& 
   s.aa = settings.aa;
 }
 
-// Origin of a frame's heights: near the field's lowest, on a heavy contour.
+// Origin of a frame's heights: near the field's lowest point, on a heavy contour.
 double zero_of_heights(const HeightField& field, const GroundPaint& paint) {
   const double low = field.min_height(), apart = paint.heavy_contour_interval();
   return apart > 0 ? std::floor(low / apart) * apart : low;
@@ -182,7 +182,7 @@ void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPa
   s.natural = settings.natural;
   s.snow_share = static_cast<float>(settings.snow_share);
   s.low = static_cast<float>(field.min_height() - zero_of_heights);
-  // For level ground any number that a float represents is valid.
+  // Stands in for the relief of level ground; any positive float would be valid.
   constexpr double kLevelRelief = 1e-30;
   s.per_relief = static_cast<float>(1 / std::max(field.max_height() - field.min_height(), kLevelRelief));
   s.from_sun = glm::vec2(paint.away_from_sun());
@@ -321,7 +321,7 @@ bool makes_whole_frames(const Scene& scene, const Camera& camera, const PictureS
   if (!terrain || scene.objects()[0].material < settings.materials.size()) return false;
   const Sampling march = scene.sampling();
   const bool stepped = march == Sampling::fixed_step && settings.look == Look::comanche;
-  if (!stepped && march != Sampling::none) return false;  // of the marches that do not sample, devices have max-mip
+  if (!stepped && march != Sampling::none) return false;  // max-mip is the only march without sampling on devices
   Ray eye;
   eye.origin = camera.eye();
   const dvec3 place = (*scene.only_heights()).grid_from_world(eye).origin;

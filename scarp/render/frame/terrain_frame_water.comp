@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Determines whether pixels show water or ground, and the rays that water sends on: a stage of terrain_frame.glsl.h.
+// Determines whether pixels show water or ground, and the rays that continue from water: a stage of
+// terrain_frame.glsl.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -38,7 +39,7 @@ float water_roughness(float footprint) {
   return roughness;
 }
 
-// Metres to where a ray in the water leaves through a side of the field; kScarpNever if there is none.
+// Distance in metres after which a ray in the water leaves through a side of the field; kScarpNever if it does not.
 float leaves_water(ScarpField field, ScarpLine line) {
   if ((field.flags & kScarpWraps) != 0u) return kScarpNever;
   return min(scarp_span_x(field, line).end.high, scarp_span_y(field, line).end.high);
@@ -95,7 +96,7 @@ void send_on(ScarpField field, uint slot, FrameSeen camera, inout FrameWater wat
   vec3 normal = water.normal;
   float roughness = 0.0;
   if (normal.z > 0.0) {
-    // A pixel is longer on the water than it is wide, seen at a grazing angle.
+    // At a grazing angle, the footprint of a pixel on the water is longer than wide.
     float wide = s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres);
     float footprint = wide / sqrt(max(-direction.z, 0.01));
     normal = water_normal(paint_place(camera.line, water.t), footprint);
@@ -115,7 +116,7 @@ void send_on(ScarpField field, uint slot, FrameSeen camera, inout FrameWater wat
   seen.metres = 1.0;
   seen.kind = kFrameNothing;
   seen.steps = 0u;
-  // A single place that sends rays keeps the shader small.
+  // A single call that sends rays keeps the shader small.
   for (int ray = kFrameMirror; ray <= kFrameBottom; ++ray) {
     bool mirror = ray == kFrameMirror;
     seen.line.direction = grid_direction(mirror ? mirrored : refracted);

@@ -34,7 +34,7 @@ std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::m
 LightRays Lighting::ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const {
   const auto pattern = [&](std::uint32_t purpose) {
     const auto count = static_cast<std::uint32_t>(samples());
-    if (count == 0) return PatternRange{};  // a point sun needs none
+    if (count == 0) return PatternRange{};  // a point sun needs no pattern
     return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
                         count * static_cast<std::uint32_t>(point.index), count};
   };

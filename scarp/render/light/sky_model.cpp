@@ -21,7 +21,7 @@ constexpr double kBesideSun = 0.26;
 // Number of directions around the horizon for means.
 constexpr int kAround = 48;
 
-// Linear in the turbidity.
+// A value that is linear in the turbidity.
 struct Line {
   double slope, offset;
   double operator()(double turbidity) const { return slope * turbidity + offset; }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Where a ray enters the field: fixed-step counts its samples from there.
+// Where a ray enters the field: fixed-step places its samples from there.
 double entry(const HeightField& field, const Ray& ray) {
   if (field.wraps()) return ray.t_min;
   const auto from = [](double o, double d, double high) {
@@ -54,7 +54,7 @@ double StepMarch::by_view(double step, const dvec3& direction) const {
 }
 
 StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water) const {
-  // No ray of a picture leaves its axis by 90 degrees.
+  // No ray of a picture is 90 degrees or more off its axis.
   const double step = settings_.shells ? step_ : step_ / dot(ray.direction, forward_);
   return march(ray, water, by_view(step, ray.direction));
 }
@@ -89,7 +89,7 @@ StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water, double st
   MarchStats stats;
   answer.hit = march_fixed_step({&field_}, marched, settings, &stats);
   answer.steps = std::min(stats.steps, static_cast<std::uint32_t>(settings_.steps));
-  // As in the founding text, each sample tests ground before water; between samples, the nearer one counts.
+  // As in the founding text, each sample tests ground before water; between samples, the nearer of the two counts.
   const bool ended_at_water = stop <= marched.t_max;
   answer.t = settings_.interpolate ? plane : stop;
   answer.water = ended_at_water && (!answer.hit || (settings_.interpolate && plane < answer.hit.t));

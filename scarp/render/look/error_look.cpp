@@ -39,7 +39,7 @@ constexpr std::array<Style, kVerdicts> kStyles{{
 
 const Style& style_of(Verdict verdict) { return kStyles[static_cast<std::size_t>(verdict)]; }
 
-// A ray judged by `exhaustive` may take a millisecond, during which the device, and a request to stop, must wait.
+// A ray judged by `exhaustive` may take a millisecond; meanwhile the device and any request to stop must wait.
 constexpr std::size_t kMostRays = kMostRaysOfRound;
 
 }  // namespace
@@ -61,11 +61,11 @@ namespace {
 
 constexpr int kProvenEvery = 8;  // in both directions
 
-// Whether intervals contradict the judge.
+// Whether interval bisection contradicts the judge.
 bool contradicts(const Hit& hit, const FunctionJudgement& judgement, const Ray& ray, double tolerance) {
   if (judgement.verdict == FunctionVerdict::clear) return static_cast<bool>(hit);
   if (judgement.verdict != FunctionVerdict::crossing) return false;
-  // Any crossing within the tolerance is correct, and so is a point within the tolerance of one.
+  // Any crossing within the tolerance is correct, and so is a point within the tolerance of a crossing.
   const double slack = tolerance * (judgement.crossed_by - ray.t_min);
   return !hit || hit.t > judgement.crossed_by + slack;
 }
@@ -118,7 +118,7 @@ class ErrorTile final : public TileWork {
     const Verdict verdict = judge(answer, truth, hit_tolerance(judges_, truth, settings_));
     ++tally_.pixels[static_cast<std::size_t>(verdict)];
     vec3 colour = linear_from_srgb(style_of(verdict).srgb);
-    // Relief without shadows behind the colours of surfaces shows where the errors are.
+    // Shades the colours of surfaces without shadows, so that the relief shows where the errors are.
     if (truth) {
       const SceneSurface surface = judges_.surface(ray, truth);
       if (surface.normal != dvec3(0.0)) colour *= light_.on(surface.shading_normal, true);

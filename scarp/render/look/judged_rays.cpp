@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// A ray of `exhaustive` may take a millisecond: this many rays take a tenth of a second on one processor.
+// A ray traced by `exhaustive` may take a millisecond: this many rays take a tenth of a second on one processor.
 constexpr std::size_t kRaysAtOnce = 100;
 
 }  // namespace

@@ -36,7 +36,7 @@ double scarp_paint_noise(const dvec2& place, int /*set*/, int octave, double siz
 namespace scarp {
 namespace {
 
-// Relief of level ground, so that its heights are the share 0 of it and not 0 / 0.
+// Minimum relief, so that relative heights on level ground are 0 and not 0 / 0.
 constexpr double kLeastRelief = 1e-300;
 
 }  // namespace

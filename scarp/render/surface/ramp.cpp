@@ -28,12 +28,12 @@ struct Stop {
 
 // Deep water to the shore.
 constexpr std::array kSea = {Stop{0.00, 0x1c3f6e}, Stop{0.50, 0x4a86b8}, Stop{0.85, 0x8fbfdc}, Stop{1.00, 0xb9dcea}};
-// Lowland to summits: light on low ground so that hill shade reads everywhere, nearly white at the top.
+// Lowland to summits: light on low ground so that hill shading is visible everywhere, nearly white at the top.
 constexpr std::array kLand = {Stop{0.00, 0x789b74}, Stop{0.18, 0xa1b588}, Stop{0.36, 0xd0c99c}, Stop{0.55, 0xc6a67b},
                               Stop{0.72, 0xab866a}, Stop{0.86, 0xb5a397}, Stop{1.00, 0xf3f1ee}};
 constexpr std::array kGrey = {Stop{0.0, 0x000000}, Stop{1.0, 0xffffff}};
 
-// Entries of a ramp made from stops: steps far below what 8 bits show.
+// Number of entries of a ramp made from stops: the steps are far below 8-bit resolution.
 constexpr int kEntries = 1024;
 
 vec3 srgb_from_rgb(std::uint32_t rgb) { return vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f; }
@@ -44,7 +44,7 @@ std::vector<vec3> from_table(const RampTable& table) {
   return colours;
 }
 
-// Mixed in sRGB, as the eye sees even steps.
+// Interpolated in sRGB, where equal steps look equal.
 std::vector<vec3> from_stops(std::span<const Stop> stops) {
   std::vector<vec3> colours;
   std::size_t next = 1;
@@ -58,8 +58,8 @@ std::vector<vec3> from_stops(std::span<const Stop> stops) {
   return colours;
 }
 
-// scarp_srgb_byte() without its power: the byte at the start of a piece of the channel's range, and where the next byte
-// starts. No piece contains the starts of two bytes.
+// scarp_srgb_byte() without a call of pow(): for each piece of the channel's range, the byte at its start, and where
+// the next byte starts. No piece contains the starts of two bytes.
 class SrgbBytes {
  public:
   SrgbBytes() {
@@ -106,7 +106,7 @@ Ramp::Ramp(std::string_view name, double low, double high) {
   if (name == "plasma") pieces_.push_back({low, high, from_table(kPlasma)});
   if (name == "grey") pieces_.push_back({low, high, from_stops(kGrey)});
   if (name == "hypsometric") {
-    // A sea without any depth, all of it at 0, has the colour of the shore: any lower end gives that.
+    // A sea without depth, entirely at 0, has the colour of the shore: any lower end has this effect.
     if (low <= 0) pieces_.push_back({low < 0 ? low : -1.0, 0.0, from_stops(kSea)});
     if (high > 0) pieces_.push_back({std::max(low, 0.0), high, from_stops(kLand)});
   }

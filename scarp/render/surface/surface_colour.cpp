@@ -15,8 +15,8 @@ namespace {
 
 const vec3 kEarth(0.58f, 0.52f, 0.45f);  // sRGB
 
-// Faces of an object often coincide with borders of a checker's cubes, where rounding would decide: the cubes are
-// shifted by this fraction of their side.
+// Faces of an object often coincide with borders of a checker's cubes, where rounding would decide. The cubes are
+// therefore shifted by this fraction of their side.
 constexpr double kInside = 1e-4;
 
 vec3 stops_at(const HeightStops& s, double z) {

@@ -75,7 +75,7 @@ std::optional<Water::Meeting> Water::from_above(const Ray& ray, double t) const 
   const dvec3 p = ray.at(t);
   Meeting meeting{t, {0, 0, 1}};
   const auto ground = scene_.height(p.x, p.y);
-  // An eye that sees the level where the ground is higher is below the ground.
+  // A ray that hits the level below higher ground comes from below the ground.
   if (ground && *ground > level_) return {};
   if (!field_) return meeting;
   const auto place = field_->place(p.x, p.y);
@@ -119,7 +119,7 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
 
 bool Water::is_sea(const Hit& hit) const {
   if (!field_ || !hit || hit.wall || hit.object != scene_.terrain_object()) return false;
-  // Most ground is far above the water. Heights of hits are good to a thousandth of a cell.
+  // Most ground is far above the water. Heights of hits are accurate to a thousandth of a cell.
   const HeightFieldSettings& settings = field_->settings();
   return hit.height <= level_ + std::min(settings.cell_x, settings.cell_y) && is_sea(hit.cell);
 }
@@ -136,7 +136,7 @@ bool Water::is_sea(Cell cell) const {
 double Water::leaves(const Ray& ray) const {
   if (scene_.endless()) return kInfinity;
   const dvec3 &o = ray.origin, &d = ray.direction;
-  // A terrain is its own floor.
+  // Terrain is itself the floor of the basin.
   const double floor = field_ || !(d.z < 0) ? kInfinity : (basin_.low.z - o.z) / d.z;
   return std::min({span_in(o.x - basin_.low.x, d.x, basin_.high.x - basin_.low.x).to,
                    span_in(o.y - basin_.low.y, d.y, basin_.high.y - basin_.low.y).to, floor});
