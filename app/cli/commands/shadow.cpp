@@ -271,9 +271,9 @@ void add_shadow(Program& program) {
                             .help = "the sun's position, north and scale at every pixel instead of at the centre",
                             .common = true,
                             .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
-  command.add(
-      &o.fraction,
-      {.names = "--fraction", .help = "lit share of the sun's disc (0.533 degrees) instead of codes", .common = true});
+  command.add(&o.fraction, {.names = "--fraction",
+                            .help = "lit fraction of the sun's disc (0.533 degrees) instead of codes",
+                            .common = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
   add_surface_option(command, o.surface);
   add_raster_output_options(command, o.raster_output);

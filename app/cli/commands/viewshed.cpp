@@ -394,13 +394,13 @@ void add_viewshed(Program& program) {
                         .common = true});
   add_sight_heights(command, o.heights);
   command.add(&o.max_distance, {.names = "--max-distance",
-                                .help = "largest distance of targets",
+                                .help = "maximum distance of targets",
                                 .unit = "metres",
                                 .range = {0, kMostOfGround},
                                 .fallback = "unlimited",
                                 .common = true});
   command.add(&o.min_distance, {.names = "--min-distance",
-                                .help = "least distance of targets",
+                                .help = "minimum distance of targets",
                                 .unit = "metres",
                                 .range = {0, kMostOfGround},
                                 .common = true});

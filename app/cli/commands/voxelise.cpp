@@ -144,9 +144,9 @@ void add_voxelise(Program& program) {
                          .help = "side of a voxel",
                          .unit = "metres",
                          .range = kAboveZero,
-                         .fallback = "derived from --count; that of the file for voxels"});
+                         .fallback = "derived from --count; for voxels: as in the file"});
   command.add(&o.count, {.names = "--count",
-                         .help = "voxels along the longest side; above 2,048 for terrain in .vdb files",
+                         .help = "voxels along the longest side; over 2,048 only for terrain in .vdb",
                          .range = {2, VoxelGrid::kMaxSide},
                          .fallback = fmt::format("{}", kUsualCount),
                          .excludes = {"--voxel"}});

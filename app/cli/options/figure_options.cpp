@@ -39,7 +39,7 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
                                 .looks = {"shaded height steps error comanche level", "its greys have no unit"}});
   command.add(&options.scale_bar, {.names = "--scale-bar",
                                    .help = "scale bar in the lower left corner",
-                                   .note = "in perspective it holds in the middle",
+                                   .note = "in perspective, valid at the centre",
                                    .topic = Topic::figure,
                                    .common = true});
   const Rule on_map = needs("--top (only maps have one)", [&top] { return top; });
@@ -50,11 +50,11 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
   add(&options.title,
       {.names = "--title", .value = "TEXT", .help = "title at the top, broken into at most three lines"});
   add(&options.north_arrow,
-      {.names = "--north-arrow", .help = "arrow to true north", .note = "it holds in the middle of the picture"});
+      {.names = "--north-arrow", .help = "arrow to true north", .note = "valid at the centre of the picture"});
   add([&options](const std::string& text) { options.graticule = graticule_from(text); },
       {.names = "--graticule",
        .value = "DEG",
-       .help = "labelled meridians and parallels, so many degrees apart",
+       .help = "labelled meridians and parallels, DEG degrees apart",
        .choices = {"auto"},
        .unlisted = true,
        .note = "or auto",

@@ -66,8 +66,8 @@ void add_frame_options(Command& command, FrameOptions& o) {
                .help = "table of cameras: columns x,y[,z] of the eye and tx,ty[,tz] of the target, or dx,dy,dz "
                        "of the direction, in coordinates of --coords",
                .files = "csv npy",
-               .note = "with --coords lonlat also lon,lat and tlon,tlat; without z --eye-above M over the ground; the "
-                       "output is frame-####.png",
+               .note = "with --coords lonlat also lon,lat and tlon,tlat; eyes without z are --eye-above M over the "
+                       "ground; the output is frame-####.png",
                .topic = Topic::flight});
   command.add(&o.turntable, {.names = "--turntable",
                              .help = "one orbit around the scene, clockwise from --view; the output is frame-####.png",

@@ -94,7 +94,7 @@ void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& f
   command.add([&o](const std::string& text) { o.ramp_range = ramp_range_from(text); },
               {.names = "--ramp-range",
                .value = "LOW,HIGH",
-               .help = "heights of the first and last colour of the ramp, or of the look height",
+               .help = "heights of the first and last colour, also for --look height,",
                .unit = "metres",
                .fallback = "lowest and highest ground",
                .topic = Topic::ground,
@@ -113,7 +113,7 @@ void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& f
           .now = [&o] { return std::string(o.natural ? "natural" : ""); },
           .common = true});
   ground(&o.snow_line, {.names = "--snow-line",
-                        .help = "snow line of natural ground",
+                        .help = "height of the snow line",
                         .unit = "metres",
                         .fallback = fmt::format("{} of the relief", GroundPaintSettings{}.snow_share),
                         .rules = {needs("--ground natural", [&o] { return o.natural; })}});
@@ -245,7 +245,7 @@ void add_large_pixel_options(Command& command, PictureRequest& o) {
   constexpr Looks kLarge{"comanche"};
   constexpr Looks kPixels{"height comanche"};
   const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
-  const Rule alone{"has no effect with --mesh, among which rays step by --fixed-step",
+  const Rule alone{"has no effect with --mesh, where rays step by --fixed-step",
                    [&command] { return !command.given("--mesh"); }};
   constexpr Inputs kStepped{kTerrain, "rays over functions step by --function-step M", "its rays do not step"};
   const Rule large_pixels{"needs --lowres WIDTHxHEIGHT with --look height",
@@ -283,7 +283,7 @@ void add_large_pixel_options(Command& command, PictureRequest& o) {
                              .looks = kPixels,
                              .rules = {stepped, large_pixels, alone}});
   large(&o.comanche.step_by_view, {.names = "--step-by-view",
-                                   .help = "longer steps of fixed-step for rays that look down",
+                                   .help = "longer fixed-step steps for rays that point down",
                                    .inputs = kStepped,
                                    .looks = kPixels,
                                    .rules = {stepped, large_pixels, alone}});

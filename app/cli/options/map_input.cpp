@@ -39,7 +39,7 @@ void add_map_options(Command& command, MapOptions& options) {
                           .fallback = "map; local for inputs without a georeference",
                           .common = true});
   command.add(&options.plane_error, {.names = "--plane-error",
-                                     .help = "largest displacement of a sample on the metric plane",
+                                     .help = "maximum displacement of a sample on the metric plane",
                                      .unit = "cells",
                                      .range = kAboveZero});
   add_threads_option(command, options.threads);

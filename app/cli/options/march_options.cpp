@@ -72,7 +72,7 @@ void add_fixed_step_options(Command& command, FixedStepSettings& fixed_step) {
                                  .rules = plain});
   command.add(&fixed_step.interpolate, {.names = "--fixed-step-interpolate",
                                         .value = "BOOL",
-                                        .help = "hit between the last two samples instead of on the last one",
+                                        .help = "hit between the last two samples instead of at the last one",
                                         .choices = {"true", "false"},
                                         .closed = true,
                                         .topic = Topic::march,

@@ -51,8 +51,8 @@ void add_mesh_options(Command& command, MeshOptions& options) {
   command.add(&options.at,
               {.names = "--mesh-at",
                .value = "X,Y[,Z]",
-               .help = "position of the mesh in coordinates of --coords: its middle, and its lowest point",
-               .fallback = "middle of the scene, or nearest to it, on the ground; meshes as input: as in the file",
+               .help = "position of the mesh (see --coords): X,Y of its centre, Z of its lowest point",
+               .fallback = "on the ground, at or nearest to the middle of the scene; mesh inputs: as in the file",
                .topic = Topic::mesh,
                .rules = {of_mesh}});
   command.add(&options.scale, {.names = "--mesh-scale",

@@ -215,7 +215,7 @@ void add_light_options(Command& command, RenderOptions& o) {
                       .looks = kLit,
                       .rules = {sampled}});
   add(&picture.haze, {.names = "--haze",
-                      .help = "fraction of haze over the diagonal of the scene (of functions over --extent)",
+                      .help = "fraction of haze over the diagonal of the scene (functions: over --extent)",
                       .range = {0, 0.95},
                       .fallback = fmt::format("{}; functions {}; other inputs 0", usual.haze, kFunctionHaze),
                       .looks = {"shaded", "the others have no haze", kEveryInput & ~kFunction},
@@ -234,10 +234,9 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   const Rules no_frames = frames ? Rules{{"has no effect with --path or --turntable, which define their own cameras",
                                           [&o] { return !o.frames.several(); }}}
                                  : Rules{};
-  const Rules no_path =
-      frames
-          ? Rules{{"has no effect with --path, whose table holds the cameras", [&o] { return o.frames.path.empty(); }}}
-          : Rules{};
+  const Rules no_path = frames ? Rules{{"has no effect with --path, whose table defines the cameras",
+                                        [&o] { return o.frames.path.empty(); }}}
+                               : Rules{};
   const std::string or_path = frames ? " or --path FILE" : "";
   const auto with = [](Rules rules, Rule more) {
     rules.push_back(std::move(more));
@@ -248,8 +247,8 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   add([&camera](const std::string& text) { camera.view = view_from(text); },
       {.names = "--view",
        .value = "AZ,EL[,DIST]",
-       .help = "camera position: compass azimuth and elevation in degrees, distance as a multiple of the one "
-               "that fits everything",
+       .help = "camera position: compass azimuth and elevation in degrees, distance relative to that at which "
+               "everything fits",
        .fallback = fmt::format("{},{},{}", view.azimuth_deg, view.elevation_deg, view.distance),
        .common = true,
        .rules = no_path,
@@ -257,13 +256,13 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   add([&camera](const std::string& text) { camera.eye = typed_place(text, "--eye"); },
       {.names = "--eye",
        .value = "X,Y[,Z]",
-       .help = "eye in coordinates of --coords",
+       .help = "camera position (see --coords)",
        .note = "Z is needed without --eye-above",
        .common = true,
        .rules = no_frames});
   add(&camera.eye_above,
       {.names = "--eye-above",
-       .help = "height of the eye above the highest surface or water below it",
+       .help = "height of the eye above the highest surface or water below,",
        .unit = "metres",
        .range = {.least = 0, .most = kMostOfGround, .above_least = true},
        .note = "not exaggerated",
@@ -271,7 +270,7 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   add([&camera](const std::string& text) { camera.target = typed_place(text, "--target"); },
       {.names = "--target",
        .value = "X,Y[,Z]",
-       .help = "point that the eye looks at; without Z on the ground",
+       .help = "point to look at; on the ground if Z is omitted",
        .fallback = "the middle",
        .common = true,
        .rules = with(no_frames, needs("--eye X,Y[,Z]", [&camera] { return camera.eye.has_value(); }))});
@@ -281,18 +280,18 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
        .help = frames ? "coordinates of --eye, --target, --area, --mesh-at and --path"
                       : "coordinates of --eye, --target, --area and --mesh-at",
        .note = "local: metres from the south-west sample, z exaggerated; map: units of the CRS; lonlat: degrees, WGS "
-               "84; with map and lonlat z is a height of the file in metres",
+               "84; for map and lonlat, z is in metres as in the file",
        .topic = Topic::camera,
        .rules = {needs(frames ? "--eye, --area, --path or --mesh-at" : "--eye, --area or --mesh-at", [&o] {
          return o.camera.eye || o.camera.area || !o.frames.path.empty() || !o.mesh.at.empty();
        })}});
-  add(&camera.fov_deg, {.names = "--fov",
-                        .help = "vertical field of view",
-                        .unit = "degrees",
-                        .range = {1, 150},
-                        .fallback = fmt::format("{}; comanche {}, functions {}", view.fov_deg,
-                                                kComancheFov, kFunctionView.fov_deg),
-                        .common = true});
+  add(&camera.fov_deg,
+      {.names = "--fov",
+       .help = "vertical field of view",
+       .unit = "degrees",
+       .range = {1, 150},
+       .fallback = fmt::format("{}; comanche {}, functions {}", view.fov_deg, kComancheFov, kFunctionView.fov_deg),
+       .common = true});
   add(&camera.top, {.names = "--top",
                     .help = "map: straight down, without perspective, grid north up",
                     .common = true,
@@ -332,8 +331,8 @@ void declare_picture(Command& command, RenderOptions& o, bool written) {
   add_function_options(command, o.function, "side of the ground in the picture", o.march, o.march_settings);
   add_raster_options(command, o.raster);
   command.add(&o.full, {.names = "--full",
-                        .help = fmt::format("all samples of rasters with more than {} million, of which pictures "
-                                            "otherwise show averages of blocks",
+                        .help = fmt::format("all samples of rasters with more than {} million, instead of "
+                                            "averages of blocks",
                                             Decimation{}.above / 1'000'000),
                         .topic = Topic::input,
                         .inputs = {kTerrain, "other inputs are always read completely"}});

@@ -14,27 +14,24 @@ Command& declare_view(Program& program, ViewOptions& o) {
     option.topic = Topic::window;
     command.add(std::move(to), std::move(option));
   };
-  add(&o.record, {.names = "--record", .value = "FILE", .help = "file to record mouse and keys in", .files = "*"});
+  add(&o.record, {.names = "--record", .value = "FILE", .help = "file to record input events in", .files = "*"});
   add(&o.play, {.names = "--play",
                 .value = "FILE",
-                .help = "recording to play at 60 steps per second of its own time; then the window closes",
+                .help = "recording to play at 60 steps per recorded second; then the window closes",
                 .files = "*",
                 .excludes = {"--record"}});
   add(&o.screenshot, {.names = "--screenshot",
                       .value = "FILE",
-                      .help = "PNG picture of the window, when the last view of --play is complete",
+                      .help = "PNG screenshot, taken when the last view of --play is complete",
                       .files = "png",
                       .rules = {needs("--play FILE", [&o] { return !o.play.empty(); })}});
-  add(&o.timings, {.names = "--timings",
-                   .value = "FILE",
-                   .help = "table of when events came and pictures were shown",
-                   .files = "csv"});
+  add(&o.timings,
+      {.names = "--timings", .value = "FILE", .help = "table of event and picture-presentation times", .files = "csv"});
   add(&o.window_device, {.names = "--window-device",
                          .value = "NAME",
                          .help = "Vulkan device that shows the window: auto or part of a name",
                          .fallback = o.window_device});
-  add(&o.validation,
-      {.names = "--validation", .help = "end with an error if Vulkan's validation layer has an objection"});
+  add(&o.validation, {.names = "--validation", .help = "fail if Vulkan's validation layer reports a problem"});
   command.example("scarp view dem.tif");
   command.example("scarp view city.vox --samples 16");
   command.example("scarp view dem.tif --march naive --look steps");

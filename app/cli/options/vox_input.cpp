@@ -62,13 +62,13 @@ void add_vox_options(Command& command, VoxOptions& options) {
   add(&options.scene.frame, {.names = "--frame", .help = "frame of a MagicaVoxel animation", .range = {.least = 0}});
   add(&options.scene.hidden, {.names = "--hidden", .help = "hidden MagicaVoxel objects and layers as well"});
   add(&options.surface_colours,
-      {.names = "--surface-colours", .help = "colours of visible voxels only: less memory, lossy inside"});
+      {.names = "--surface-colours", .help = "colours of visible voxels only: saves memory, drops the others"});
   add(&options.volume, {.names = "--volume",
                         .value = "FORMAT",
                         .help = "layout of IN, one number per voxel: npy (an array [z][y][x]), or "
                                 "NXxNYxNZ:TYPE[+OFFSET], x fastest, for example 256x256x128:u16le"});
   add(&options.solid_from, {.names = "--solid-from",
-                            .help = "smallest number of a solid voxel of a volume",
+                            .help = "smallest value of a volume that is solid",
                             .fallback = "all above 0",
                             .rules = {needs("--volume FORMAT", [&options] { return !options.volume.empty(); })}});
   add(&options.up, {.names = "--up",
@@ -85,7 +85,7 @@ void add_vox_rounding_options(Command& command, VoxLookOptions& options) {
     command.add(std::move(to), std::move(option));
   };
   add(&options.rounding.radius,
-      {.names = "--rounded", .help = "radius of open edges in sides of a voxel", .range = {0, 0.5}, .inputs = kModels});
+      {.names = "--rounded", .help = "radius of exposed edges in voxel sides", .range = {0, 0.5}, .inputs = kModels});
   add(&options.rounding.each,
       {.names = "--each",
        .help = "every voxel rounded on all sides, like a heap of dice",
@@ -100,14 +100,15 @@ void add_vox_look_options(Command& command, VoxLookOptions& options) {
     option.topic = Topic::voxels;
     command.add(std::move(to), std::move(option));
   };
-  add(&options.normals, {.names = "--normals",
-                         .value = "KIND",
-                         .help = "normals",
-                         .choices = {"flat", "voxel", "smooth"},
-                         .closed = true,
-                         .note = "flat: of the face; voxel: one per face, of the shape around it; smooth: of the shape",
-                         .inputs = kModels,
-                         .looks = kShaded});
+  add(&options.normals,
+      {.names = "--normals",
+       .value = "KIND",
+       .help = "normals",
+       .choices = {"flat", "voxel", "smooth"},
+       .closed = true,
+       .note = "flat: face normal; voxel: one per face, from the shape around; smooth: from the shape",
+       .inputs = kModels,
+       .looks = kShaded});
   add(&options.normal_radius,
       {.names = "--normal-radius",
        .help = "radius of smooth normals in voxels",

@@ -138,7 +138,7 @@ void add_composite(Program& program) {
                .help = "their depth: metres along the view axis, or device depth with --depth-range"});
   command.add(&o.alpha, {.names = "--alpha",
                          .value = "NAME",
-                         .help = "their opacity channel, which their colours are multiplied by",
+                         .help = "their opacity channel, by which their colours are multiplied",
                          .fallback = "none"});
   add_tone_option(command, &o.no_tone_curve, o.output, Topic::general);
   add_depth_options(command, o.depth);
