@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench batches`: the library's batch calls, closest_hits() and occluded(), from ten rays to ten million. A
-// script typically sends a thousand rays, a film frame ten million. Rays are in the order of their class, and shuffled:
-// the difference shows what sorting them saves.
+// script typically sends a thousand rays, a film frame ten million. Rays are traced in the order of their class and
+// shuffled: the difference shows the gain of sorting them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kRaysPerPass = 2'000'000;  // at least: small batches are repeated
 
-// Median wall-clock seconds of a pass over `rays` in batches.
+// Median wall-clock time, in seconds, of a pass over `rays` in batches.
 double seconds(const HeightTarget& target, bool any_hit, const std::vector<Ray>& rays, std::size_t batch, int repeats) {
   std::vector<Hit> hits(batch);
   std::vector<std::uint8_t> blocked(batch);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// scarp-bench runs from end to end and writes what README.md promises. Times are not tested here.
+// Runs scarp-bench from end to end, and checks that its output is as README.md describes. Times are not tested here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -25,7 +25,7 @@ namespace {
 using nlohmann::json;
 using scarp::bench::expect_documented, scarp::bench::output_of;
 
-// The output of a command that must succeed, or fail.
+// The output of a command that must succeed or must fail, depending on `succeeds`.
 std::string text_of(const std::string& arguments, bool succeeds) {
   const std::string command = fmt::format("'{}' {}", SCARP_BENCH_PROGRAM, arguments);
   FILE* const pipe = ::popen(command.c_str(), "r");
@@ -177,7 +177,7 @@ TEST(ScarpBench, VoxelsWritesTheDocumentedFieldsAndMarchesAgree) {
     if (table == "colours") {
       continue;
     }
-    // NanoVDB's answers are its own.
+    // NanoVDB's results may differ.
     const std::string engine = row["engine"];
     if (!engine.starts_with("voxel-") && engine != "embree-user") continue;
     EXPECT_EQ(row["lost_ppm"], 0) << row;
@@ -242,7 +242,7 @@ TEST(ScarpBench, RenderReportsDeviceAndCpuRows) {
     EXPECT_EQ(cpu["engine"], "cpu");
     EXPECT_NE(device["engine"], "cpu");
     EXPECT_EQ(device["way"], cpu["way"]);
-    // Steps are the CPU's, and so are their mistakes.
+    // Steps, and therefore errors, are those of the CPU.
     EXPECT_NEAR(device["wrong_percent"].get<double>(), cpu["wrong_percent"].get<double>(), 0.3);
   }
 }
@@ -267,7 +267,7 @@ TEST(ScarpBench, VoxelsOnDeviceMatchCpu) {
 }
 
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
-  // If no device has the given name, the error lists those available, or says that there are none.
+  // If no device has the given name, the error lists the available devices, or states that there are none.
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
   if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
@@ -286,7 +286,7 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
     EXPECT_GT(row["mrays_per_s"], 0.0);
     EXPECT_GE(row["fetches_per_ray"], row["steps_per_ray"]);
     if (mode == "max-mip") {
-      // None of the 2000 rays passes within single-precision error of the surface.
+      // None of the 2000 rays passes the surface within the error of single precision.
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_EQ(row["fetch_ratio"], 1.0);
     }
@@ -350,7 +350,7 @@ TEST(ScarpBench, DevicesMarksTheChosenOne) {
 #endif
 
 #ifdef SCARP_BENCH_VULKAN
-// Corners are rounded to a fraction of a pixel, so pixels next to an edge may show its other side, and nothing else.
+// Corners are rounded to a fraction of a pixel, so pixels next to an edge may show its other side, but nothing else.
 TEST(ScarpBench, DrawnGridDepthsMatchRays) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
@@ -397,7 +397,7 @@ TEST(ScarpBench, SimtComparesBundlesAtEqualError) {
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_EQ(row["second_pass_rate"], 0.0);
     }
-    // More rays wait for one another.
+    // In a larger bundle, more rays wait for one another.
     const std::string key = row["class"].get<std::string>() + mode;
     if (row["bundle"] == 32)
       turns_of_32[key] = row["turns"];
@@ -434,7 +434,7 @@ TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
       EXPECT_EQ(row["untouched"], 0) << row;
       continue;
     }
-    // Bullet computes in float: it may decide grazing rays differently.
+    // Bullet computes in float, so it may decide grazing contacts differently.
     EXPECT_LE(row["differ"].get<int>(), row["sweeps"].get<int>() / 50 + 1) << row;
   }
   EXPECT_EQ(judged, 2);
@@ -478,7 +478,7 @@ TEST(ScarpBench, ReportsUsageErrorsInOneLine) {
   EXPECT_NE(text_of("2>&1", false).find("Usage: scarp-bench SUBCOMMAND"), std::string::npos);
 }
 
-// Every declared number refuses what is none, or out of its range.
+// Every option with a number rejects values that are not numbers or out of range.
 TEST(ScarpBench, RefusesNumbersThatAreNotFinite) {
   const std::regex option("\n  (--[a-z-]+) (F|N)(,\\.\\.\\.)? ");
   const std::string program = text_of("--help", true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench devices`: the Vulkan devices of this machine, and the one that a choice selects.
+// `scarp-bench devices`: the Vulkan devices of this machine, and the device that a choice selects.
 #include "scarp/vk/device.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace scarp::bench {
 namespace {
 
-// `devices`: the Vulkan devices of this machine; with SCARP_VULKAN, as `gpu` and `shaders`.
+// `devices`: the Vulkan devices of this machine. Only with SCARP_VULKAN, like `gpu` and `shaders`.
 struct DevicesOptions {
   std::string device = "auto";  // DeviceSettings::choice
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench edits`: from the call of LiveField::edit to its return, when queries see the new samples; compared with
-// a rebuilt pyramid.
+// `scarp-bench edits`: the time from the call of LiveField::edit to its return, when queries see the new samples;
+// compared with rebuilding the pyramid.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ Json measure(const EditsOptions& options) {
     return samples;
   };
   const HeightField field = HeightField::own(noise(options.size), options.size, options.size);
-  // Edits stay within the field's range, as digging would.
+  // Edits stay within the field's range of heights, as digging would.
   LiveField live(field);
   const std::vector<T> edit = noise(options.rect);
   std::vector<double> seconds;

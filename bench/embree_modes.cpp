@@ -14,7 +14,7 @@
 namespace scarp::bench {
 namespace {
 
-// Embree writes into its rays, so each call gets copies, in memory that stays in the L1 cache.
+// Embree writes to its rays, so each call gets copies in memory that stays in the L1 cache.
 static_assert(sizeof(RayRecord) == sizeof(RTCRay) && offsetof(RayRecord, t_max) == offsetof(RTCRay, tfar));
 void fill(RTCRay& to, const RayRecord& from) { std::memcpy(&to, &from, sizeof to); }
 void fill(RTCRayHit& to, const RayRecord& from) {

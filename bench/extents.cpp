@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench extents`: fields as wide as 65,536 samples. Rays aimed at nodes, from above and within a window, are
-// also traced in a small field cut out of the large one: the results must be equal. It also measures the cost of a ray
-// in batches, on one thread, by class: how it grows with the field.
+// `scarp-bench extents`: fields up to 65,536 samples wide. Rays aimed at nodes, from above and within a window, are
+// also traced in a small field cut out of the large one: the results must be equal. Also measures how the cost of a ray
+// in batches, on one thread, grows with the field, by class.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ struct ExtentsOptions {
 using Json = nlohmann::ordered_json;
 
 constexpr int kWindow = 512;    // samples per side of the field cut out
-constexpr double kAbove = 600;  // height at which rays start above the nodes that they are aimed at
-constexpr int kAside = 40;      // and the largest distance from the node along each axis
+constexpr double kAbove = 600;  // height above the target node at which rays start
+constexpr int kAside = 40;      // maximum distance from the node along each axis
 // The ground rises by less than 4 per cell along each axis. Along a ray, the clearance therefore falls by kAbove per t,
 // less the largest fall of the ground along its plan track of at most sqrt(2) kAside cells.
 constexpr double kFall = kAbove - 4 * 1.4142136 * 1.4142136 * kAside;
@@ -47,7 +47,7 @@ constexpr double kFall = kAbove - 4 * 1.4142136 * 1.4142136 * kAside;
 const std::vector<RayClass> kGrowthClasses{RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao};
 constexpr RayCounts kGrowthRays{960, 544, 1 << 18, 1 << 18};
 
-// Hills of several lengths, in integers, plus a hash: a height for each sample without a table.
+// Hills of several lengths, in integers, plus a hash: computes the height of each sample without a table.
 std::int16_t height(int col, int row) {
   const auto wave = [](int x, int length) { return std::abs(x % (2 * length) - length); };
   auto hash = static_cast<std::uint32_t>(col) * 0x9e3779b1u ^ static_cast<std::uint32_t>(row) * 0x85ebca77u;
@@ -71,7 +71,7 @@ struct Aimed {
   int col, row;  // of the window
 };
 
-// From above at nodes inside a window; the segment ends under the lowest ground.
+// Rays from above at nodes inside a window; the segments end below the lowest ground.
 std::vector<Aimed> aimed_rays(int cols, int rows, std::int64_t windows, int per_window) {
   std::vector<Aimed> rays;
   for (std::int64_t w = 0; w < windows; ++w) {
@@ -95,7 +95,7 @@ std::vector<Aimed> aimed_rays(int cols, int rows, std::int64_t windows, int per_
   return rays;
 }
 
-// Processor time per ray in batches, ns, the best of three passes.
+// Processor time per ray in batches, in ns: the best of three passes.
 double ns_in_batches(const HeightTarget& target, const RaySet& set) {
   constexpr std::int64_t kBatch = 4096;
   constexpr int kPasses = 3;
@@ -145,7 +145,7 @@ Json measure(int cols, int rows, const ExtentsOptions& options) {
       const Hit &whole = hits[k], part = march_max_mip({&window, &window_pyramid}, ray);
       lost += !whole || !part;
       if (!whole || !part) continue;
-      // The positions in the large field are the larger numbers: their rounding bounds both clearances.
+      // Positions in the large field are larger numbers, so their rounding bounds both clearances.
       const double bound = rounding_of_clearance(field, field.grid_from_world(rays[k].ray), whole.t);
       different += std::abs(whole.t - part.t) * kFall > 2 * bound;
     }

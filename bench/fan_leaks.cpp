@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench leaks --fans`: very many fans beside the scalar march, which `leaks` judges.
+// `scarp-bench leaks --fans`: a large number of fans compared with the scalar march, which `leaks` judges.
 //
 // Eyes are at any height over nodes, edges and cells, beside the field, far from it and below it. Columns go through
-// nodes and points of edges, or are those of cameras and scanners; some have their rays in no order. Over fields that
-// wrap, rays end, most of them some copies on.
+// nodes and points of edges, or are those of cameras and scanners; some have unordered rays. Over fields that wrap, rays
+// end, most of them some copies on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -106,7 +106,7 @@ FanRays make_fan(Kind kind, const HeightField& f, Random& random) {
   FanRays rays{make_eye(f, random)};
   const bool aimed = kind == Kind::aimed || kind == Kind::unordered;
   if (f.wraps()) rays.t_max = random.uniform(0, 8) * (aimed ? 1 : f.width() + f.depth());
-  // Slopes that suit the field: rays meet the ground near and far away.
+  // Slopes that suit the field: rays hit the ground near and far away.
   const double lift = random.below(2) ? tall(f) / (f.width() + f.depth()) : 1;
   const double yaw = random.uniform(0, 2 * kPi), pitch = random.uniform(-1.2, 0.4);
   const double roll = random.below(3) ? 0 : random.uniform(-0.3, 0.3), half = std::exp2(random.uniform(-8, 0));
@@ -128,7 +128,7 @@ FanRays make_fan(Kind kind, const HeightField& f, Random& random) {
           node = {static_cast<double>(random.below(f.cols())), static_cast<double>(random.below(f.rows())), 0};
           if (random.below(4) == 0) node.x += random.uniform() < 0.5 ? 0.5 : random.uniform();
         }
-        // To the node, or a little beside it, on the surface or a little above or below it.
+        // Towards the node or slightly beside it, on the surface or slightly above or below it.
         const double beside = random.below(3) ? 0 : std::exp2(random.uniform(-30, 0));
         dvec3 to = f.world_from_grid(std::min(node.x + beside, static_cast<double>(f.cell_cols())), node.y, 0);
         to.z = f.height(to.x, to.y).value_or(f.min_height()) +
@@ -146,7 +146,7 @@ FanRays make_fan(Kind kind, const HeightField& f, Random& random) {
   return rays;
 }
 
-// The tolerance of fans in numerics.md: how far from the surface the place of a hit may be, in sample units.
+// The tolerance of fans in numerics.md: the maximum distance of a hit from the surface, in sample units.
 double tolerance(const LeakField& ground, const GridRay& g, double t) {
   const double relief = std::min(ground.field.max_sample() - ground.field.min_sample(),
                                  ground.pyramid.cell_relief() * ground.pyramid.code().step);
@@ -155,7 +155,7 @@ double tolerance(const LeakField& ground, const GridRay& g, double t) {
          8 * rounding_of_clearance(ground.field, g, t);
 }
 
-// Whether two times are those of one hit: from one to the other the ray is along the surface.
+// Whether two times belong to the same hit: between them the ray runs along the surface.
 bool same_hit(const LeakField& ground, const Ray& ray, double t, double truth) {
   const HeightField& f = ground.field;
   const GridRay g = f.grid_from_world(ray);
@@ -240,7 +240,7 @@ class FanLeaks {
     counts_[k].add(sum);
   }
 
-  // Hits of rays in double that the fan has looked for: those of the march, to the bit.
+  // Hits of double-precision rays that the fan has searched for must equal those of the march, bit for bit.
   void look(std::int64_t piece, const LeakField& ground, const FanRays& rays, const Fan& fan, const FanOptions& options,
             Random& random, Count& sum) {
     std::vector<FanSight> sights(kPiece);
@@ -249,7 +249,7 @@ class FanLeaks {
     for (std::size_t i = 0; i < sights.size(); ++i) {
       Ray ray = rays.ray(i);
       if (!is_followable(ray)) ray.direction = {0, 0, -1}, sights[i] = {-std::numeric_limits<float>::infinity(), 0};
-      // By less than half a unit of the last digit.
+      // Changed by less than half a unit of the last digit.
       for (int axis = 0; axis < 3; ++axis) ray.direction[axis] *= 1 + random.uniform(-0.99, 0.99) * 0x1p-25;
       if (random.below(4) == 0) ray.t_max = 2 * random.uniform() * std::max(ground.field.width(), 1.0);
       precise.push_back(ray);

@@ -29,7 +29,7 @@ namespace {
 
 // `render`: frames of the look `comanche`.
 struct FramesOptions {
-  int period = 1024;  // samples from repetition to repetition, even, 64..8192
+  int period = 1024;  // period of the ground in samples, even, 64..8192
   int width = 320, height = 240, steps = 256;
   int threads = 2, cameras = 8, repeats = 9;
   std::uint64_t seed = 1;
@@ -43,7 +43,7 @@ struct Way {
   const char* name;
   const char* march;
   bool interpolate, step_by_view;
-  int steps;  // times those of the options
+  int steps;  // multiple of the steps in the options
 };
 constexpr Way kWays[] = {{"fixed-step plain", "fixed-step", false, false, 1},
                          {"fixed-step", "fixed-step", true, false, 1},
@@ -59,8 +59,7 @@ constexpr Air kAirs[] = {{"dry", false, false}, {"water", true, false}, {"fog", 
 // Tolerance of ground along the ray, in cells.
 constexpr double kTolerance = 1;
 // Fraction of the device's pixels by max-mip that may be wrong: floats move a ray by 1/768 pixel (numerics.md, "Whole
-// frames"), so 2 in 768 of the pixels on an edge fall on its other side; less than a third of the pixels are on an
-// edge.
+// frames"), so 2 in 768 of the pixels on an edge show its other side; less than a third of the pixels are on an edge.
 constexpr double kBesideEdges = 2.0 / 768 / 3;
 
 HeightField endless(const FramesOptions& options) {
@@ -75,7 +74,7 @@ HeightField endless(const FramesOptions& options) {
   return height_field_from(std::move(raster), {.mirror = true});
 }
 
-// Low over the ground, a little down, on a straight line through several repetitions.
+// Low over the ground, looking slightly down, on a straight line over several periods.
 std::vector<Camera> flight(const HeightField& field, const FramesOptions& options) {
   const double low = field.min_height(), relief = field.max_height() - low;
   std::vector<Camera> cameras;
@@ -158,7 +157,7 @@ std::vector<Maker> makers(const HeightField& field, const FramesOptions& options
 #endif
 }
 
-// By the device's clock, in milliseconds.
+// Time on the device's clock, in milliseconds.
 std::optional<double> device_ms(const Maker& maker, [[maybe_unused]] const Way& way,
                                 [[maybe_unused]] const Camera& camera,
                                 [[maybe_unused]] const PictureSettings& settings) {
@@ -221,8 +220,8 @@ struct FrameTimes {
   std::vector<double> wall_ms, cpu_ms, device_ms;
 };
 
-// Throws Error, after the report, if the exact march has a wrong pixel, on a device more than one in a thousand: in
-// single precision a ray may pass a crest on its other side.
+// Throws Error, after the report, if the exact march has a wrong pixel; on a device, if more than one in a thousand is
+// wrong: in single precision a ray may pass a crest on its other side.
 void run_frames(const FramesOptions& options, const ReportOptions& report) {
   if (options.period % 2 != 0) throw Error(fmt::format("--period {}: expected an even number", options.period));
   const ThreadLimit limit(options.threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench function-leaks`: a large number of rays at terrain functions, each judged by interval bisection: the
-// conservative marches may lose none.
+// `scarp-bench function-leaks`: traces a large number of rays over terrain functions and judges each by interval
+// bisection: the conservative marches must not lose any.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 // `function-leaks`: the conservative marches over the example functions, every ray judged.
 struct FunctionLeaksOptions {
-  std::int64_t rays = 1'000'000;  // in all
+  std::int64_t rays = 1'000'000;  // total
   std::uint64_t seed = 1;
   bool all = false;  // the approximate marches as well
 };
@@ -34,7 +34,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kRaysPerPiece = 256;
 
-// Eyes within arm's length of the ground and high above it; rays along the ground, up and down, of any length.
+// Eyes close to the ground and high above it; rays along the ground, up and down, of any length.
 Ray random_ray(const HeightFunction& function, Random& random) {
   const double x = random.uniform(-20000, 20000), y = random.uniform(-20000, 20000);
   const double azimuth = random.uniform(0, 6.283185307179586);
@@ -61,12 +61,12 @@ struct Counts {
 void count(const FunctionJudgement& judge, const Ray& ray, const Hit& hit, double tolerance, Counts& counts) {
   counts.hits += bool(hit);
   counts.exhausted += hit.status == HitStatus::exhausted;
-  counts.below += hit.status == HitStatus::below;  // no ray starts there
+  counts.below += hit.status == HitStatus::below;  // no ray starts below ground
   if (judge.verdict == FunctionVerdict::crossing) {
     const bool passed = hit && hit.t > judge.crossed_by + tolerance * (hit.t - ray.t_min);
     counts.lost += hit.status == HitStatus::miss || passed;
   }
-  // A hit in front of the ground does not lose it, but is false if the ground is beyond the tolerance.
+  // A hit in front of the ground does not lose the ground, but is false if the ground is beyond the tolerance.
   const double early = 2 * tolerance * (hit.t - ray.t_min);
   counts.false_hits += hit && hit.t < judge.clear_until - early;
 }
@@ -106,7 +106,7 @@ void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions
         for (std::size_t m = 0; m < marches.size(); ++m) {
           const Hit hit = marches[m]->cpu(function, ray, settings, nullptr, FunctionUse::march);
           const bool local = marches[m]->name == "lipschitz-local";
-          // The others have their own tolerance above the ground: only passing through it is wrong.
+          // All other marches have their own tolerance above the ground: only passing through the ground is wrong.
           count(judge, ray, hit, local ? settings.lipschitz_local.tolerance : 0, mine.marches[m]);
           if (!local) mine.marches[m].false_hits = 0;
         }

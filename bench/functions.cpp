@@ -73,7 +73,7 @@ std::vector<Ground> grounds(const FunctionsOptions& options) {
   return all;
 }
 
-// A pinhole of 60 degrees across, looking 12 degrees down.
+// A pinhole camera, 60 degrees wide, looking 12 degrees down.
 std::vector<Ray> picture(const HeightFunction& function, const FunctionsOptions& options) {
   const double pitch = -12 * 3.141592653589793 / 180, half = std::tan(30 * 3.141592653589793 / 180);
   const dvec3 ahead(0, std::cos(pitch), std::sin(pitch)), right(1, 0, 0), up(0, -std::sin(pitch), std::cos(pitch));
@@ -190,10 +190,10 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
         best_ms = std::min(best_ms, took.count());
       }
       for (const std::uint32_t of_ray : steps) bounds += of_ray;
-      // The work is the same, bit for bit, as ray by ray, which the previous row counts.
+      // The work is the same, bit for bit, as for single rays, which the previous row counts.
       if (march.vectors) heights = counted_heights, bounds = counted_bounds;
       counted_heights = heights, counted_bounds = bounds;
-      // The others evaluate only heights, and count them as steps.
+      // All other marches evaluate only heights, and count them as steps.
       if (march.entry->name != "lipschitz-local") std::swap(heights, bounds);
       int crossings = 0, misses = 0, clear = 0, false_hits = 0, given_up = 0;
       std::vector<double> errors;
@@ -206,7 +206,7 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
           false_hits += bool(hit);
         } else if (judge.verdict == FunctionVerdict::crossing) {
           ++crossings;
-          // Beyond the first crossing by more than a tolerance of the distance: it was stepped over.
+          // The hit is behind the first crossing by more than the tolerance: the crossing was stepped over.
           const bool passed = hit && hit.t > judge.crossed_by * (1 + RelaxedSettings{}.tolerance);
           misses += hit.status == HitStatus::miss || passed;
           if (hit && !passed) {

@@ -40,12 +40,13 @@ using Json = nlohmann::ordered_json;
 // 480 x 270, rounded down to whole tiles of 8 pixels.
 constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
 constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
-// Factor of rays judged in the classes in which naive is tuned: a few correct rays do not show that all are.
+// Factor by which more rays are judged in the classes for which naive is tuned: a few correct rays do not show that all
+// are.
 constexpr std::int64_t kMoreJudged = 16;
 constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
-// For cards: runs per group, consecutive groups without improvement after which the best one counts, and the time
-// limit.
+// For cards: runs per group, number of consecutive groups without improvement after which the best group counts, and
+// the time limit.
 constexpr int kRunsInARow = 9, kGroups = 20;
 constexpr double kFaster = 0.99;
 constexpr std::chrono::seconds kMostInARow{3};
@@ -57,7 +58,8 @@ constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
 // The classes of the article's comparison: the map, one any-hit ray per point, and the picture.
 bool is_compared(RayClass ray_class) { return ray_class == RayClass::chunk || ray_class == RayClass::primary; }
 
-// At most kNearlyRight of the hits are lost or more than a cell off, and as few of the misses are hits.
+// Whether at most kNearlyRight of the hits are lost or off by more than a cell, and at most as many of the misses are
+// hits.
 bool has_positions(const Judgement& judged) {
   return judged.miss_rate + judged.late_rate + judged.early_rate <= kNearlyRight && judged.false_rate <= kNearlyRight;
 }
@@ -79,7 +81,7 @@ std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray
   return part;
 }
 
-// A field in the memory of both.
+// A field in the memory of the CPU and the device.
 struct Ground {
   Ground(const Device& device, const BenchField& ground, double factor)
       : exaggeration(factor),
@@ -190,7 +192,7 @@ class Comparison {
     std::fflush(stdout);
   }
 
-  // Naive with hits in the right position, compared with max-mip, one class per row.
+  // Prints naive with hits at the right position, compared with max-mip, one class per row.
   void print_comparison() const {
     std::vector<std::vector<std::string>> lines{
         {"samples", "exagg.", "class", "max-mip", "naive Mrays/s", "max-mip is", "clipped Mrays/s", "max-mip is"}};
@@ -244,7 +246,7 @@ class Comparison {
                         count;
     contender.seconds_per_ray = device_seconds(device_, queries.passes()) / count;
     if (set.any_hit && is_compared(set.ray_class)) {
-      // The position at which such a ray is blocked is that of its closest hit.
+      // The position at which an any-hit ray is blocked is that of its closest hit.
       contender.march->timed.set_march_settings(contender.settings);
       const auto closest = ask(contender.march->timed, ground.target, false, sample, no_costs);
       for (std::size_t i = 0; i < answers.size(); ++i) answers[i].t = closest[i].t;
@@ -252,7 +254,7 @@ class Comparison {
     contender.judged = judge.score(answers);
   }
 
-  // Naive at the cheapest acceptable settings, for each criterion that has such settings.
+  // Adds naive at the cheapest acceptable settings, for each criterion that has such settings.
   void add_fair_ones(const Ground& ground, const RaySet& set, const Judge& judge, std::vector<Contender>& contenders) {
     const double limit = options_.miss_limit, max_mip_wrong = contenders[0].judged.wrong_rate;
     std::map<std::tuple<DeviceMarch*, double, double, double>, Contender> tried;
@@ -293,7 +295,8 @@ class Comparison {
   }
 
   // Time of the last rays that a device traced; for cards the median of the fastest group of consecutive runs. While
-  // the host prepares rays the card clocks down, and a run takes up to six times as long until the clocks are up again.
+  // the host prepares rays, the card lowers its clock, and a run takes up to six times as long until the clock is up
+  // again.
   double seconds_of_last(DeviceQueries& queries) const {
     if (is_cpu(device_)) return device_seconds(device_, queries.passes());
     const auto again = [&] {
@@ -312,7 +315,7 @@ class Comparison {
     return best;
   }
 
-  // One warm-up pass of each, then passes in turn.
+  // One warm-up pass of each, then passes of all in turn.
   void measure_all(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays,
                    const std::vector<Contender>& contenders) {
     std::vector<std::vector<Ray>> parts;

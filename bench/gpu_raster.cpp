@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench gpu --raster`: visibility per pixel by rays (max-mip) and by drawing the whole grid as two triangles per
-// cell, in turn, of the same samples in the device's memory. The drawing writes only depths, the minimum for
+// cell, alternately, from the same samples in the device's memory. The drawing writes only depths, the minimum for
 // visibility.
 //
 // Both surfaces are the triangles, so depths are equal except for rounding. In a pixel the reciprocal of the view
 // depth, 1/z, changes by g_x, g_y per pixel, from the triangle that the ray has hit; with v = 2^-24 the two may differ
 // by
 //
-//   s_x |g_x| + s_y |g_y|         corners are drawn s pixels beside their places: 2^-(bits + 1) by the grid of places
-//                                 that the device rounds to, and 8 v of the terms of x and w (6 roundings: the matrix,
-//                                 the sample less the eye's, a product, three sums), of y likewise
+//   s_x |g_x| + s_y |g_y|         corners are drawn up to s pixels off their positions: 2^-(bits + 1) by the sub-pixel
+//   grid
+//                                 of the device, and 8 v of the terms of x and w (6 roundings: the matrix,
+//                                 the sample minus the eye's, a product, three sums); the same for y
 //   (8 v S_w / z + 4 v) / z       w itself, the division, the depth as a float; the rays' directions as floats
 //   4 v (1/z + W |g_x| + H |g_y|) the plane through a triangle's depths, W x H pixels
 //   d N_z / (z |N P|)             the march: up to d = 2 rho lower or higher (doc/dev/numerics.md)
@@ -47,7 +48,7 @@ constexpr std::uint32_t kVertexWords[] = {
 };
 
 constexpr double kUnit = 0x1p-24;
-constexpr float kNear = 1;  // the camera is farther from all ground
+constexpr float kNear = 1;  // the camera is farther than this from all ground
 constexpr RayCounts kCpuDeviceRays{480, 264, 1, 1, 8};
 
 HeightField as_triangles(const BenchField& ground) {
@@ -57,7 +58,7 @@ HeightField as_triangles(const BenchField& ground) {
       [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
 
-// Two triangles for each cell of a patch, parted as Surface::triangles is.
+// Two triangles for each cell of a patch, split like those of Surface::triangles.
 std::vector<std::uint32_t> patch_indices() {
   std::vector<std::uint32_t> indices;
   constexpr std::uint32_t kSide = glsl::kGridPatch + 1;
@@ -71,7 +72,7 @@ std::vector<std::uint32_t> patch_indices() {
   return indices;
 }
 
-// The grid, drawn.
+// The grid as a mesh to draw.
 class GridMesh {
  public:
   GridMesh(const Device& device, const HeightField& field, const DeviceGround& ground, const PinholeCamera& camera)
@@ -124,7 +125,7 @@ class GridMesh {
     return depths;
   }
 
-  /// Pixels by which corners at `to` from the eye may be drawn off their positions.
+  /// Maximum displacement, in pixels, of drawn corners that are `to` from the eye.
   dvec2 beside(const dvec3& to, std::uint32_t subpixel_bits) const {
     const double z = dot(to, camera_.forward), sw = terms(to, camera_.forward, 1),
                  snap = std::ldexp(0.5, -static_cast<int>(subpixel_bits));
@@ -148,7 +149,7 @@ class GridMesh {
     const double per_sample = field.settings().scale * field.settings().exaggeration;
     const double relief =
         (std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11})) * per_sample;
-    // rho at the far side of a tile of 1,024 cells, with the heights of all of the field for those of the tile.
+    // rho at the far side of a tile of 1,024 cells, using the heights of the whole field instead of those of the tile.
     const double rho = 16 * kUnit * (3 * (field.max_height() - field.min_height()) + 2049 * relief);
     return s.x * gx + s.y * gy + (8 * kUnit * sw / z + 4 * kUnit) / z + 4 * kUnit * (1 / z + width * gx + height * gy) +
            2 * rho * std::abs(normal.z) / (z * plane);
@@ -194,7 +195,7 @@ Otherwise otherwise(const PinholeCamera& camera, const GridMesh& mesh, const Ray
   return pixel;
 }
 
-// Number of pixels with a depth outside the range of their own ray and those through the corners.
+// Number of pixels whose depth is outside the range of their own ray and the rays through the corners.
 std::int64_t unexplained(const std::vector<Otherwise>& pixels, DeviceQueries& queries, const DeviceTarget& target,
                          const PinholeCamera& camera, const GridMesh& mesh, std::uint32_t bits) {
   std::int64_t count = 0;

@@ -25,7 +25,7 @@
 namespace scarp::bench {
 namespace {
 
-// `heights`: all marches beside all modes of Embree in several ray classes.
+// `heights`: all marches and all modes of Embree, in several ray classes.
 struct HeightsOptions {
   TraceOptions trace;
   std::vector<int> sizes{2049};
@@ -125,7 +125,7 @@ Json row_of(const Engine& engine, const RaySet& set, const Timing& timing, const
 
 bool is_embree(const Json& row) { return row["engine"].get<std::string>().starts_with("embree"); }
 
-// By processor time: relative to single rays against Embree's triangles, and to the fastest fully measured mode of
+// Adds ratios of processor time to Embree's triangles with single rays, and to the fastest fully measured mode of
 // Embree.
 void add_ratios(std::vector<Json>& rows) {
   const Json* fastest = nullptr;
@@ -176,7 +176,7 @@ void print(const std::vector<Json>& rows) {
   }
 }
 
-// Memory that tracing needs, once per structure.
+// Prints the memory that tracing needs, once per structure.
 void print_memory(const std::vector<Engine>& engines, const HeightField& field) {
   std::vector<std::string> said;
   for (const Engine& engine : engines) {

@@ -48,8 +48,8 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
 }
 
 TEST(ScarpBench, EnginesAgreeOnHits) {
-  // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine was
-  // given different rays.
+  // Counts differ only by the surface, which at this size affects 2 % of the shadow rays; otherwise an engine was given
+  // different rays.
   std::map<std::string, double> max_mip;
   const json all = output_of("heights --sizes 129 --rays small --repeats 1");
   for (const json& row : all["rows"]) {
@@ -81,7 +81,7 @@ TEST(ScarpBench, BulletWithoutAcceleratorMatchesEmbree) {
     if (row["engine"] == "embree-tri" && row["mode"] == "x1") embree[row["class"]] = row["hit_share"];
   }
   for (const json& row : all["rows"]) {
-    // The same triangles; at their edges either may lose a ray: 0.4 % of those aimed at them, by `lost`.
+    // The triangles are the same; at their edges either engine may lose a ray: 0.4 % of those aimed at them, by `lost`.
     if (row["mode"] == "plain") {
       EXPECT_NEAR(row["hit_share"].get<double>(), embree.at(row["class"]), 0.01) << row.dump();
     }

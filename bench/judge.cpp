@@ -21,7 +21,7 @@ double share(std::int64_t part, std::int64_t whole) {
 }  // namespace
 
 Judge::Judge(const HeightTarget& target, const RaySet& set, std::int64_t sample_size, std::uint64_t seed) : set_(set) {
-  // One ray from each of equally long pieces of the set.
+  // Takes one ray from each of `count` equally long pieces of the set.
   const std::int64_t count = std::min(sample_size, set.size());
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t begin = i * set.size() / count, end = (i + 1) * set.size() / count;

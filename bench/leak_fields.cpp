@@ -79,7 +79,7 @@ std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embr
       added.embree = std::make_unique<EmbreePeer>(added.field, EmbreeSurface::triangles, EmbreeQuality::high);
     }
   };
-  // Each field has its own random numbers.
+  // Each field has its own random sequence.
   const auto random = [&] { return Random(seed, ~static_cast<std::uint64_t>(fields.size())); };
   const auto rough = [&](int cols, int rows, const HeightFieldSettings& settings = {}) {
     Random r = random();

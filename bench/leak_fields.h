@@ -41,8 +41,7 @@ struct LeakField {
   MaxPyramid pyramid{field};
   HoleCounts holes{field};
   std::vector<Node> rim{};  ///< nodes with a height and with a hole beside them
-  /// Embree's triangles over the same samples: only for bounded fields without holes whose samples are exact in
-  /// float32.
+  /// Embree's triangles over the same samples; null for fields that wrap, are solid or have holes.
   std::unique_ptr<EmbreePeer> embree{};
 
   HeightTarget target() const { return {&field, &pyramid}; }

@@ -66,7 +66,7 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   if (!(t0_ <= t1_)) return;
   c0_ = on_surface_ ? Real{0} : clearance(t0_);
   if (!c0_ || hugs_border() || holes_between(t0_, t1_)) return;
-  // The border is crossed at a time that rounding moves: the more, the more slowly the ray crosses it.
+  // Rounding moves the time at which the border is crossed: the more slowly the ray crosses, the more.
   const Real in = t0_ + late_, out = t1_ - early_;
   if (!(in <= out)) return;
   const auto c0 = on_surface_ ? c0_ : clearance(in), c1 = clearance(out);
@@ -110,7 +110,7 @@ LeakJudge::Real LeakJudge::bound(Real t) const {
   return kRoundings * kUnit * upright + sideways(t) * (high_ - low_);
 }
 
-// Depth below the surface at which a hit is certain: a ray from the surface has to be below by B as computed.
+// Depth below the surface at which a hit is certain: for a ray from the surface, the computed depth must exceed B.
 LeakJudge::Real LeakJudge::under(Real t) const { return (on_surface_ ? 2 : 1) * bound(t); }
 
 // Whether a ray is so close to the border, along its whole length, that rounding may put it outside.
@@ -179,7 +179,7 @@ LeakJudge::Piece LeakJudge::piece(const Place& place, Real t, bool south_east) c
 }
 
 // Time for which the ray has been in the cell (or triangle) at t, or will be, within its range. `room`: width in cells
-// next to its lines that does not count.
+// of a strip along its lines that does not count.
 LeakJudge::Real LeakJudge::time_in_cell(const Place& place, Real t, bool back, Real room) const {
   // Forwards, a cell is followed to its end, even beyond the end of the ray.
   const bool moves = dx_ != 0 || dy_ != 0;
@@ -229,7 +229,7 @@ const char* LeakJudge::lost(const Hit& hit, double share) const {
   if (!hit && must_hit_) return "a ray that must hit";
   if (!hit || !(t0_ <= t1_) || !c0_) return nullptr;
   const Real from = t0_, t = from + share * (hit.t - from);
-  // It is known to be above only where it has certainly entered.
+  // The ray is known to be above the ground only where it has certainly entered.
   if (!begins_above_ || t < from + late_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
   const auto c = clearance(t);
   return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
@@ -316,13 +316,13 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   if (std::abs(c) > 2 * (at_rim ? std::max(b, bound_at_rim(hit, place->h, t, e)) : b)) return "not on the surface";
 
   if (on_surface_) {
-    // At the start the clearance is zero by definition; there and later it has to fall.
+    // At the start the clearance is zero by definition; from there on it must fall.
     const Real asked = kRoundings * kUnit *
                        (std::abs(oz_) + std::abs(dz_ * t) + std::max(std::abs(low_), std::abs(high_)) +
                         (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t)) * (high_ - low_));
     if (deepest(*place, t) < asked - kCounted / kRoundings * b) return "never strictly below";
   }
-  // Near a hole, from which the ray may have come, only the time counts for which it is certainly over the cell.
+  // Near a hole, from which the ray may have come, only the time during which it is certainly over the cell counts.
   const Real unsure = holes_between(t, t) ? e + std::max(allowance(0), allowance(1)) : 0;
   const Real before = time_in_cell(*place, t, true, unsure);
   if (risen(*place, t, before) > 2 * b + std::abs(c)) return "a way out of the ground";
@@ -337,7 +337,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   if (speed > 0 && before * speed < 0x1p-20L) {
     const Real q = t - kBack / speed;
     const auto previous = q >= t0_ ? place_at(q) : std::nullopt;
-    // Where there is a hole within rounding, the ray may have come out of it.
+    // If there is a hole within rounding, the ray may have come out of it.
     if (previous && !holes_between(t, t)) {
       const Real u = x(t) - previous->col, v = y(t) - previous->row;
       const bool reaches = std::min(u, v) >= -e && std::max(u, v) <= 1 + e;
@@ -364,7 +364,7 @@ std::optional<double> LeakJudge::cut_behind(const Hit& hit) const {
   if (!place || hit.wall) return {};
   const Real length = time_in_cell(*place, hit.t, false) / 2;
   const double t = static_cast<double>(hit.t + length);
-  // By rounding it may have left the field before.
+  // Because of rounding, the ray may have left the field before.
   if (t > t1_ - early_) return {};
   const Piece f = piece(*place, hit.t, south_east(*place, hit.t + length / 2));
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The judge of `scarp-bench leaks` where it was wrong once, and where it must find errors.
+// The judge of `scarp-bench leaks`, in cases in which it was once wrong, and in which it must find errors.
 #include "bench/leak_judge.h"
 
 #include <gtest/gtest.h>
@@ -60,8 +60,8 @@ TEST(LeakJudge, DistinguishesFalseHitsFromLostHits) {
   EXPECT_STREQ(judge.lost(Hit{}, 0.5), "a ray that must hit");
 }
 
-// Along the diagonal of saddles, rising by 8e-13 per cell: at each node it leaves the ground and enters it again right
-// behind.
+// Along the diagonal of saddles, rising by 8e-13 per cell: at each node the ray leaves the ground and re-enters it
+// immediately.
 TEST(LeakJudge, AcceptsReentryRightAfterExit) {
   constexpr int kSide = 40;
   std::vector<float> samples;

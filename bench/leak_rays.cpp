@@ -93,11 +93,11 @@ class Maker {
         direction.z = r_.uniform(-1, 0.2) * relief_;
         return along(on + dvec3(0, 0, r_.uniform(0, 1) * relief_), direction, 1);
       }
-      case 2: {  // in from outside through the node
+      case 2: {  // inwards through the node from outside
         const dvec3 to = anywhere();
         return along(on - (to - on) * static_cast<double>(1 + r_.below(2)), to - on, 3);
       }
-      default: {  // down at it
+      default: {  // down at the node
         const double high = height_above();
         return along(on + dvec3(lean(high), lean(high), high), on, high);
       }
@@ -156,8 +156,8 @@ class Maker {
     return ray;
   }
 
-  // Off the vertical by the cosine of 90 degrees, the noise of quaternions, or 2^-30 to 2^-1000; at a node or an edge,
-  // half of them at a border or a rim, a quarter off it by the rounding of the position.
+  // Off the vertical by the cosine of 90 degrees, the noise of quaternions, or 2^-30 to 2^-1000. Aimed at a node or an
+  // edge; half of the rays at a border or a rim, a quarter off their target by the rounding of the position.
   Ray leaning() {
     Node node = any_node();
     if (!ground_.rim.empty() && r_.below(2))
@@ -181,7 +181,7 @@ class Maker {
     const dvec3 to = r_.below(2) ? at(any_node()) : anywhere();
     const double away = std::pow(10.0, 5 + r_.below(3)), azimuth = r_.uniform(0, 2 * kPi);
     const dvec3 from = to + away * dvec3(std::cos(azimuth), std::sin(azimuth), r_.uniform(0, 0.3));
-    // Not to the ends of a wrapped field: there is only ground on the way.
+    // In a wrapped field, not up to the ends: everything along the ray is ground.
     const double rest = 1 + 4 * (f_.width() + f_.depth()) / away;
     Ray ray = along(from, to - from, rest);
     if (f_.wraps()) ray.t_min = std::max(0.0, 2 - rest);
@@ -198,7 +198,7 @@ class Maker {
   Node any_cell() { return {r_.below(f_.cell_cols()), r_.below(f_.cell_rows())}; }
   double place() { return (1 + r_.below(1022)) * kGrid; }
 
-  // A node in world space; one without a height at the lowest.
+  // A node in world space; a node without a height is at the lowest height.
   dvec3 at(Node node) const {
     const double sample = f_.visit([&](const auto& grid) {
       const auto s = grid.at(node.col, node.row);
@@ -225,8 +225,8 @@ class Maker {
     return ray;
   }
 
-  // Down at a place in a cell (or at a node, which may be of the last column or row) and on to below all ground; over
-  // the field along its whole length, if there is room.
+  // Down at a position in a cell (or at a node, which may be in the last column or row) and on to below all ground. The
+  // ray is over the field along its whole length, if there is room.
   Ray aimed(Node node, double u, double v, bool in_float32) {
     double sample = 0;
     const Cell cell{std::min(node.col, f_.cell_cols() - 1), std::min(node.row, f_.cell_rows() - 1)};
@@ -253,7 +253,7 @@ class Maker {
     return ray;
   }
 
-  // From a place on the surface, level, in any azimuth.
+  // From a point on the surface, level, in any azimuth.
   Ray from_surface() {
     Ray ray = any();
     for (int attempt = 0; attempt < 20; ++attempt) {

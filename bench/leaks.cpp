@@ -184,8 +184,8 @@ class Leaks {
     counts_[static_cast<std::size_t>(job.leak_class)].add(sum);
   }
 
-  // Why all hits, or the same ray cut behind or in front of its hit, contradict the hit, or null. `all` receives all
-  // hits.
+  // Returns why the list of all hits, or the same ray cut behind or in front of its hit, contradicts the hit; null if
+  // it does not. `all` receives all hits.
   static const char* contradiction(const HeightTarget& target, const LeakJudge& judge, const Ray& ray, const Hit& hit,
                                    std::vector<Hit>& all) {
     const HitStatus status = all_hits_max_mip(target, ray, all);
@@ -208,8 +208,8 @@ class Leaks {
     return nullptr;
   }
 
-  // Two answers that cannot both be right. The march's own has passed all checks, so only hits of the exhaustive march
-  // remain: earlier ones are lost if they pass the same checks and the ray is below the ground behind them.
+  // Handles two answers that cannot both be right. The march's own answer has passed all checks. Earlier hits of the
+  // exhaustive march therefore count as lost if they pass the same checks and the ray is below the ground behind them.
   template <class Fails>
   void judge_difference(const LeakJudge& judge, const Hit& truth, const Hit& hit, Count& sum,
                         const Fails& fails) const {
@@ -234,7 +234,7 @@ class Leaks {
   }
 
   const LeaksOptions& options_;
-  std::array<std::vector<const LeakField*>, std::size(kLeakClasses)> grounds_;  // that suit each class
+  std::array<std::vector<const LeakField*>, std::size(kLeakClasses)> grounds_;  // grounds that suit each class
   std::int64_t pieces_ = 0;
   double embree_share_ = 0;
   std::mutex mutex_;

@@ -29,18 +29,18 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr double kDegree = std::numbers::pi / 180;
-// Metres on a plane: the scale is 1 and north is up at the origin, where the DEM has its centre.
+// A plane in metres: the scale is 1 and north is up at the origin, which is the centre of the DEM.
 constexpr const char* kCrs =
     R"(PROJCS["plane",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],)"
     R"(UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
     R"(PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],)"
     R"(PARAMETER["false_northing",0],UNIT["metre",1]])";
 constexpr const char* kDem = "dem.tif";
-// The same output for all that write GeoTIFF. SAGA writes its own format, which is not compressed either.
+// The same output for all programs that write GeoTIFF. SAGA writes its own format, which is not compressed either.
 constexpr const char* kTiled = "TILED=YES";
 constexpr const char* kPlain = "COMPRESS=NONE";
 
-// The task, in the numbers of the command lines.
+// The parameters of the task, as on the command lines.
 struct Question {
   double x, y;  // the observer
   int height, azimuth, altitude;
@@ -49,7 +49,7 @@ struct Question {
 struct MapProgram {
   std::string name, map;
   std::string program;  // on PATH
-  std::string package;  // of Debian
+  std::string package;  // Debian package
   std::vector<std::string> words;
   std::string script;  // job.sh; empty: none
   std::string result;
@@ -143,7 +143,7 @@ Raster make_dem(const std::string& path, const MapsOptions& options, int size) {
 }
 
 std::int64_t wrong_in(const std::string& path, const MapProgram& program, const MapTruth& truth) {
-  // A band with a colour table is read as heights only if it is named.
+  // A band with a colour table is read as heights only if the band is given explicitly.
   RasterOptions first_band;
   first_band.band = 1;
   const Raster raster = read_raster(path, first_band);
@@ -157,7 +157,7 @@ std::int64_t wrong_in(const std::string& path, const MapProgram& program, const 
       raster.samples);
 }
 
-// Counts of `scarp viewshed --mode count` that differ from rays.
+// Number of pixels of `scarp viewshed --mode count` that differ from rays.
 std::int64_t wrong_counts(const std::string& path, const std::vector<Viewpoint>& views,
                           const std::vector<scarp::Node>& judged) {
   RasterOptions first_band;

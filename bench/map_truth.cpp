@@ -22,7 +22,7 @@ std::size_t index_of(const HeightField& field, scarp::Node node) {
          static_cast<std::size_t>(node.col);
 }
 
-// `sweep` returns whether each node is positive, `ray` whether one is.
+// `sweep` returns whether each node is positive; `ray` returns this for one node.
 template <class Sweep, class Ray>
 MapTruth truth(const HeightField& field, std::int64_t judged, const Sweep& sweep, const Ray& ray) {
   const auto sample = random_nodes(field, judged);

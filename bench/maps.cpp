@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and the fraction that sweeps skip, compared with
-// one ray each at random nodes; and `scarp` compared with other programs that make such maps.
+// `scarp-bench maps`: viewsheds and shadows of all nodes: ns per node and the fraction that sweeps skip, checked
+// against single rays at random nodes. Also compares `scarp` with other programs that compute such maps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ Json measure_map(const HeightField& field, const char* map, int threads, int rep
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     const Stopwatch watch;
     counts = sweep();
-    // The first is the warm-up.
+    // The first pass is the warm-up.
     if (repeat == 0) continue;
     seconds.push_back(watch.wall_s());
     cpu_seconds.push_back(watch.cpu_s());
@@ -114,7 +114,7 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   return rows;
 }
 
-// Lines between random places, in random directions, with both ends at one height above ground.
+// Lines between random points, in random directions, with both ends at the same height above ground.
 std::vector<LineEnds> random_lines(const HeightField& field, int count, double height) {
   std::vector<LineEnds> lines;
   for (std::uint64_t n = 0; lines.size() < static_cast<std::size_t>(count); ++n) {

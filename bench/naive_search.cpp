@@ -6,8 +6,8 @@ namespace {
 
 constexpr double kCoarsestStep = 1.0 / 64, kFinestStep = 1.0 / (1 << 20);
 constexpr int kFactorHalvings = 6;
-// The height above ground that counts as a hit, relative to the least step: small enough that early hits of naive
-// depend on the step only, as its misses do.
+// The height above ground that counts as a hit, relative to the least step: small enough that early hits of naive, like
+// its misses, depend only on the step.
 constexpr double kTolerancePerStep = 1.0 / 16;
 // A gain below this fraction of the steps does not count.
 constexpr double kLeastGain = 0.01;
@@ -24,10 +24,10 @@ std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const
     for (double min_step = kCoarsestStep; min_step >= kFinestStep; min_step /= 2) {
       settings.min_step = min_step;
       settings.tolerance = kTolerancePerStep * min_step;
-      // No ray needs more steps than minimum steps alone would take: none is given up.
+      // No ray needs more steps than with only minimum steps, so none is given up.
       settings.max_steps = static_cast<int>(1 / min_step) + 2;
       const NaiveTrial trial = attempt(settings);
-      // Finer ones only take more steps.
+      // Finer settings only take more steps.
       if (best && trial.steps >= best_steps) break;
       if (trial.good) {
         best = settings;

@@ -6,7 +6,7 @@
 namespace scarp::bench {
 namespace {
 
-// Steps fall with each of the settings; those below three limits are good.
+// The number of steps falls as any setting grows; settings below three limits are good.
 NaiveTrial limited(const NaiveSettings& settings) {
   return {settings.step_factor <= 0.2 && settings.min_step <= 1.0 / 1000 && settings.tolerance <= 0.01,
           100 / settings.step_factor + 0.1 / settings.min_step + 1 / (settings.tolerance + 0.001)};

@@ -53,7 +53,7 @@ VoxelEngine NanovdbPeer::engine(const char* mode, float push) const {
       Hit& to = hits[i];
       to = {};
       if (!ray.clip(box)) continue;
-      // From active node to active voxel, as its ZeroCrossing() goes to the first active voxel.
+      // Steps from active node to active voxel, as NanoVDB's ZeroCrossing() does to find the first active voxel.
       nanovdb::Coord at = nanovdb::RoundDown<nanovdb::Coord>(ray.start());
       float t = ray.t0();
       nanovdb::HDDA<NanoRay, nanovdb::Coord> walk(ray, accessor.getDim(at, ray));

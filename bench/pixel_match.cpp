@@ -136,7 +136,7 @@ std::vector<NamedFrame> pixel_match_frames(int width, int height) {
     return frame_looking(eye, target, top, kFov, width, height);
   };
   std::vector<NamedFrame> frames{{"post", looking({-16, 0, -16}, dvec3(0.0), {0, 1, 0})}};
-  // Eyes are whole multiples of a fraction of a voxel, off the planes between voxels.
+  // Eyes are at multiples of a fraction of a voxel, off the planes between voxels.
   const dvec3 middle(128, 0, 128);
   for (int octant = 0; octant < 8; ++octant) {
     const dvec3 side(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1);

@@ -21,7 +21,7 @@
 namespace scarp::bench {
 namespace {
 
-// `pixel-match`: pictures of voxels compared with the same drawn as quads.
+// `pixel-match`: pictures of voxels compared with the same voxels drawn as quads.
 struct PixelMatchOptions {
   std::vector<std::string> sets{"standard", "degenerate"};
   std::vector<int> thousands{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};  // of objects, the post's camera
@@ -35,7 +35,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kOtherThousands = 4;  // of objects, for all cameras except that of the post
 
-// A picture's hits, by one method.
+// The hits of a picture, by one method.
 struct Look {
   std::string way;
   std::vector<Hit> hits;

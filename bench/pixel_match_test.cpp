@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of voxels compared with the same drawn as quads, and the rasteriser where it must find errors.
+// Pictures of voxels compared with the same voxels drawn as quads, and cases in which the rasteriser must find errors.
 #include "bench/pixel_match.h"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST_F(OneVoxel, CoversItsPixels) {
   }
 }
 
-// The eye is moved until the left edge is within half a margin of the centres of a column.
+// Moves the eye until the left edge is within half a margin of the pixel centres of a column.
 TEST_F(OneVoxel, FlagsPixelsNearEdges) {
   const double metres_per_pixel = 0.1;
   frame_.eye -= (0.5 + 0.5 * kPixelMargin) * metres_per_pixel * frame_.right;
@@ -83,7 +83,7 @@ TEST_F(OneVoxel, FlagsPixelsNearEdges) {
   for (const NearEdge& near : quads.near_edges) EXPECT_EQ(near.face.face, VoxelFace::low_x);
 }
 
-// Errors that the post could not see by eye: rays that hit the neighbour of the right voxel, or nothing.
+// Errors that are invisible to the eye: rays that hit the neighbour of the right voxel, or nothing.
 TEST(PixelMatch, DetectsMissingVoxels) {
   VoxelGrid grid = voxel_object("standard");
   const std::vector<VoxelPlace> places = object_places(1);

@@ -27,7 +27,7 @@ std::int64_t nanoseconds(clockid_t clock) {
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
-// Rays in blocks, all of them or some spread evenly.
+// Rays in blocks: all blocks, or some that are spread evenly.
 struct Selection {
   std::int64_t ray_count, size, blocks, all_blocks;  // size: rays per block
 
@@ -86,7 +86,7 @@ std::vector<Timing> measure(const std::vector<Engine>& engines, const RaySet& se
     answers.resize(std::max(answers.size(), static_cast<std::size_t>(whole.blocks * whole.size)));
   }
 
-  // A few blocks show how long a pass would take; then the warm-up, whose answers are counted.
+  // A few blocks show how long a pass would take. The warm-up follows, whose answers are counted.
   for (std::size_t e = 0; e < engines.size(); ++e) {
     const Selection whole = selections[e];
     Selection probe = whole;

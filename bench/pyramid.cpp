@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench pyramid`: samples per second from a field to its pyramid of maxima, memory for it included.
+// `scarp-bench pyramid`: samples per second to build the pyramid of maxima of a field, including its memory allocation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct PyramidOptions {
 
 using Json = nlohmann::ordered_json;
 
-// The build takes maxima without branches, so the samples do not matter: noise will do.
+// The build computes maxima without branches, so the samples do not matter and may be noise.
 template <class T>
 HeightField noise_field(int size) {
   std::vector<T> samples(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));

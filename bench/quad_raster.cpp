@@ -36,7 +36,7 @@ Projection projection(const PictureFrame& frame, const VoxelPlace& place) {
 // Extent of a convex object in the picture, in pixels; the whole picture if it reaches the eye's plane.
 struct Extent {
   double x_low = kInfinity, x_high = -kInfinity, y_low = kInfinity, y_high = -kInfinity;
-  bool behind = true;  // wholly
+  bool behind = true;  // entirely behind the eye
 
   void add(const dvec3& corner, double least_w) {
     if (corner.z <= least_w) return;
@@ -79,7 +79,7 @@ class Strip {
     for (const VoxelFaceAt& face : faces) {
       const int axis = static_cast<int>(face.face) / 2, out = static_cast<int>(face.face) % 2 ? 1 : -1;
       const int plane = face.voxel[axis] + (out > 0 ? 1 : 0);
-      // Seen from behind or along.
+      // Seen from behind or edge-on.
       if (frame_.perspective ? !((eye[axis] - plane) * out > 0) : !(frame_.forward[axis] * out < 0)) continue;
       const auto u = static_cast<std::size_t>((axis + 1) % 3), v = static_cast<std::size_t>((axis + 2) % 3);
       const auto a = static_cast<std::size_t>(axis);
@@ -167,7 +167,7 @@ class Strip {
   const PictureFrame& frame_;
   double margin_;
   int row_begin_, row_end_;
-  RasterPicture& picture_;  // its own rows alone
+  RasterPicture& picture_;  // only its own rows
   std::vector<NearEdge> near_edges_;
 };
 

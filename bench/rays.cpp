@@ -24,7 +24,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::int64_t kRaysPerPiece = 4096;
 constexpr int kTile = 8;
 
-// Each class has its own random numbers: omitting one does not change the others.
+// Each class has its own random sequence, so omitting one does not change the others.
 std::uint64_t class_seed(std::uint64_t seed, RayClass ray_class) {
   return seed * 16 + static_cast<std::uint64_t>(ray_class);
 }
@@ -129,9 +129,9 @@ std::vector<BenchRay> chunk_rays(const HeightField& field, int side, dvec3 sun) 
   return rays;
 }
 
-// Aimed at positions where surfaces are joined. In plan the coordinates are multiples of 2^-10, so the ray is exactly
-// over its target at t = 1 (over square cells); its height there is that of the surface to half a float32 step of the
-// origin's height.
+// Rays aimed at positions where parts of the surface meet. In plan the coordinates are multiples of 2^-10, so the ray
+// is exactly over its target at t = 1 (over square cells); its height there is that of the surface to half a float32
+// step of the origin's height.
 std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, std::uint64_t seed) {
   constexpr double kGrid = 0x1p-10;
   std::vector<BenchRay> rays;
@@ -207,7 +207,7 @@ PinholeCamera near_camera(const HeightField& field, const RayCounts& counts, con
   return camera;
 }
 
-// cell(i): column and row of ray i.
+// cell(i) returns the column and row of ray i.
 template <class CellOf>
 RayFan fan_of(const std::vector<BenchRay>& rays, int columns, int rows, const CellOf& cell) {
   RayFan fan;

@@ -48,7 +48,7 @@ std::string csv_cell(const nlohmann::ordered_json& value) {
   return text.find_first_of(",\"") == std::string::npos ? text : value.dump();
 }
 
-// The columns are those of all rows, in the order in which they come first.
+// The columns are those of all rows, in order of first occurrence.
 std::string csv_of(const nlohmann::ordered_json& rows) {
   std::vector<std::string> columns;
   for (const auto& row : rows) {

@@ -14,7 +14,7 @@ double sample_bytes(const HeightField& field) {
   return bytes * field.cols() * field.rows();
 }
 
-// Compiled for the two functions that it is given: no call through std::function per ray.
+// Compiled for the two given functions, which avoids a call through std::function per ray.
 template <class Closest, class Blocked>
 void set_functions(Engine& engine, const Closest& closest, const Blocked& blocked) {
   engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {

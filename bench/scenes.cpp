@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench scenes`: build time of a hierarchy over many objects, and rays per second on one thread: boxes and balls
-// of 1 to 4 m at random in a cube, turned at random. Compared with a new scene: edits of a LiveScene, by a step of at
-// most 1 m along each axis, or to any position in the cube. Then contacts with voxels and heights at the placements of
-// the objects (scene_contacts.h).
+// of 1 to 4 m at random in a cube, rotated at random. Edits of a LiveScene, by a step of at most 1 m along each axis or
+// to any position in the cube, are compared with building a new scene. Then contacts with voxels and heights at the
+// placements of the objects (scene_contacts.h).
 #include <fmt/format.h>
 
 #include <algorithm>

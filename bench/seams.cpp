@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench seams`: a large number of rays at the lines where height fields meet, as fields of a scene and as tiles.
-// A ray that starts above all ground and is below all of it before it leaves the terrain must hit, and the ground at
-// its hit is as high as the ray: the judge interpolates the samples in long double.
+// A ray that starts above all ground and is below all of it before it leaves the terrain must hit, and at its hit the
+// ground must be as high as the ray. The judge interpolates the samples in long double.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ float sample_at(const SeamTerrain& of, int col, int row, std::uint64_t seed) {
   return static_cast<float>(of.base + kRelief * share);
 }
 
-// The ground at a position of a terrain of one resolution, in the terrain's own space.
+// The ground at a position of a terrain with a single resolution, in the terrain's own space.
 long double ground_at(const SeamTerrain& of, long double x, long double y, std::uint64_t seed) {
   const long double at_col = x / of.cell, at_row = of.side() - 1 - y / of.cell;
   const auto cell = [&](long double at) { return static_cast<int>(std::clamp<long double>(at, 0, of.side() - 2)); };
@@ -178,7 +178,7 @@ Ray ray_to_seam(const SeamTerrain& to, Aim aim, Random& random) {
     if (aim == Aim::upright) d.x = d.y = 0;
     if (aim == Aim::leaning || aim == Aim::leaning_corner) {
       d.x = off_vertical(random), d.y = random.below(2) ? off_vertical(random) : 0;
-      // Off the seam by rounding, of this position or of the world's.
+      // Off the seam by the rounding of this position or of the world position.
       if (random.below(2)) p.x += random.uniform(-2, 2) * 0x1p-53 * (p.x + glm::length(to.place.origin));
     }
     if (random.below(2)) std::swap(p.x, p.y), std::swap(d.x, d.y);

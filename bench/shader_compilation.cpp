@@ -24,8 +24,8 @@
 namespace scarp::bench {
 namespace {
 
-// RADV's manifests in the search path of Vulkan's loader. There may be one per architecture: the loader takes the one
-// that matches.
+// RADV's manifests in the search path of Vulkan's loader. There may be one per architecture; the loader uses the
+// matching one.
 std::string radv_manifests() {
   std::string all;
   for (const char* folder : {"/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
@@ -52,7 +52,7 @@ void use_radv(const std::string& family) {
       {"NODEVICE_SELECT", "1"},  // Mesa's layer that sorts devices, which queries the window system
   };
   for (const auto& [name, value] : variables) ::setenv(name, value.c_str(), 1);
-  // Figures are those of the driver's defaults.
+  // Figures must be those of the driver's defaults.
   for (const char* name : {"RADV_DEBUG", "RADV_PERFTEST", "ACO_DEBUG"}) ::unsetenv(name);
 }
 
@@ -66,7 +66,7 @@ void require_family(const std::string& family) {
     ::close(STDERR_FILENO);
     try {
       const ShaderCompiler compiler;
-    } catch (const Error&) {  // the parent finds it as well
+    } catch (const Error&) {  // the parent detects it as well
     }
     ::_exit(0);
   }
@@ -100,7 +100,7 @@ std::string shader_disassembly(const ShaderProgram& program, const std::string& 
 
 ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families) {
   ShaderTable table;
-  // All of them before any thread starts, because this forks a process.
+  // Called for all families before any thread starts, because it forks a process.
   for (const std::string& family : families) table.compilers = shader_compilers(family);
   table.rows.resize(programs.size() * families.size());
   for (std::size_t f = 0; f < families.size(); ++f) {

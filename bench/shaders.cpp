@@ -30,7 +30,7 @@ void run_shaders(const ShadersOptions& options, const ReportOptions& report) {
   for (const ShaderRow& row : table.rows) {
     nlohmann::ordered_json fields{
         {"shader", row.shader}, {"specialisation", row.specialisation}, {"family", row.family}};
-    // The folder is known by the file.
+    // The file name implies the folder.
     std::vector<std::string> line{row.shader.substr(row.shader.rfind('/') + 1), row.specialisation, row.family};
     for (std::size_t k = 0; k < kShaderFigures.size(); ++k) {
       nlohmann::ordered_json& field = fields[std::string(kShaderFigures[k].name)];

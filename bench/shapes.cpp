@@ -87,7 +87,7 @@ std::vector<Scene> scenes() {
   };
 }
 
-// From a place outside of the solid, 40 m high, down to its middle.
+// From a point outside the solid, 40 m high, down to its middle.
 std::vector<Ray> picture(const DistanceField& field, const ShapesOptions& options) {
   dvec3 eye(5, -75, 40);
   while (field.value(eye) < 5) eye.z += 5;
@@ -124,7 +124,7 @@ std::vector<Ray> shadows(const DistanceField& field, const std::vector<Ray>& ray
   return out;
 }
 
-// Hart's original march: spheres until one is within the tolerance, which counts as a hit.
+// Hart's original march: steps by spheres until a radius is within the tolerance, which counts as a hit.
 Hit by_balls(const DistanceField& field, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
   Hit hit;
   const SphereTraceSettings& s = settings.sphere_trace;
@@ -190,7 +190,7 @@ void run_shapes(const ShapesOptions& options, const ReportOptions& report) {
       parallel_for(judged, 16, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) {
           Ray ray = rays[static_cast<std::size_t>(i * every)];
-          // The judge takes free rays: those from the surface are judged from a centimetre on.
+          // The judge takes only free rays, so rays from the surface are judged from a centimetre on.
           if (shadow) ray.start = RayStart::free, ray.t_min += 0.01;
           judgements[static_cast<std::size_t>(i)] = judge_shape(scene.shape, ray);
         }

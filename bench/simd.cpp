@@ -19,7 +19,7 @@
 namespace scarp::bench {
 namespace {
 
-// `simd`: the vectors beside the scalar walk, one thread, with each optimisation disabled in turn.
+// `simd`: the vectors compared with the scalar walk, on one thread, with each optimisation disabled in turn.
 struct SimdOptions {
   TraceOptions trace;
   std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};

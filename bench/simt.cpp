@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench simt`: the shaders of max-mip and naive without a card. The CPU runs their text for each ray
+// `scarp-bench simt`: the shaders of max-mip and naive without a card. The CPU runs their source for each ray
 // (simt_trace.h), replays neighbouring rays in lockstep (simt_bundle.h), and adds up the instructions of the compiled
 // shaders in the blocks that a bundle enters (simt_blocks.h).
 #include <fmt/format.h>
@@ -38,14 +38,14 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kGroup = 64;
 constexpr std::array<std::size_t, 2> kBundles = {32, kGroup};
 constexpr std::int64_t kRaysPerPiece = 256;
-// One ray in this many is tried first in the search for naive's settings. Settings are rejected if these rays alone are
-// wrong this many times as often as allowed.
+// The search for naive's settings first tries one ray in kRoughShare. It rejects settings for which these rays are
+// wrong kBeyondDoubt times as often as allowed.
 constexpr std::int64_t kRoughShare = 8;
 constexpr double kBeyondDoubt = 3;
 // Steps per ray beyond which the search ends.
 constexpr double kMostSteps = 1024;
 
-// Whole groups of rays, one at random from each of equally long pieces of a class.
+// Whole groups of rays: a random one from each of several equally long pieces of a class.
 RaySet groups_of(const RaySet& all, std::int64_t groups, std::uint64_t seed) {
   const std::int64_t blocks = (all.size() + kGroup - 1) / kGroup, kept = std::min(groups, blocks);
   RaySet part{all.ray_class, all.any_hit, all.must_hit, {}};
@@ -181,7 +181,7 @@ class Comparison {
     };
   }
 
-  // Naive at the cheapest settings that are accurate enough: by the limit, and as accurate as max-mip.
+  // Adds naive at the cheapest settings that are accurate enough: within the limit, and as accurate as max-mip.
   void add_naive(const SimtGround& ground, const RaySet& set, const Judge& judge, const Judge& rough, bool clipped,
                  std::vector<Contender>& contenders) const {
     std::map<std::pair<double, double>, Judgement> tried;

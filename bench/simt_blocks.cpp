@@ -57,7 +57,7 @@ void require_sum(const SimtShader& shader, const std::string& where) {
                           shader.instructions));
 }
 
-// Instructions by basic block. RADV prints "BB5:" and its instructions, one a line, after a tab.
+// Instructions by basic block. RADV prints "BB5:", then its instructions, one per line, after a tab.
 std::map<int, SimtCost> basic_blocks_of(std::string_view disassembly) {
   std::map<int, SimtCost> all;
   SimtCost* at = nullptr;
@@ -65,7 +65,7 @@ std::map<int, SimtCost> basic_blocks_of(std::string_view disassembly) {
   for (std::string line; std::getline(stream, line);) {
     if (line.starts_with("BB") && line.ends_with(':')) {
       const int index = number(std::string_view(line).substr(2, line.size() - 3), "disassembly");
-      // The text before is the same shader in the compiler's own representation.
+      // The output before it is the same shader in the compiler's own representation.
       if (index == 0) all.clear();
       at = &all[index];
     } else if (at && line.starts_with('\t')) {

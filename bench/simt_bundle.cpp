@@ -8,7 +8,7 @@
 namespace scarp::bench {
 namespace {
 
-// A ray on its way through its trace.
+// A ray and its position in its trace.
 struct Lane {
   const std::uint64_t* next;
   const std::uint64_t* end;
@@ -55,7 +55,7 @@ class Replay {
     }
   }
 
-  // The blocks of a loop's body up to the next loop, inner or again.
+  // The blocks of a loop's body up to an inner loop or the next iteration.
   void straight(int depth, const Lanes& lanes) {
     for (Lane* lane : lanes) {
       while (lane->at_block() && !nesting(lane->block()).head && nesting(lane->block()).depth == depth) enter(*lane);
@@ -71,7 +71,7 @@ class Replay {
     }
   }
 
-  // Takes in one block of a lane and its fetches.
+  // Consumes one block of a lane and its fetches.
   void enter(Lane& lane) {
     const auto block = static_cast<std::size_t>(lane.block());
     ++entered_[block];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lockstep, the table of blocks, and the traces of the shaders' text.
+// Lockstep, the table of blocks, and the traces of the shader source.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -71,7 +71,7 @@ TEST(SimtBundle, CountsCacheLinesPerFetch) {
     lanes[lane].enter(Block::probe);
     lanes[lane].fetch(64 * lane, 4);           // lines 0, 0, 1 of 128 bytes; 0, 1, 2 of 64
     lanes[lane].fetch(1000 + 4 * lane, 4);     // one line of 64 bytes: 960 to 1023
-    if (lane == 2) lanes[lane].fetch(124, 8);  // by one lane alone, on both sides of a border
+    if (lane == 2) lanes[lane].fetch(124, 8);  // by one lane only, across a border
   }
   const SimtBundle bundle = replay(lanes);
   EXPECT_EQ(bundle.fetches, 3u);
@@ -121,7 +121,7 @@ TEST(SimtBlocks, CountsBasicBlocks) {
   EXPECT_EQ(counted[Block::begin].memory, 0);
   EXPECT_EQ(counted[Block::walk].instructions, 4);
   EXPECT_EQ(counted[Block::walk].memory, 1);
-  // An inner loop with three turns.
+  // An inner loop with three iterations.
   EXPECT_EQ(count_blocks(toy_shader("1-3*3"), kDisassembly)[Block::walk].instructions, 12);
   EXPECT_EQ(counted[Block::end].instructions, 1);
 }
@@ -150,7 +150,7 @@ TEST(SimtBlocks, RoundTrip) {
   EXPECT_EQ(read.shaders.at(0).instructions, 7);
   EXPECT_EQ(read.shaders.at(0)[Block::walk].vector, 1);
   EXPECT_EQ(read.shaders.at(0).basic_blocks, all.shaders[0].basic_blocks);
-  // Blocks have to add up.
+  // The blocks must add up.
   ++all.shaders[0].costs[0].instructions;
   write_simt_shaders(file, all);
   EXPECT_THROW(read_simt_shaders(file), Error);

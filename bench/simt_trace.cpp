@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The shader text reads samples and quads through its host: here they come from memory, and a trace records their
+// The shader source reads samples and quads through its host. Here the host reads memory, and a trace records the
 // addresses.
 
 #include "bench/simt_note.h"
-// Included after the definition of SCARP_COUNT, like all files that include the text.
+// Included after the definition of SCARP_COUNT, like all files that include the shader source.
 #include "bench/simt_trace.h"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ glsl::uint highest_of(glsl::uvec2 quad) {
 }  // namespace
 }  // namespace scarp::bench
 
-// The text and its host stay in this file: the library and its tests have their own hosts.
+// The shader source and its host are local to this file: the library and its tests have their own hosts.
 #undef SCARP_GLSL_BEGIN
 #undef SCARP_GLSL_END
 #define SCARP_GLSL_BEGIN  \
@@ -102,7 +102,7 @@ SCARP_GLSL_END
 namespace scarp::bench {
 namespace {
 
-// Sets the text's host during the march of a ray.
+// Sets the host of the shader source during the march of a ray.
 struct Hosted {
   Hosted(const SimtGround& on, SimtTrace* trace) {
     ground = &on.impl();

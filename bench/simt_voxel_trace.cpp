@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The shader text reads masks and bytes through its host: here they come from memory, and a trace records their
+// The shader source reads masks and bytes through its host. Here the host reads memory, and a trace records the
 // addresses.
 
 #include "bench/simt_note.h"
-// Included after the definition of SCARP_COUNT, like all files that include the text.
+// Included after the definition of SCARP_COUNT, like all files that include the shader source.
 #include "bench/simt_voxel_trace.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ constexpr std::uint64_t kMasks = std::uint64_t{1} << 41, kMarks = std::uint64_t{
 }  // namespace
 }  // namespace scarp::bench
 
-// The text and its host stay in this file: the library and its tests have their own hosts.
+// The shader source and its host are local to this file: the library and its tests have their own hosts.
 #undef SCARP_GLSL_BEGIN
 #undef SCARP_GLSL_END
 #define SCARP_GLSL_BEGIN  \

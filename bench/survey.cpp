@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench survey`: one field, one camera and one sun may be a lucky choice. This command runs several and reports
-// the median and the worst: Scarp's best mode over the peers' best mode, on the same rays by processor time.
+// the median and the worst ratio of Scarp's best mode to the peers' best mode, on the same rays, by processor time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,8 @@ struct SurveyOptions {
 
 using Json = nlohmann::ordered_json;
 
-// Low over the south; high over the north-western corner, the sun behind it; close to the ground, with a low sun.
+// Low over the south; high over the north-western corner, with the sun behind the camera; close to the ground, with a
+// low sun.
 const RayView kViews[] = {
     {},
     {"from a high corner", {0.02, 0.98, 0.4}, {0.6, 0.4, 0.5}, 135, 45},

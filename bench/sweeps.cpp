@@ -31,7 +31,7 @@ namespace {
 // `sweeps`: spheres and capsules that move over ground, compared with Bullet and judged.
 struct SweepsOptions {
   int size = 1025;      // samples per side of the field, >= 1025
-  int sweeps = 20'000;  // of each class beside Bullet; 0: none
+  int sweeps = 20'000;  // of each class compared with Bullet; 0: none
   int repeats = 5;
   std::int64_t judged = 100'000;  // random ones over small fields and voxels
   std::uint64_t seed = 1;
@@ -240,7 +240,7 @@ void judge_voxels(std::uint64_t seed, std::uint64_t number, std::int64_t count, 
   for (std::int64_t i = 0; i < count; ++i) {
     const Moving moving = random_sweep(dvec3(size), triangles, random);
     const auto hit = sweep(grid, moving.capsule, moving.motion);
-    // Starts within a voxel are contacts at once, regardless of the distance of its faces.
+    // A sweep that starts within a voxel touches immediately, regardless of the distance of its faces.
     if (hit && hit->normal == dvec3(0.0)) {
       ++to.sweeps, ++to.contacts;
       continue;

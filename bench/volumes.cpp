@@ -48,7 +48,7 @@ class ScratchFile {
   std::filesystem::path path_;
 };
 
-// Waves that thin out from the middle, as a scan of one body does; a third of the numbers is solid.
+// Waves that fade from the middle outwards, like a scan of one body; a third of the numbers is solid.
 template <class T>
 void write_waves(const std::string& path, int side) {
   std::ofstream out(path, std::ios::binary);
@@ -78,7 +78,7 @@ void read_plainly(const std::string& path) {
   if (!in) throw Error(fmt::format("{}: cannot be read", path));
 }
 
-// Voxels of the given number of colours.
+// Reads voxels with the given number of colours.
 double seconds_of(const std::string& path, const std::string& format, std::size_t colours, double solid_from) {
   const std::vector<VoxelColour> palette(colours);
   FromVolumeOptions options;

@@ -19,7 +19,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 float below(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
 float above(double x) { return std::nextafter(static_cast<float>(x), kInfinity); }
 
-// Up to 8 rays of a query, with the callback's data of them in double.
+// Up to 8 rays of a query, with their double-precision data for the callback.
 struct Question {
   RTCIntersectContext embree;
   const Ray* rays = nullptr;
@@ -29,7 +29,7 @@ struct Question {
   std::array<Hit, 8> best;
 };
 
-// A visible face: its voxel, and which one.
+// A visible face: its voxel and its side.
 struct Quad {
   ivec3 voxel;
   VoxelFace face;

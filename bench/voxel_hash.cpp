@@ -22,7 +22,7 @@ VoxelHash::VoxelHash(const VoxelGrid& grid, bool surface_only) : bits_(grid.entr
     if (seen) voxels.push_back(v);
   });
   count_ = voxels.size();
-  // The smallest table that fits all; a sixth as many offsets, and more until an assignment is found.
+  // The smallest table that fits all voxels, with a sixth as many offsets, increased until an assignment is found.
   const double side = std::cbrt(static_cast<double>(std::max<std::size_t>(count_, 1)));
   for (m_ = 1; static_cast<std::size_t>(m_) * m_ * m_ < count_;) ++m_;
   for (r_ = std::max(1, static_cast<int>(std::ceil(side / std::cbrt(6.0)))); !build(voxels); ++r_) {
@@ -46,7 +46,7 @@ std::uint32_t VoxelHash::packed(std::size_t place) const {
 
 // Largest buckets first: each takes the first offset at which none of its voxels collides.
 bool VoxelHash::build(const std::vector<ivec3>& voxels) {
-  // With a common divisor, offsets could not separate some voxels.
+  // With a common divisor, offsets might not separate some voxels.
   if (m_ > 1 && std::gcd(m_, r_) != 1) return false;
   const std::size_t places = static_cast<std::size_t>(m_) * m_ * m_, buckets = static_cast<std::size_t>(r_) * r_ * r_;
   std::vector<std::vector<ivec3>> of(buckets);

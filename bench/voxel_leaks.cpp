@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench voxel-leaks`: a large number of rays at voxel grids. All marches must return the same voxel, face and t,
-// ray by ray and in vectors, and a fraction of the rays is also traced by the judge. Then rays at scenes of turned
-// objects, each of which is judged in one grid into which all objects are written.
+// ray by ray and in vectors, and a fraction of the rays is also traced by the judge. Then traces rays at scenes of
+// rotated objects, and judges each in one grid into which all objects are written.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,12 +24,12 @@
 namespace scarp::bench {
 namespace {
 
-// `voxel-leaks`: all voxel marches on very many rays, at grids and then, as many, at scenes.
+// `voxel-leaks`: all voxel marches on a large number of rays, at grids and then at scenes.
 struct VoxelLeaksOptions {
   std::int64_t rays = 10'000'000;
   std::uint64_t seed = 1;
   int judge_every = 64;    // one in this many is also traced by voxel-exhaustive
-  std::string of = "all";  // "grids": single ones; "scenes": of rotated objects
+  std::string of = "all";  // "grids": single grids; "scenes": rotated objects
 };
 
 using Json = nlohmann::ordered_json;
@@ -214,8 +214,8 @@ constexpr std::array<const char*, kSceneKinds> kSceneNames = {
     "turned objects: exact rays", "turned objects: rounded rays", "placed fields: exact rays",
     "placed fields: rounded rays"};
 
-// Half of the rays of a scene see its objects in one field, the others see each in a field of its own. Judged: all but
-// rays that may pass a solid voxel or hit it, because they are rounded at its edge.
+// Half of the rays of a scene see its objects in one field; the rest see each object in its own field. Judges all rays
+// except those that may either pass or hit a solid voxel because of rounding at its edge.
 std::array<Counts, kSceneKinds> leaks_of_scenes(const VoxelLeaksOptions& options, FirstWrong& first_wrong) {
   Total<kSceneKinds> total;
   const std::int64_t scenes = (options.rays + kRaysPerScene - 1) / kRaysPerScene;

@@ -71,7 +71,7 @@ std::vector<Ray> camera_rays(int stride) {
 std::vector<Ray> octant_rays(const dvec3& size, int width) {
   std::vector<Ray> rays;
   for (int octant = 0; octant < 8; ++octant) {
-    // Not along the diagonals, where planes are crossed at once.
+    // Not along the diagonals, where planes are crossed simultaneously.
     const dvec3 forward = normalize(dvec3(octant & 1 ? -1 : 1, octant & 2 ? -0.7 : 0.7, octant & 4 ? -0.45 : 0.45));
     const dvec3 right = normalize(cross(forward, dvec3(0, 0, 1))), up = cross(right, forward);
     const double half = 0.25;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxel-worlds`: procedural ground as voxels, thousands a side: build time, memory, and the rays of
-// pictures in it, one at a time and in batches; compared with NanoVDB over the visible voxels.
+// `scarp-bench voxel-worlds`: procedural ground as voxels, thousands per side: build time, memory, and the rays of
+// pictures, one at a time and in batches; compared with NanoVDB over the visible voxels.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -28,7 +28,7 @@
 namespace scarp::bench {
 namespace {
 
-// `voxel-worlds`: procedural ground as voxels, thousands a side.
+// `voxel-worlds`: procedural ground as voxels, thousands per side.
 struct VoxelWorldsOptions {
   int side = 4096;  // voxels
   int width = 256;  // pixels per side of the pictures, from four corners, a multiple of 8
@@ -42,7 +42,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMiB = 1 << 20, kMillion = 1e6;
 constexpr int kTile = 8;
 
-// Tops of columns, one per sample, so that the lowest is 1.
+// Tops of columns, one per sample, shifted so that the lowest is 1.
 std::vector<std::int32_t> tops_of(const HeightField& field, int side) {
   std::vector<std::int32_t> tops(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   const double lowest = field.min_height();
@@ -56,7 +56,7 @@ std::vector<std::int32_t> tops_of(const HeightField& field, int side) {
   return tops;
 }
 
-// From above each corner of the world towards its middle, 8 x 8 pixels after 8 x 8.
+// From above each corner of the world towards its middle, in tiles of 8 x 8 pixels.
 std::vector<Ray> world_rays(int side, double highest, int width) {
   std::vector<Ray> rays;
   for (int corner = 0; corner < 4; ++corner) {

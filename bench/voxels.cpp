@@ -36,7 +36,7 @@ constexpr std::size_t kTileRays = 64;
 
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : short_number(value); }
 
-// The least of several times, in microseconds: of a single thread, so any excess is due to other processes.
+// The least of several times, in microseconds: on a single thread, where any excess is due to other processes.
 double least_us(const std::function<void()>& work, int times = 20) {
   double least = 1e300;
   for (int i = 0; i < times; ++i) {
@@ -99,7 +99,7 @@ void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
       rows.push_back({{"table", "colours"}, {"of", of}, {"way", way}, {"bytes", bytes}, {"ns", ns}, {"us", us}});
       lines.push_back({of, way, short_number(bytes), short_number(ns), short_number(us)});
     };
-    // Both without the shape itself, which marches need; rank includes the mask of coloured voxels.
+    // Both exclude the shape itself, which marches need; rank includes the mask of coloured voxels.
     row("rank", static_cast<double>(ranked.bytes()) - shape, rank_ns, rank_us);
     row("hash", static_cast<double>(hash.bytes()), hash_ns, hash_us);
   }
@@ -128,7 +128,7 @@ std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, c
       engines[e].trace(own[e], answers);
       return watch.cpu_s();
     };
-    // The rays that slow techniques skip are spread evenly over the picture.
+    // Slow techniques skip rays evenly over the picture.
     const double probe_s = part(32) * static_cast<double>(rays.size()) / static_cast<double>(own[e].size());
     const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(probe_s / options.pass_limit_s)));
     part(every);
@@ -170,7 +170,7 @@ void add_engines(const Scene& scene, std::string_view march, const char* box, st
   engines.push_back(engine);
 }
 
-// The scene of the post in every technique, and its peers.
+// Measures the scene of the post with every technique and the peers.
 void measure_frame(const std::string& set, int n, const VoxelsOptions& options, Json& rows,
                    std::vector<std::vector<std::string>>& lines) {
   struct Technique {
@@ -250,7 +250,7 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
   }
 }
 
-// One grid alone: all marches, and NanoVDB's over the same voxels with the same rays.
+// Measures a single grid: all marches, and NanoVDB over the same voxels with the same rays.
 void measure_grid(const char* name, const VoxelGrid& grid, const VoxelsOptions& options, Json& rows,
                   std::vector<std::vector<std::string>>& lines) {
   const std::vector<Ray> rays = octant_rays(dvec3(grid.size()), options.width);

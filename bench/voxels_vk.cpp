@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMiB = 1 << 20;
 constexpr double kMilliseconds = 1e3;  // in a second
 
-// Hits that differ from the CPU's.
+// Number of hits that differ from the CPU's.
 std::size_t count_wrong(std::span<const Hit> hits, std::span<const Hit> expected) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -120,7 +120,7 @@ class DeviceTables {
     add(std::move(row));
   }
 
-  // Costs of compute, counted on the CPU, which takes the same steps in the same boxes.
+  // Costs of the compute method, counted on the CPU, which takes the same steps in the same boxes.
   static std::pair<double, double> costs(const Scene& scene, const std::vector<Ray>& rays) {
     MarchStats sum;
     std::size_t asked = 0;
