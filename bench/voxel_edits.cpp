@@ -35,7 +35,7 @@ double hill(int side, double x, double y) {
   return side * (0.4 + 0.1 * std::sin(7.7 * x / side) * std::cos(10.2 * y / side));
 }
 
-// Solid below hills; rooms and walls the size of balls; or almost empty, so that every edit is nearest to everything.
+// Solid below hills; many balls; or almost empty, so that every edit is the nearest solid to the whole grid.
 VoxelGrid scene(std::string_view name, int side, Random& random) {
   VoxelGrid grid(ivec3(side), 1);
   if (name == "hills") {

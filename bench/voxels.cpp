@@ -105,7 +105,7 @@ void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
   }
 }
 
-// Passes of all engines in turn, each with as many tiles of 64 rays as it can trace in time, and the median of them.
+// Medians over passes of all engines in turn. Each pass has as many tiles of 64 rays as the engine can trace in time.
 struct Measured {
   double ray_s = 0;
   std::size_t rays = 0, hits = 0;

@@ -21,7 +21,7 @@ constexpr int kFailed = 1, kWrongUsage = 2;
 
 int fail(std::string text, int status) {
   end_progress_line();
-  // One line, even if a file name or a library has put line breaks into it.
+  // Keeps the message on one line, even if a file name or a library has put line breaks into it.
   std::replace(text.begin(), text.end(), '\n', ' ');
   std::fprintf(stderr, "scarp: error: %s\n", text.c_str());
   return status;
@@ -94,7 +94,7 @@ int run_program(Program& program, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail("out of memory (a smaller window or picture needs less)", kFailed);
   } catch (const std::exception& error) {
-    // fmt::print() throws, without the name of the stream.
+    // fmt::print() has thrown, without the name of the stream.
     return std::ferror(stdout) != 0 ? fail_output() : fail(error.what(), kFailed);
   }
 }

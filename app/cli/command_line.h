@@ -10,7 +10,7 @@ namespace scarp::cli {
 int run_command_line(int argc, char** argv);
 
 class Program;
-/// The same with the subcommands of `program`; likewise.
+/// The same with the subcommands of `program`; also to be called once per process.
 int run_program(Program& program, int argc, char** argv);
 
 }  // namespace scarp::cli

@@ -22,10 +22,10 @@ void add_viewshed(Program& program);
 void add_voxelise(Program& program);
 void add_devices(Program& program);  // with SCARP_VULKAN
 
-void add_options(Program& program);  // hidden: the documents generated from the declarations
+void add_options(Program& program);  // hidden: writes the documents generated from the declarations
 
 ProgramAbout about_scarp();
-/// The program with all of these.
+/// The program with all of these subcommands.
 Program scarp_program();
 
 }  // namespace scarp::cli

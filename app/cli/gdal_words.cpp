@@ -49,7 +49,7 @@ std::vector<std::string> without_gdal_words(const std::vector<std::string>& word
       gdal = true;
       out.emplace_back("--quiet");
     } else if (flag != std::end(kFlags)) {
-      // With "=", so that negative numbers are values.
+      // Joined by "=", so that negative numbers are read as values.
       out.push_back(fmt::format("{}={}", flag->second, value()));
     } else {
       output = output || word == "-o" || word.starts_with("--output");

@@ -24,11 +24,11 @@ std::atomic<bool> signal_seen = false;  // the signal was noticed, and the progr
 std::atomic<bool> line_open = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-// Signals by which users, shells and systems end programs. HUP: the terminal is gone.
+// Signals by which users, shells and systems end programs. HUP: the terminal was closed.
 constexpr std::array kEndings = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
 // Rendering polls several times a second. Tasks that poll less often, such as reading a large file, are ended after the
-// time that a person is willing to wait.
+// time that users are willing to wait.
 constexpr unsigned kPatience = 2;  // seconds
 
 // One tick per 2.5 %, a number every fourth, as GDALTermProgress does.
@@ -78,7 +78,7 @@ void catch_interrupts() {
     // Set by nohup, and by shells for background jobs.
     if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);
   }
-  // A file size limit then acts like a full disk, which writers report.
+  // A file size limit then has the effect of a full disk, which writers report.
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

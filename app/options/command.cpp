@@ -43,7 +43,7 @@ std::string default_of(const Declared& declared) {
   return declared.flag() ? std::string() : std::visit(ValueText{}, declared.to);
 }
 
-// Insertions, deletions and replacements of letters between two words.
+// Number of insertions, deletions and replacements of letters between two words.
 std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -58,7 +58,7 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// "did you mean '--water'? " for a slip of up to a third of the letters.
+// "did you mean '--water'? " if up to a third of the letters are wrong.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   std::size_t least = word.size() / 3 + 1;
   std::string nearest;
@@ -288,7 +288,7 @@ void Program::run(int argc, char** argv) {
     words_.assign(argv + 1, argv + argc);
     std::vector<std::string> words = words_;
     if (about_.reworded) words = about_.reworded(words);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    std::reverse(words.begin(), words.end());  // CLI11 expects them reversed
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     const auto subs = app.get_subcommands();

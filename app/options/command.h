@@ -45,10 +45,10 @@ class Command {
   std::string value(std::string_view name) const;
   /// Every value except that of --output. Values that name files count as inputs, so new options are covered.
   std::vector<std::string> typed_values() const;
-  /// The typed words, without the options `left_out`; quoted for a shell where necessary.
+  /// The typed words, without the options in `left_out`, quoted for a shell where necessary.
   std::string typed_words(const std::vector<std::string_view>& left_out) const;
-  /// Throws Error for the first option, in the order typed, that has no effect; an option that another one needs comes
-  /// before it.
+  /// Throws Error for the first option, in the order typed, that has no effect. An option is checked before others that
+  /// need it.
   void require_effect(const Use& use) const;
 
   /// The values typed for one option.
@@ -69,7 +69,7 @@ class Command {
 
   std::string program_, name_, summary_, footer_;
   bool hidden_;
-  std::deque<Declared> options_;  // stays in place: Typed points into it
+  std::deque<Declared> options_;  // a deque does not move elements: Typed points to them
   std::vector<std::string> examples_;
   std::function<void()> work_;
   std::vector<Typed> typed_;
@@ -86,7 +86,7 @@ struct ProgramAbout {
   std::string example{};  ///< a command line
   /// The command line that was probably meant if a file is typed instead of a subcommand; null: none.
   std::function<std::string(const std::string& file)> with_file{};
-  /// Words in the place of those typed; null: no change. May throw WrongUsage.
+  /// Returns words that replace those typed; null: no change. May throw WrongUsage.
   std::function<std::vector<std::string>(const std::vector<std::string>& words)> reworded{};
 };
 

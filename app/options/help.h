@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The output of `--help`, from the declarations of the options.
+// Generates the output of `--help` from the declarations of the options.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ std::string help_text(const Program& program);
 /// Throws WrongUsage listing the topics if there is no such topic.
 std::string help_text(const Command& command, const std::string& topic);
 
-/// The topics that the options of a subcommand have, in order, each with its options.
+/// The topics of a subcommand in order, each with its options.
 using TopicOptions = std::pair<Topic, std::vector<const Declared*>>;
 std::vector<TopicOptions> options_by_topic(const Command& command);
 /// "scarp render [IN...] -o FILE [OPTIONS]".

@@ -54,7 +54,7 @@ std::vector<double> ground_numbers_from(std::string_view text, std::size_t least
 }
 
 std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example) {
-  constexpr double kMost = 1e9;  // against typing errors; the picture's own limit is far below
+  constexpr double kMost = 1e9;  // catches typing errors; the limit of pictures is far lower
   const std::string form = fmt::format("WIDTHxHEIGHT in pixels, for example {}", example);
   const auto numbers = numbers_from(text, 'x', 2, 2, option, form);
   for (const double number : numbers) {
@@ -66,7 +66,7 @@ std::array<int, 2> pixels_from(std::string_view text, std::string_view option, s
 
 std::function<std::string(const std::string& text)> number_in(const NumberRange& range) {
   return [range](const std::string& text) -> std::string {
-    // As CLI11 will read it.
+    // Parses as CLI11 does.
     char* end = nullptr;
     const double number = std::strtod(text.c_str(), &end);
     if (!text.empty() && *end == '\0' && std::isfinite(number) && number <= range.most &&

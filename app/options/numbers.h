@@ -30,18 +30,18 @@ struct NumberRange {
 constexpr double kMostOfGround = 0x1p30;
 constexpr NumberRange kAnyNumber{}, kZeroOrMore{.least = 0}, kAboveZero{.least = 0, .above_least = true};
 
-/// Returns a check of a text: empty if it is a number in the range, otherwise the error. For CLI::Option::check(),
-/// whose own checks accept NaN and print the largest double with all its 309 digits.
+/// Returns a check for a text. Its result is empty if the text is a number in the range, otherwise the error. For
+/// CLI::Option::check(), whose own checks accept NaN and print the largest double with all its 309 digits.
 std::function<std::string(const std::string& text)> number_in(const NumberRange& range);
 
-/// numbers_from(), none of which has a larger magnitude than kMostOfGround.
+/// numbers_from() for numbers with a magnitude of at most kMostOfGround.
 std::vector<double> ground_numbers_from(std::string_view text, std::size_t least, std::size_t most,
                                         std::string_view option, std::string_view form);
 
 /// Width and height in pixels, "WIDTHxHEIGHT". Throws Error as numbers_from() does; `example` is "1280x720".
 std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example);
 
-/// A length above 0 for messages, with at least three digits and no exponent: "0.25", "17.3", "3660".
+/// Formats a length above 0 for messages, with at least three digits and no exponent: "0.25", "17.3", "3660".
 std::string metres_text(double metres);
 
 }  // namespace scarp::cli

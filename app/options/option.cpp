@@ -62,7 +62,7 @@ bool has_word(std::string_view text, std::string_view word) {
 
 // "1 to 150", "F > 0"; empty: any number.
 std::string range_text(const NumberRange& range, const std::string& value) {
-  // kMostOfGround only stops slips.
+  // kMostOfGround only catches typing errors.
   const bool least = range.least > -kMostOfGround, most = range.most < kMostOfGround;
   if (least && most && range.above_least) return fmt::format("{} < {} <= {}", range.least, value, range.most);
   if (least && most) return fmt::format("{} to {}", range.least, range.most);
@@ -98,7 +98,7 @@ std::optional<Whole> whole_from(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc() && rest == text.data() + text.size()) return number;
   if constexpr (sizeof(Whole) == 8) {
-    constexpr double kExact = 0x1p53;  // below it, doubles are all whole numbers
+    constexpr double kExact = 0x1p53;  // up to this, doubles represent all whole numbers
     if (double large = 0; text.find('e') != std::string::npos && number_in(kZeroOrMore)(text).empty() &&
                           (large = std::strtod(text.c_str(), nullptr)) < kExact && std::floor(large) == large)
       return static_cast<Whole>(large);
@@ -109,7 +109,7 @@ std::optional<Whole> whole_from(const std::string& text) {
 // "N" of "N,...".
 std::string one_of(const std::string& values) { return values.substr(0, values.find(",...")); }
 
-// Sets the variable of a binding; the result is the error of the text, empty if it is valid.
+// Sets the variable of a binding. Returns the error, empty if the text is valid.
 struct Assignment {
   const Declared& declared;
   const std::string& text;

@@ -83,11 +83,11 @@ Rule needs(const std::string& what, std::function<bool()> met, unsigned of = kEv
 /// Destination of the value. A Setter parses the text itself and throws Error or WrongUsage. bool* without a value
 /// name, and Off, are flags.
 using Setter = std::function<void(const std::string& text)>;
-/// A value that a flag switches off.
+/// A variable that a flag switches off.
 struct Off {
   std::optional<bool>* what;
 };
-/// Several values in one, "1025,4097": range and choices hold for each. The given ones replace the default.
+/// Several values in one, "1025,4097". Range and choices apply to each. Given values replace the default.
 template <class Value>
 struct List {
   std::vector<Value>* to;
@@ -118,7 +118,7 @@ struct Option {
   Inputs inputs{};                      ///< checked by require_effect()
   Looks looks{};                        ///< likewise
   std::string_view marches{};           ///< marches that read it, "naive relaxed"; empty: all; likewise
-  std::vector<Rule> rules{};            ///< likewise; checked after the options that were given and that they name
+  std::vector<Rule> rules{};            ///< likewise; checked after given options that they mention
   std::vector<std::string> excludes{};  ///< options that cannot be given beside it
 };
 

@@ -22,7 +22,7 @@ constexpr double kSpan = 64;
 // Sliders of lengths go down to this fraction of the picture's extent, and those of heights beyond the highest ground.
 constexpr double kLeastLength = 1e-3, kBeyond = 0.25;
 constexpr double kMostCount = 100;  // of integers without a limit
-// Larger ranges get no slider.
+// Larger ranges have no slider.
 constexpr double kWidest = 1e5;
 // Options without a control: the window has its own way to set them, or they choose the input or a preset.
 constexpr std::array<std::string_view, 4> kNone = {"--size", "--preset", "--function", "--lowres"};
@@ -43,7 +43,7 @@ std::optional<double> number_from(const std::string& text) {
   return number;
 }
 
-// As short as the slider shows it: mouse input has no more digits.
+// As short as the slider shows it: mouse input is no more precise.
 std::string short_text(double number) {
   constexpr double kNoDecimals = 1000;
   return std::abs(number) < kNoDecimals ? fmt::format("{:.4g}", number) : fmt::format("{:.0f}", number);
@@ -111,7 +111,7 @@ class Maker {
   void make_choice(const cli::Declared& declared, Control& control) const {
     control.kind = ControlKind::choice;
     for (const std::string& choice : declared.option.choices) {
-      // Large pixels have a different size and camera from the window.
+      // Large pixels need another size and camera than the window has.
       if (declared.name != "--look" || !entry_of(find_look(choice)).large_pixels) control.choices.push_back(choice);
     }
     const auto* text = std::get_if<std::string*>(&declared.to);
@@ -174,7 +174,7 @@ class Maker {
     if (!std::isfinite(value))
       value = control.logarithmic ? std::sqrt(control.least * control.most)
                                   : control.least + (control.most - control.least) / 4;
-    // Typed values may lie beyond.
+    // Typed values may be outside.
     control.least = std::min(control.least, value), control.most = std::max(control.most, value);
     return true;
   }
@@ -184,7 +184,7 @@ class Maker {
     const bool no_least = range.least <= -cli::kMostOfGround;
     if (!no_least && range.most - range.least <= kWidest) {
       control.least = range.least, control.most = range.most;
-      // A few are as good as twice as many.
+      // Small and large counts need the same relative precision.
       if (control.whole && range.most - range.least > kMostCount) control.logarithmic = true;
       if (range.above_least) control.least = range.most / (kSpan * kSpan), control.logarithmic = true;
     } else if (option.unit == "metres" && no_least) {

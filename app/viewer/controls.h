@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The controls of the panel, generated from the declared options: flags become check boxes, choices lists, numbers
-// sliders. A control shows the value of an option, and converts changes to a text for the option. An option has a
-// control if it has an effect.
+// sliders. A control shows the value of an option, and converts changes to a text for the option. Only options with an
+// effect have controls.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ struct Control {
   bool inverted = false;  ///< a flag that starts with "no-": on means that the option is not given
   bool worded = false;    ///< a flag with the values true and false
   bool on = false;        ///< flags
-  bool may_rest = false;  ///< optional, with a meaning that no value has: no water
-  bool rests = false;     ///< not given
+  bool may_rest = false;  ///< may be unset, with an effect that no value has: no water
+  bool rests = false;     ///< currently unset
   bool whole = false;     ///< whole numbers
   bool logarithmic = false;
   double least = 0, most = 1;  ///< of sliders

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many pixels are rendered for a window.
+// The number of pixels to render for a window.
 #pragma once
 
 #include "scarp/render/frame/picture_request.h"

@@ -24,7 +24,7 @@ constexpr double kArm = 0.3;                         // metres that a walker kee
 constexpr double kStride = 0.5;                      // step in metres at which the ground is queried
 constexpr double kLeastMap = 1e-6, kMostMap = 100;   // times the size of the scene
 constexpr double kFarAbove = 1e6;                    // metres, over endless ground
-constexpr int kMostStrides = 500;                    // of a walker between two frames: each traces two rays
+constexpr int kMostStrides = 500;                    // limit between two frames: each stride traces two rays
 constexpr double kFarthest = 1e4;  // times the size of the scene from the first eye, because of rounding
 
 dvec3 right_of(const Pose& pose) { return {std::sin(pose.azimuth), -std::cos(pose.azimuth), 0}; }
@@ -82,7 +82,7 @@ Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, do
 
 Camera Navigator::camera(int width, int height) const {
   if (pose_.mode == MoveMode::top) {
-    // As `scarp render --top --area` makes it.
+    // The camera of `scarp render --top --area`.
     const auto [low, high] = map_corners(pose_, width, height);
     const double bottom = box_.empty() ? pose_.eye.z : box_.low.z, top = box_.empty() ? pose_.eye.z : box_.high.z;
     return Camera::top({dvec3(low, bottom), dvec3(high, top)}, width, height);
@@ -104,7 +104,7 @@ void Navigator::set_mode(MoveMode mode) {
     const dvec3 at = point();
     pose_.eye = {at.x, at.y, pose_.eye.z};
   } else if (pose_.mode == MoveMode::top) {
-    // From a distance at which the picture is about as wide.
+    // From a distance at which the picture has about the same width.
     const dvec3 at(pose_.eye.x, pose_.eye.y, 0);
     pose_.distance = pose_.map_width / width_per_distance;
     pose_.eye = dvec3(at.x, at.y, ground_below({at.x, at.y, high()}).value_or(0)) - pose_.distance * forward_of(pose_);
@@ -212,14 +212,14 @@ std::optional<double> Navigator::ground_below(const dvec3& at) const {
   return down.at(hit.t).z;
 }
 
-// On the highest surface below the eye, or above it where there is none.
+// Stands on the highest surface below the eye or, if there is none, above it.
 void Navigator::stand() {
   std::optional<double> ground = ground_below(pose_.eye);
   if (!ground) ground = ground_below({pose_.eye.x, pose_.eye.y, high()});
   if (ground) pose_.eye.z = *ground + kEyeHeight;
 }
 
-// In small strides: up to a wall, and never where there is no ground.
+// Walks in small strides, up to walls, and only where there is ground.
 void Navigator::walk(const dvec3& step) {
   const double whole = std::min(length(step), kMostStrides * kStride);
   const dvec3 way = step / length(step);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Moving through a scene by mouse and keys: events and time in, cameras out. Knows neither window nor device.
+// Navigation in a scene by mouse and keys: takes events and time, and returns cameras. Independent of window and
+// device.
 //
-//   orbit  around a point; left drag turns, right or middle drag shifts, the wheel comes nearer
+//   orbit around a point; left drag turns, right or middle drag pans, the wheel moves closer
 //   fly    W A S D Q E move, a drag looks around, the wheel changes the speed
-//   walk   as fly, 1.7 m above the ground; hits are those of exact rays, so nobody walks through a wall
-//   top    a map, straight down; a drag shifts, the wheel zooms towards the cursor
+//   walk   as fly, 1.7 m above the ground; exact rays detect obstacles, so walls are never crossed
+//   top    a map, straight down; a drag pans, the wheel zooms towards the cursor
 #pragma once
 
 #include <array>
@@ -25,11 +26,11 @@ struct Pose {
   double azimuth = 0, altitude = 0;
   double distance = 1;  ///< metres from the eye to the point that orbit turns around
   double fov_deg = 30;
-  double map_width = 0;  ///< metres that a map shows from left to right
+  double map_width = 0;  ///< width of the area that a map shows, in metres
 };
 
 dvec3 forward_of(const Pose& pose);
-/// The pose that shows the same places when all heights are multiplied by a factor.
+/// The pose that shows the same points after all heights are multiplied by a factor.
 Pose with_heights_times(const Pose& pose, double factor);
 /// The corners of the map of a pose, for a picture of this size: west and south, east and north.
 std::array<dvec2, 2> map_corners(const Pose& pose, int width, int height);
@@ -42,7 +43,7 @@ constexpr std::size_t kMoveKeys = 7;
 
 class Navigator {
  public:
-  static constexpr double kEyeHeight = 1.7;  ///< metres above the ground, of a walker
+  static constexpr double kEyeHeight = 1.7;  ///< of a walker, in metres above the ground
 
   /// `scene` is queried for walkers, and must outlive the navigator; `across` is the extent of the scene in metres.
   Navigator(const Scene& scene, const Camera& first, double fov_deg, double across);
@@ -61,7 +62,7 @@ class Navigator {
   void turn(const dvec2& drag, const dvec2& size);
   void shift(const dvec2& drag, const dvec2& size);
   void wheel(double steps, const dvec2& at, const dvec2& size);
-  /// Moves towards a point of the scene that was clicked: orbit turns around it from then on.
+  /// Moves towards a point of the scene that was clicked; orbit then turns around it.
   void go_to(const dvec3& point);
   void release_keys() { keys_ = {}; }
 

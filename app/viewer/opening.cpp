@@ -26,7 +26,7 @@ bool excludes(const cli::Declared& one, const cli::Declared& other) {
   return contains(one.option.excludes, other.name) || contains(other.option.excludes, one.name);
 }
 
-// Without those that cannot be combined with newer ones.
+// Omits options that cannot be combined with newer ones.
 std::vector<GivenOption> combinable(const cli::Command& command, const std::vector<GivenOption>& given) {
   std::vector<GivenOption> used;
   for (auto one = given.rbegin(); one != given.rend(); ++one) {

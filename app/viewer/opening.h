@@ -24,7 +24,7 @@ struct Opening {
   std::shared_ptr<cli::Program> program;  ///< its declarations are bound to `options`
   std::shared_ptr<cli::ViewOptions> options;
   cli::InputKind kind;
-  /// Everything that was typed or set in the window, the newest last; those without current effect are not in
+  /// All options that were typed or set in the window, the newest last. Those without a current effect are not in
   /// `options`.
   std::vector<GivenOption> given{};
 
@@ -35,7 +35,7 @@ struct Opening {
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
                        const cli::Command& command);
 
-/// The opening of a file without any option. Throws Error and WrongUsage.
+/// Opens a file without any options. Throws Error and WrongUsage.
 Opening opening_of(const std::string& file);
 
 /// Changes the value of an option; nullopt removes it. Flags have the value "true".

@@ -263,7 +263,7 @@ void draw_split(double x, const std::vector<std::string>& names) {
   const float height = ImGui::GetIO().DisplaySize.y, at = static_cast<float>(x), margin = scaled(kMargin);
   list.AddLine({at, 0}, {at, height}, kBlack, 3);
   list.AddLine({at, 0}, {at, height}, kWhite, 1);
-  // The left name ends at the line, the right one starts there.
+  // The left name ends at the divider, and the right name starts there.
   for (std::size_t i = 0; i < names.size() && i < 2; ++i) {
     const ImVec2 size = ImGui::CalcTextSize(names[i].c_str());
     const ImVec2 place{i == 0 ? at - margin - size.x : at + margin, height - margin - size.y};

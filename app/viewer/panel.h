@@ -16,18 +16,18 @@ namespace scarp::viewer {
 
 /// The state that the panel shows and changes.
 struct PanelState {
-  std::vector<Control> controls{};  ///< numbers move in place; a change is an action
+  std::vector<Control> controls{};  ///< sliders change the numbers here; a completed change is an action
   /// Whether a change reopens the input: sliders then apply it when the mouse is released, otherwise while they move.
   std::function<bool(const OptionChange&)> reopens{};
   std::vector<std::string> comparisons{};  ///< possible comparisons
-  std::string compared{};                  ///< in use; empty: nothing
+  std::string compared{};                  ///< current comparison; empty: none
   MoveMode mode = MoveMode::orbit;         ///< a change is an action
   double speed = 0;                        ///< metres per second
   std::string device{};                    ///< device that traces rays
   const WorkedPicture* shown = nullptr;    ///< the picture in the window
-  const WorkedVerdict* verdict = nullptr;  ///< of the picture in the window
+  const WorkedVerdict* verdict = nullptr;  ///< verdict on that picture
   std::vector<std::string> names{};        ///< of its sides
-  bool times = true;                       ///< includes the time of the picture
+  bool times = true;                       ///< whether to show the time of the picture
   bool busy = false;
   std::optional<Reading> reading{};
   std::optional<MeasuredLine> line{};

@@ -17,7 +17,7 @@ constexpr int kLeastRows = 90;
 constexpr double kLeastSeconds = 1e-6;
 // Fraction of the measured rate: pictures of one view differ in cost.
 constexpr double kCaution = 0.8;
-// Between the costs of two passes at rest.
+// Ratio of the costs of successive passes at rest.
 constexpr int kGrowth = 4;
 
 class Watch {
@@ -100,7 +100,7 @@ std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings&
   // Other looks trace one ray per pixel.
   if (!entry_of(settings.look).lit) return passes;
   for (PictureSettings next = settings; next.aa > 1 || next.samples > 0;) {
-    // Anti-aliasing multiplies the rays of samples, and costs as its square.
+    // Anti-aliasing multiplies the number of samples and light rays; its cost is quadratic.
     if (next.aa > 1) {
       next.aa /= 2;
     } else {
@@ -153,7 +153,7 @@ bool PictureWorker::deliver(WorkedPicture worked) {
   return !failed;
 }
 
-// Returns whether the next pass is wanted, as the two below.
+// Returns whether the next pass is needed, like the two functions below.
 bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t generation) {
   std::int64_t most_pixels = 0;  // of one side
   WorkedPicture worked = begun(request, generation);
@@ -167,7 +167,7 @@ bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t gene
       settings.height = rows;
       settings.aa = 1, settings.samples = 0;
       most_pixels = std::max(most_pixels, std::int64_t{settings.width} * settings.height);
-      // A picture in progress while moving is shown; only closing the window cancels it.
+      // A picture that was started while moving is always shown; only closing the window cancels it.
       worked.sides.push_back(
           side.render(request.camera(settings.width, settings.height), settings, [&](double) { return !stopped(); }));
     }
@@ -193,7 +193,7 @@ bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t gen
     const Watch watch;
     const bool done = attempt(worked, [&] {
       for (std::size_t s = 0; s < passes.size(); ++s) {
-        // All sides are complete at the last pass.
+        // All sides are complete after the last pass.
         const std::size_t last = passes[s].size() - 1, left = count - 1 - i;
         const PictureSettings& settings = passes[s][last - std::min(last, left)];
         if (i > 0 && left >= last) {

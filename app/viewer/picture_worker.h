@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A thread that renders the picture of a window, so that the window never waits.
 //
-//   while moving   few rows, as many as can be traced in a frame; one sample per pixel, hard shadows
+//   while moving   only as many rows as can be traced in a frame; one sample per pixel, hard shadows
 //   then           full resolution, one sample per pixel
 //   refining       more and more samples, see refinement_of()
 //   at rest        the settings as requested: the picture of `scarp render`
@@ -9,7 +9,7 @@
 //
 // A picture may have two sides, such as the same view by two marches. Each pass renders both.
 //
-// Each request has a number, its generation. A newer request cancels all passes of the older one except the first,
+// Each request has a number, its generation. A newer request cancels all passes of the older request except the first,
 // which is shown even if the view keeps moving.
 #pragma once
 
@@ -51,7 +51,7 @@ struct WorkedPicture {
   bool large_pixels = false;  ///< at least one side has the look comanche
   std::uint64_t generation = 0;
   double seconds = 0;
-  std::string error{};  ///< error; empty: there is a picture
+  std::string error{};  ///< empty: there is a picture
 };
 
 struct WorkedVerdict {
@@ -78,11 +78,11 @@ class PictureWorker {
 
   /// Pictures per second of the first pass.
   static constexpr double kFramesPerSecond = 30;
-  /// Rows of the first pass: as many as can be rendered in a frame, of at most `height`, by the pixels per second of
-  /// the last first pass.
+  /// Number of rows of the first pass, at most `height`: as many as can be rendered in a frame, given the rate in
+  /// pixels per second of the previous first pass.
   static int rows_for(double pixels_per_second, int width, int height);
   /// The settings of the passes at rest, from one sample per pixel to the requested ones. Each costs at least about
-  /// four times the previous one, so all except the last together cost a third of the last.
+  /// four times as much as the previous one, so all earlier passes together cost about a third of the last.
   static std::vector<PictureSettings> refinement_of(const PictureSettings& settings);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A window's picture on the screen: an image scaled to the window, and Dear ImGui on top of it, by Vulkan.
+// Shows a window's picture on the screen with Vulkan: an image scaled to the window, with Dear ImGui on top.
 //
 //   image ──upload──▶ texture ──blit──▶ image of the swapchain ──ImGui──▶ present
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Readings under the cursor, by one ray in double precision, as text; and the line of sight between two points.
+// Readings under the cursor as text, from one ray in double precision; and the line of sight between two points.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace scarp::viewer {
 
-/// The coordinates, besides metres, in which the window shows positions, if the input is georeferenced.
+/// The coordinates, in addition to metres, in which the window shows positions of georeferenced inputs.
 struct ReadingFrames {
   explicit ReadingFrames(const cli::PlaceRaster& raster);
   std::unique_ptr<CoordinateFrame> map{}, lonlat{};  ///< null: not georeferenced

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Mouse and key events as text, one event per line: "1.25 move 320 240". A recording is played with its own clock, so
-// it ends at the same view on every machine. "2 option --water 120" and "2 compare march naive" set options of the
-// panel, wherever its controls are.
+// Mouse and key events as text, one event per line: "1.25 move 320 240". A recording is played with a simulated clock,
+// so it ends at the same view on every machine. "2 option --water 120" and "2 compare march naive" set options of the
+// panel, independent of the position of its controls.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct WindowEvent {
   int modifiers = 0;    ///< GLFW's bits
   double x = 0, y = 0;  ///< move: the cursor, in pixels; wheel: y is the steps
   std::string text{};   ///< option: "--water 120", or "--water" to remove it; compare: "march naive"
-  int line = 0;         ///< of the file that it was read from
+  int line = 0;         ///< line number in the file
 };
 
 struct Recording {

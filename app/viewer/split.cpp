@@ -9,7 +9,7 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr double kReach = 6;  // distance in pixels at which the line can be grabbed
+constexpr double kReach = 6;  // distance in pixels within which the divider can be grabbed
 
 }  // namespace
 

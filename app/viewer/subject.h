@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The content of the window: an input with its options and, for comparisons, the same input with another march or look
-// beside it.
+// The content of the window: an input with its options and, for comparisons, the same input with another march or look.
 #pragma once
 
 #include <memory>
@@ -31,7 +30,7 @@ class Subject {
   const std::string& device() const { return device_; }
 
   /// Changes an option. Returns whether the input was reopened, which replaces prepared(). If it throws Error, nothing
-  /// has changed: also for options of the window itself, kWindowOptions.
+  /// has changed. Throws Error for options of the window itself (kWindowOptions).
   bool change(const OptionChange& change);
 
   /// Whether change() would reopen the input. Throws Error for a change that the options reject.
@@ -42,13 +41,13 @@ class Subject {
 
   /// The possible comparisons: "march naive", "look steps".
   std::vector<std::string> comparisons() const;
-  /// Shows it beside; empty: nothing. If it throws Error, nothing has changed.
+  /// Shows this comparison; empty: none. If it throws Error, nothing has changed.
   void compare(const std::string& with);
   const std::string& compared() const { return compared_; }
-  /// The main picture, in the terms of compared(): "march max-mip" beside "march naive".
+  /// The main picture in the form of compared(): "march max-mip" for "march naive".
   std::string comparable() const;
 
-  /// The pictures for a window of this size: the input's, and the comparison's.
+  /// The pictures for a window of this size: that of the input, and that of the comparison.
   std::vector<PictureSide> sides(int width, int height) const;
   /// The inputs with their options, in the same order.
   std::vector<const Opening*> openings() const;
@@ -56,12 +55,12 @@ class Subject {
   std::vector<Control> controls(const std::optional<StepScale>& steps) const;
 
  private:
-  // The scene belongs to the worker once opened.
+  // Once opened, the scene belongs to the worker.
   struct Opened {
     Opened(cli::InputKind kind, cli::RenderOptions options, ImageSize size)
         : prepared(kind, std::move(options), size) {}
     cli::PreparedScene prepared;
-    std::optional<Scene> judges{};  // once requested
+    std::optional<Scene> judges{};  // created on request
   };
   struct Side {
     Opening opening;
@@ -72,7 +71,7 @@ class Subject {
 
   Side open(Opening opening) const;
   static Side side_by(const std::shared_ptr<Opened>& opened, Opening opening);
-  // Without rereading the inputs, if possible.
+  // Avoids rereading the inputs if possible.
   Side side_of(Opening opening, const Side& like, const Side* or_like) const;
   std::optional<Side> beside(const Side& main) const;
   OptionChange comparison() const;

@@ -63,7 +63,7 @@ void Swapchain::present() {
   }
 }
 
-// Bytes of pictures are sRGB already: a format that does not convert.
+// Chooses a format without conversion: bytes of pictures are already sRGB.
 void Swapchain::choose_format() {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical, device_.surface, &count, nullptr);
@@ -104,7 +104,7 @@ void Swapchain::make_pass() {
   require(vkCreateRenderPass(device_.device, &info, nullptr, &pass_), "making a render pass");
 }
 
-// Makes images as large as the window. Returns false if it has no area.
+// Creates images of the window's size. Returns false if the window has no area.
 bool Swapchain::fit() {
   vkDeviceWaitIdle(device_.device);
   destroy_targets();
@@ -124,7 +124,7 @@ bool Swapchain::fit() {
   }
 }
 
-// The swapchain, unless the window has no area.
+// Creates the swapchain, unless the window has no area.
 VkResult Swapchain::make() {
   VkSurfaceCapabilitiesKHR can;
   const VkResult asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical, device_.surface, &can);
@@ -156,7 +156,7 @@ VkResult Swapchain::make() {
   info.oldSwapchain = swapchain_;
   VkSwapchainKHR made = VK_NULL_HANDLE;
   const VkResult result = vkCreateSwapchainKHR(device_.device, &info, nullptr, &made);
-  // The old one is retired even if there is no new one.
+  // The old swapchain is retired even if creating the new one fails.
   destroy_swapchain();
   swapchain_ = made;
   return result;

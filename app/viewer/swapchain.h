@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The images of a window, which follow its size and outlive the loss of its surface.
+// The images of a window. They follow its size and survive the loss of its surface.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class Swapchain {
 
   void open();
   /// The image to draw into, once acquired() is signalled. Null if there is none: the window has no area, or its size
-  /// changes faster than images are made. Throws Error if the device is lost.
+  /// changes faster than images can be created. Throws Error if the device is lost.
   const Target* acquire();
   /// Presents the image that acquire() returned last. Throws Error if the device is lost.
   void present();

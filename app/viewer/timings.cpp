@@ -24,7 +24,7 @@ Timings::Timings(const std::string& file) {
   if (file.empty()) return;
   file_ = std::fopen(file.c_str(), "w");
   if (!file_) throw Error(fmt::format("'{}' cannot be written", file));
-  // A line at a time: readers follow the file while the window is open.
+  // Line-buffered: readers follow the file while the window is open.
   std::setvbuf(file_, nullptr, _IOLBF, BUFSIZ);
   std::fputs("what,unix_s,generation,pass,columns,rows,render_s\n", file_);
 }

@@ -12,7 +12,7 @@ namespace scarp::viewer {
 
 class Timings {
  public:
-  /// Writes the header. Throws Error if the file cannot be written. An empty name keeps no times.
+  /// Writes the header. Throws Error if the file cannot be written. With an empty name, no times are recorded.
   explicit Timings(const std::string& file);
   ~Timings();
   Timings(const Timings&) = delete;

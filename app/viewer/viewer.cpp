@@ -104,7 +104,7 @@ class Viewer {
 
   void navigate(const Camera& first) {
     const cli::RenderInput& input = subject_->prepared().input();
-    // The CPU traces rays of single points.
+    // The CPU traces single rays.
     navigator_ = std::make_unique<Navigator>(subject_->prepared().given_scene(), first,
                                              subject_->prepared().view().fov_deg, input.subject.across);
     frames_ = std::make_unique<ReadingFrames>(input.raster);
@@ -129,7 +129,7 @@ class Viewer {
     panel_.names = {subject_->comparable(), subject_->compared()};
   }
 
-  // --- what is set --------------------------------------------------------------------------------------------------
+  // --- settings -----------------------------------------------------------------------------------------------------
 
   // If it fails, for example because the file is gone, the window keeps its current state.
   void change(const OptionChange& change) {
@@ -374,8 +374,8 @@ class Viewer {
       const double now = seconds();
       step(now, now - before, waits ? 0.0 : now - before);
       before = now;
-      // Shows new pictures at once. The rest of the window is not updated more often than pictures: presenting with a
-      // CPU driver takes processors from the worker.
+      // Shows new pictures immediately. The rest of the window is not updated more often than pictures: presenting with
+      // a CPU driver takes processor time from the worker.
       const double wait = drawn_at_ + 1 / PictureWorker::kFramesPerSecond - now;
       if (redraws_ > 0 && (unpresented_ || wait <= 0)) {
         --redraws_;
@@ -384,7 +384,7 @@ class Viewer {
       } else if (redraws_ > 0) {
         glfwWaitEventsTimeout(wait);
       } else if (!asked_rest_) {
-        // Until the view counts as being at rest.
+        // Waits until the view counts as being at rest.
         glfwWaitEventsTimeout(kRest / 4);
       }
     }
@@ -439,7 +439,7 @@ class Viewer {
   bool is_complete() const {
     return shown_ && shown_->pass == PicturePass::converged && shown_->generation == generation_;
   }
-  // Independent of the displayed picture: recordings end at the same view, regardless of rendering times.
+  // Independent of the displayed picture, so recordings end at the same view regardless of rendering times.
   bool compares() const { return !subject_->compared().empty(); }
 
   void show_sides() {
@@ -482,7 +482,7 @@ class Viewer {
       panel_.speed = navigator_->speed();
       panel_.shown = shown_ ? &*shown_ : nullptr;
       panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
-      panel_.times = !played_;  // no two runs take as long
+      panel_.times = !played_;  // times differ from run to run
       panel_.busy = worker_->busy();
       panel_.reading = reading_at(cursor_);
       actions = draw_panel(panel_);
@@ -528,7 +528,7 @@ class Viewer {
     redraws_ = kRedraws;
   }
 
-  // --- what leaves the window ---------------------------------------------------------------------------------------
+  // --- output -------------------------------------------------------------------------------------------------------
 
   // Saves both sides if there are two.
   void save_picture() {
@@ -573,7 +573,7 @@ class Viewer {
 
   // --- recordings ---------------------------------------------------------------------------------------------------
 
-  // Steps of constant length, however long they take; then waits for the picture.
+  // Plays steps of constant recorded length, however long they take; then waits for the picture.
   void play() {
     const std::vector<WindowEvent>& events = played_->events;
     std::size_t next = 0;
@@ -633,7 +633,7 @@ class Viewer {
   double play_seconds_ = 0, changed_at_ = 0, drawn_at_ = -1, last_click_ = -1, way_ = 0;
   bool asked_rest_ = false, settings_changed_ = true, saves_ = false, shows_panel_ = true;
   bool render_failed_ = false;
-  int played_line_ = 0, save_line_ = 0;  // of the recording: of the event that is being taken, of the last P
+  int played_line_ = 0, save_line_ = 0;  // lines of the recording: of the current event, and of the last P
   bool unpresented_ = false;             // shown_ is newer than what the window shows
   int redraws_ = kRedraws, dragging_ = -1;
   Dragged dragged_ = Dragged::view;

@@ -95,7 +95,7 @@ void VulkanDevice::make_instance(bool validation) {
   require(create(instance, &listen, nullptr, &messenger_), "listening to the validation layer");
 }
 
-// The first queue family that draws and presents here.
+// Finds the first queue family that can draw and present to the surface.
 bool VulkanDevice::find_family(VkPhysicalDevice of, std::uint32_t& found) const {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(of, &count, nullptr);
@@ -121,7 +121,7 @@ void VulkanDevice::choose_device(const std::string& choice) {
     names += (names.empty() ? "" : ", ") + std::string(about.deviceName);
     std::uint32_t found;
     if ((choice != "auto" && !contains(about.deviceName, choice)) || !find_family(one, found)) continue;
-    // CPU devices only if there is no other.
+    // CPU devices are used only if there is no other.
     if (physical &&
         (about.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU))
       continue;

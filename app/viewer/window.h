@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// GLFW's window and Dear ImGui's state, from their start to their end.
+// Owners of GLFW's window and Dear ImGui's state.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ class Glfw {
   GLFWwindow* window_ = nullptr;
 };
 
-/// Ends before the window.
+/// Must be destroyed before the window.
 class Imgui {
  public:
   /// With `listens`, receives the window's events after the installed callbacks. The font and the panels are scaled for

@@ -100,7 +100,7 @@ _scarp() {
 }
 
 std::string zsh_completion(const Program& program) {
-  // Within a specification of _arguments: 'NAMES[HELP]:VALUE:ACTION'.
+  // Escapes help for a specification of _arguments: 'NAMES[HELP]:VALUE:ACTION'.
   const auto text = [](std::string help) {
     for (const auto& [from, to] : {std::pair("\\", "\\\\"), {"'", "'\\''"}, {"[", "\\["}, {"]", "\\]"}, {":", "\\:"}})
       help = replaced(std::move(help), from, to);

@@ -22,7 +22,7 @@ std::string row_of(const Declared& one) {
                      one.option.required ? "required" : cell(one.default_text), cell(one.restrictions()));
 }
 
-// Text of troff: hyphens that can be copied, and no line that starts a request.
+// Converts to troff: hyphens stay copyable, and no line starts a request.
 std::string troff(const std::string& text) {
   std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (!out.empty() && (out.front() == '.' || out.front() == '\'')) out.insert(0, "\\&");

@@ -18,7 +18,7 @@ std::string options_markdown(const Program& program);
 std::string man_page(const Program& program);
 std::string man_page(const Command& command);
 
-/// Completion scripts of subcommands, options, words that are choices, and files by extension.
+/// Scripts that complete subcommands, options, choices, and files by extension.
 std::string bash_completion(const Program& program);
 std::string zsh_completion(const Program& program);
 std::string fish_completion(const Program& program);

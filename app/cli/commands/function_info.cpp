@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Octaves of the fractal that has the most.
+// The number of octaves of the fractal with the most octaves.
 void find_octaves(const Function& function, Octaves& most) {
   std::visit(
       [&](const auto& f) {
@@ -43,7 +43,7 @@ struct Seen {
   double low = std::numeric_limits<double>::infinity(), high = -low, slope = 0;
 };
 
-// On a lattice of side x side positions.
+// Heights on a lattice of side x side positions.
 Seen seen_in(const HeightFunction& function, const FunctionRectangle& r, int side) {
   Seen seen;
   for (int row = 0; row < side; ++row) {
@@ -60,7 +60,7 @@ Seen seen_in(const HeightFunction& function, const FunctionRectangle& r, int sid
 
 double ratio(double certified, double seen) { return seen > 0 ? certified / seen : 1; }
 
-// Ratio of the certified to the observed range, averaged over squares of a size.
+// Ratio of the certified to the observed range, averaged over squares of the given size.
 Json tightness_of(const HeightFunction& function, double extent, double size) {
   constexpr int kSquares = 5, kSide = 17;  // along each axis; samples along a side
   double range = 0, slope = 0;

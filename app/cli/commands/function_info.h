@@ -7,8 +7,8 @@
 
 namespace scarp::cli {
 
-/// `name_or_path` as --function takes it; `extent`: side in metres of the examined square around the origin. Throws
-/// Error for an unknown function or an extent out of range.
+/// `name_or_path`: as for --function; `extent`: side in metres of the examined square around the origin. Throws Error
+/// for an unknown function or an extent out of range.
 nlohmann::ordered_json describe_function(const std::string& name_or_path, double extent);
 std::string function_text_of(const nlohmann::ordered_json& info);
 

@@ -58,7 +58,7 @@ void run(GenerateOptions options) {
   terrain.cols = static_cast<int>(size.front());
   terrain.rows = static_cast<int>(size.back());
   terrain.kind = *terrain_kind(options.kind);
-  // A name that ends in .png is a mistake: no program would open the new file as a picture.
+  // Rejects names such as *.png: no program would open the file as a picture.
   const std::string extension = extension_of(options.output);
   if (!options.output.empty() && extension != ".tif" && extension != ".tiff") {
     throw Error(fmt::format("output '{}': terrain is written as GeoTIFF (name it *.tif or *.tiff)", options.output));

@@ -38,7 +38,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 
 Json json_of(const std::optional<MapBounds>& b) { return b ? Json{b->west, b->south, b->east, b->north} : Json(); }
 
-// Bounds of the samples and of the outer edges, on the map and in degrees.
+// Bounds of the samples and of the outer edges, in map units and in degrees.
 Json extent_of(const Georeference& geo, int cols, int rows) {
   if (!geo.present) return {};
   const MapExtent extent = map_extent(geo, cols, rows);
@@ -112,7 +112,7 @@ std::string text_of(const Json& info) {
     const auto bounds_lines = [&](std::string_view name, const char* key) {
       const auto edges_of = [](const Json& b) {
         const auto at = [&](std::size_t i) { return b[i].get<double>(); };
-        // Millimetres of projected maps, and of degrees.
+        // Enough digits for millimetres, in projected units and in degrees.
         return fmt::format("west {:.10g}, south {:.10g}, east {:.10g}, north {:.10g}", at(0), at(1), at(2), at(3));
       };
       const Json &own = bounds[key], &degrees = bounds[std::string(key) + "_lonlat"];

@@ -114,7 +114,7 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const std
       add(from, to, properties);
       continue;
     }
-    // The line itself at the position of the ground: straight between the ends.
+    // The line itself above or below the obstruction: straight between the ends.
     const Json middle = point(block.col, block.row, line.eye + block.along * (line.target - line.eye));
     properties["part"] = "visible";
     add(from, middle, properties);
@@ -162,7 +162,7 @@ void run(LosOptions options, const Command& command) {
   };
   const Progress progress = terminal_progress("los");
   if (is_geographic(input.georeference())) {
-    // Each line on the plane of its own observer.
+    // Each line is tested on the plane of its own observer.
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const auto& [from, to] = answers[i].ends;
       const double reach = std::hypot((to.col - from.col) * input.field().settings().cell_x,

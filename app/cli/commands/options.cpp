@@ -23,7 +23,7 @@ void write(const fs::path& path, const std::string& text) {
   if (!out.flush()) throw Error(fmt::format("'{}': cannot be written", path.string()));
 }
 
-// Laid out as below share/ of an installed tree.
+// The layout is that of share/ in an installed tree.
 void write_share(const Program& program, const fs::path& share) {
   write(share / "bash-completion/completions/scarp", bash_completion(program));
   write(share / "zsh/site-functions/_scarp", zsh_completion(program));

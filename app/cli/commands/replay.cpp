@@ -28,7 +28,7 @@ std::string_view status_name(HitStatus status) {
   return kNames[static_cast<std::size_t>(status)];
 }
 
-// One ray and all of its results.
+// One ray and all its results.
 class Replay {
  public:
   explicit Replay(const RayDump& dump)
@@ -84,7 +84,7 @@ class Replay {
                       all ? std::to_string(all->size()) : "-", wrong});
   }
 
-  // Metres from the surface up to the hit.
+  // Height of the hit above the surface in metres.
   double clearance(const Hit& hit) const {
     const HeightField& field = dump_.field;
     const auto h = field.cell_heights(hit.cell);

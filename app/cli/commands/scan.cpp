@@ -22,13 +22,13 @@
 namespace scarp::cli {
 namespace {
 
-// Rays are traced and written in pieces: a scan of any length needs memory for one piece.
+// Rays are traced and written in pieces, so a scan of any length needs memory for only one piece.
 constexpr std::int64_t kScanRaysPerPiece = 1 << 18;
 // Columns of fans are walked together in strips of 16 (scene/cast_from.h).
 constexpr std::int64_t kColumnsPerStrip = 16;
 constexpr float kScanDegrees = static_cast<float>(180 / std::numbers::pi);
 
-// Replaces coordinates of the file by metres.
+// Converts the coordinates of the file to metres.
 void place_scanner(ScannerFile& file, const ScanOptions& options, const ScannedScene& scanned) {
   const Places& places = scanned.places;
   if (file.lonlat && places.frame().coordinates() != Coordinates::lonlat)
@@ -44,7 +44,7 @@ void place_scanner(ScannerFile& file, const ScanOptions& options, const ScannedS
   file.lidar.north = std::atan2(north.x, north.y);
 }
 
-// The box that holds the points, in metres; nullopt if it has no end.
+// The box that contains the points, in metres; nullopt if it is unbounded.
 std::optional<WorldBox> scan_box(const Scene& scene, const Lidar& lidar) {
   if (!scene.endless() && !scene.box().empty()) return scene.box();
   if (std::isinf(lidar.max_range)) return {};
@@ -57,12 +57,12 @@ std::optional<WorldBox> scan_box(const Scene& scene, const Lidar& lidar) {
 
 LasSettings las_settings_of(const ScannedScene& scanned, const Lidar& lidar, std::vector<std::string>& notes) {
   const CoordinateFrame& frame = scanned.places.frame();
-  constexpr double kStep = 0.001, kStepDegrees = 1e-8;  // a millimetre: 1e-8 degrees are 1.1 mm of a meridian
-  constexpr double kUnbounded = 1e5;                    // metres about the scanner, where nothing else is known
+  constexpr double kStep = 0.001, kStepDegrees = 1e-8;  // a millimetre: 1e-8 degrees are 1.1 mm along a meridian
+  constexpr double kUnbounded = 1e5;                    // metres around the scanner, if no bounds are known
   const dvec3 start = lidar.path.front().position;
   const WorldBox box = scan_box(scanned.scene, lidar).value_or(WorldBox{start - kUnbounded, start + kUnbounded});
   const dvec3 middle = 0.5 * (box.low + box.high);
-  // Corners, and a step of a metre.
+  // The corners, and a point one metre away.
   std::array points{box.low, box.high,    dvec3(box.low.x, box.high.y, 0.0), dvec3(box.high.x, box.low.y, 0.0),
                     middle,  middle + 1.0};
   LasSettings las;
@@ -204,7 +204,7 @@ void run_scan(const ScanOptions& options, ScannerFile file, const ScannedScene& 
   if (const std::string note = scan_finding(counts, scanned, scan); !note.empty()) all_notes.push_back(note);
   for (const std::string& note : all_notes) fmt::print(stderr, "note: {}\n", note);
   if (::isatty(STDERR_FILENO) != 0) {
-    constexpr double kTick_s = 1e-9;  // of the clock
+    constexpr double kTick_s = 1e-9;  // resolution of the clock
     fmt::print(stderr, "{} rays, {} points; {:.3g} s, {:.3g} Mrays/s{}\n", counts.rays, counts.hits, seconds,
                static_cast<double>(counts.rays) / std::max(seconds, kTick_s) * 1e-6,
                device.empty() ? "" : ", on " + device);

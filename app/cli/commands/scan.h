@@ -31,8 +31,8 @@ struct ScannedScene {
   const Georeference& georeference;
 };
 
-/// Writes the points of a scan to `output`; empty: CSV to standard output. Prints `notes` and its own when the file is
-/// complete. Throws Interrupted after a signal.
+/// Writes the points of a scan to `output`; empty: CSV to standard output. Prints `notes` and further notes when the
+/// file is complete. Throws Interrupted after a signal.
 void run_scan(const ScanOptions& options, ScannerFile scanner, const ScannedScene& scanned, const std::string& output,
               const std::vector<std::string>& notes, const std::string& device);
 

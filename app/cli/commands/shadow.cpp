@@ -46,13 +46,13 @@ struct ShadowOptions : MapOptions {
   RasterOutput raster_output;
 };
 
-// A sun over the field; azimuth from grid north.
+// A sun over the field. The azimuth is relative to grid north.
 struct Sun {
   SunDirection direction;
   std::string name;   // of the band
   std::string place;  // azimuth and altitude in degrees
 #ifdef SCARP_ERFA
-  std::optional<LocalSun> local{};  // in place of the direction
+  std::optional<LocalSun> local{};  // replaces the direction
 #endif
 };
 
@@ -67,10 +67,10 @@ dvec2 centre_of(const MapInput& input) { return {(input.field().cols() - 1) / 2.
 double grid_north_of(MapInput& input) { return input.grid_north_at(centre_of(input).x, centre_of(input).y, HUGE_VAL); }
 
 #ifdef SCARP_ERFA
-// The sun of one time over a raster.
+// The variation of the sun over a raster at one time.
 struct SunSpread {
   SunPosition centre;
-  double error = 0;                // largest deviation in the corners, radians
+  double error = 0;                // largest deviation at the corners, radians
   double lowest = 0, highest = 0;  // altitudes at centre and corners
 };
 
@@ -188,7 +188,7 @@ void run(ShadowOptions options, const Command& command) {
   keep_inputs(options.output, input.files());
   double lowest = std::numbers::pi / 2;
   const std::vector<Sun> suns = suns_of(input, options, lowest);
-  // One sun needs a plane of the whole raster; rays of cells need one as far as a shadow reaches.
+  // A single sun needs a plane for the whole raster; rays per cell need one only as far as a shadow reaches.
   const double relief = input.field().max_height() - input.field().min_height();
   const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
   const HeightField field =

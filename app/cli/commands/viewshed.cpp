@@ -59,7 +59,7 @@ struct ViewshedOptions : MapOptions {
   RasterOutput raster_output;
 };
 
-// One observer, with its own plane if the raster is in degrees.
+// An observer, with its own plane if the raster is in degrees.
 struct Observer {
   Node node;
   ViewshedSettings settings;
@@ -134,7 +134,7 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", what, error.what()));
     }
-    // In samples: degrees and metres are read alike.
+    // Measured in samples, which suits degrees and metres.
     const dvec2 typed = input.position_of(row.from, table.lonlat, what);
     farthest = std::max(farthest, std::hypot(typed.x - node.col, typed.y - node.row));
   }
@@ -163,7 +163,7 @@ struct PixelValues {
   }
 };
 
-// Throws Error if visible pixels would equal others.
+// Throws Error if the value of visible pixels would equal another value.
 PixelValues pixel_values(const ViewshedOptions& options) {
   PixelValues values{options.hidden, options.visible, 0, kNodata};
   if (options.nodata) {
@@ -246,21 +246,21 @@ std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDa
       for (auto i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
         const Node node{static_cast<int>(i % cols), rows.first + static_cast<int>(i / cols)};
         const float height = least_height(view.ground(), node, least[i], datum);
-        pixels[i] = std::fmin(pixels[i], height);  // NaN gives way
+        pixels[i] = std::fmin(pixels[i], height);  // replaces NaN
       }
     });
   }
   return pixels;
 }
 
-// Likewise.
+// The same for angles.
 std::vector<float> angle_pixels(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
   std::vector<float> pixels;
   for (const Observer& one : observers) {
     const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
     const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
     if (pixels.empty()) pixels.assign(angles.size(), kNothing);
-    for (std::size_t i = 0; i < angles.size(); ++i) pixels[i] = std::fmax(pixels[i], angles[i]);  // NaN gives way
+    for (std::size_t i = 0; i < angles.size(); ++i) pixels[i] = std::fmax(pixels[i], angles[i]);  // replaces NaN
   }
   return pixels;
 }
@@ -306,7 +306,7 @@ void run(ViewshedOptions options, const Command& command) {
   const RowBand rows = rows_of_part(input, options.raster_output);
   const double nodes = static_cast<double>(input.field().cols()) * rows.rows();
   if (options.raster_output.dry_run) {
-    // One sweep per observer, on one thread.
+    // Time per node of one sweep per observer, on one thread.
     constexpr double kNode_s = 6e-8;
     print_dry_run(input, rows, options.output, options.mode == "visible" || options.mode == "count" ? 3 : 12,
                   static_cast<double>(observers.size()) * nodes * kNode_s);

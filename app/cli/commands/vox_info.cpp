@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Lines of each list in the text; JSON has them all.
+// Maximum number of lines of each list in the text; JSON has all of them.
 constexpr std::size_t kListed = 8, kListedColours = 16;
 
 using Counts = std::array<std::int64_t, 256>;  // voxels per palette index
@@ -57,7 +57,7 @@ Json layers_of(const VoxFile& file) {
   return layers;
 }
 
-// Materials of used colours other than plain diffuse ones.
+// Materials of used colours, except plain diffuse ones.
 Json materials_of(const VoxFile& file, const Counts& counts) {
   constexpr std::string_view kPlain = "_diffuse";
   Json materials = Json::array();
@@ -133,7 +133,7 @@ void write_document(const WriteLine& line, const Json& info) {
   const std::int64_t hidden = count("hidden_instances");
   line("scene", fmt::format("{} nodes; {} objects{}", count("nodes"), count("instances"),
                             hidden > 0 ? fmt::format(", {} hidden ones are left out (--hidden)", hidden) : ""));
-  // The editor writes empty layers; named or hidden ones mean something.
+  // The editor writes empty layers; only named or hidden layers are of interest.
   Json layers = Json::array();
   for (const Json& layer : info["layers"]) {
     if (layer["hidden"].get<bool>() || !layer["name"].get<std::string>().empty()) layers.push_back(layer);
@@ -159,7 +159,7 @@ void write_document(const WriteLine& line, const Json& info) {
        });
 }
 
-// Placement of a part of the scene. The corner p of a voxel of the file is at offset + axes[0] p.x + axes[1] p.y +
+// Placement of a part of the scene. The corner p of a voxel in the file is at offset + axes[0] p.x + axes[1] p.y +
 // axes[2] p.z.
 Json part_of(const PlacedVoxels& voxels, const VoxelPlace& place) {
   const LatticePlace& in_file = voxels.models[place.model]->file_place();
@@ -200,7 +200,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   info["parts"] = Json::array();
   for (const VoxelPlace& place : input.voxels.places) info["parts"].push_back(part_of(input.voxels, place));
   const WorldBox box = *field->extent();
-  // Files with their own transform have decimals.
+  // Coordinates of files with their own transform have decimals.
   const bool metres = is_vdb_path(path);
   const auto corner = [&](const dvec3& p) {
     return metres ? Json{p.x, p.y, p.z} : Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)};

@@ -63,7 +63,7 @@ double side_of(const VoxeliseOptions& options, InputKind kind, const Scene& scen
   if (!within && scene.endless())
     throw Error("--within is required: the scene is endless (give XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH)");
   if (options.voxel > 0) return options.voxel;
-  // Voxels are not changed.
+  // Voxel inputs keep their size.
   if (options.count == 0 && kind == InputKind::voxels) return scene.cell_side();
   const WorldBox& box = within ? *within : scene.box();
   const dvec3 size = box.high - box.low;
@@ -100,7 +100,7 @@ void run(const VoxeliseOptions& options, const Command& command) {
   stop_if_interrupted();
   const double side = side_of(options, kind, input.scene, within);
   const std::string name = options.inputs.empty() ? "--function" : options.inputs.front();
-  // Worlds: for terrain, in file formats that support them.
+  // Large worlds are possible for terrain, in file formats that support them.
   const HeightField* const ground = extension == ".vdb" ? input.scene.only_heights() : nullptr;
   const int most = ground ? VoxelGrid::kMaxSide : VoxelGrid::kMaxModelSide;
   const VoxelLattice lattice = naming(name, [&] { return lattice_around(input.scene, side, within, most); });

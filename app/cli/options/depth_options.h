@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The planes between which a depth buffer counts.
+// Options for the near and far plane of a depth buffer.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct DepthOptions {
 /// Declares --depth-range and --depth-reversed.
 void add_depth_options(Command& command, DepthOptions& options);
 
-/// The range with its direction; nothing when none was given.
+/// The range with its direction; nullopt if none was given.
 std::optional<DepthRange> depth_range_of(const DepthOptions& options);
 
 }  // namespace scarp::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// --device: where the rays of a scene are traced; --voxel-drawing: how camera rays over voxels are traced.
+// --device: the device that traces the rays of a scene; --voxel-drawing: the method for camera rays over voxels.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace scarp::cli {
 
 void add_device_option(Command& command, std::string& device);
-/// After add_device_option(). `drawing` is a name of kVoxelDrawings.
+/// Call after add_device_option(). `drawing` is a name in kVoxelDrawings.
 void add_voxel_drawing_option(Command& command, std::string& drawing, const std::string& device);
 
 /// Checks, before any file is read, that the march runs on the device; does nothing if `device` is empty. Throws Error
@@ -27,8 +27,8 @@ struct SceneOnDevice {
   std::string device;  ///< its name; empty: the CPU
   std::shared_ptr<DeviceSight> sight{};
 };
-/// Returns the scene on the device; the scene itself if `device` is empty. Throws Error if there is no such device, it
-/// lacks a feature or memory, or this program was built without Vulkan.
+/// Returns the scene on the device; the scene itself if `device` is empty. Throws Error if the device does not exist or
+/// lacks a feature or memory, or if this program was built without Vulkan.
 SceneOnDevice scene_on_device(const std::string& device, const Scene& scene, const std::string& drawing = "compute");
 
 /// Sets the camera of the next picture on the device, with aa x aa samples per pixel; does nothing on the CPU.

@@ -33,7 +33,7 @@ void set_exaggeration(const std::string& text, FieldOptions& options, Exaggerati
 }  // namespace
 
 double chosen_exaggeration(double relief, double side) {
-  // As steep as the Alps over the width of a chain: clearly seen, and still like mountains.
+  // As steep as the Alps across a whole range: clearly visible, and still natural.
   constexpr double kShare = 0.1;
   if (!(relief > 0)) return 1;
   const double most = std::min(kShare * side / relief, kMostOfGround);
@@ -44,7 +44,7 @@ double chosen_exaggeration(double relief, double side) {
 
 std::string flatness_note(double relief, double side) {
   // Height of the relief in pixels if the longer side of the ground fills a picture of the default width, as in the
-  // default view: less than this looks like a plane.
+  // default view: a smaller relief looks flat.
   constexpr double kLeastPixels = 4;
   const double width = PictureSettings{}.width;
   if (relief * width >= kLeastPixels * side) return {};

@@ -21,11 +21,11 @@ struct FigureOptions {
   std::optional<GraticuleSpacing> graticule;
   double dots_per_inch = 150;
 
-  /// The first given option, for messages; empty: none.
+  /// The first option that was given, for messages; empty if there is none.
   std::string_view any() const;
 };
 
-/// `top`: the option --top, and `output` the file's name; both must outlive the command.
+/// `top` is the value of --top, and `output` the file's name; both must outlive the command.
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output);
 
 }  // namespace scarp::cli

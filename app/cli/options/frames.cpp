@@ -30,14 +30,14 @@ Place place_of_number(const std::string& output) {
   return {first, (end == std::string::npos ? output.size() : end) - first};
 }
 
-// Puts an eye at its height above the surface. A direction stays as it is.
+// Places an eye at its height above the surface. A view direction does not change.
 void lift(CameraStation& station, const RayTable& table, const PathPlaces& path, const std::string& what) {
   const dvec3 eye = path.above_surface(station.eye, what);
   if (table.aim == RayAim::direction) station.target.z += eye.z - station.eye.z;
   station.eye = eye;
 }
 
-// One per row, in world metres.
+// One station per row, in world metres.
 std::vector<CameraStation> stations_of(const RayTable& table, const PathPlaces& path) {
   std::vector<CameraStation> stations;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many pictures of one terrain: a flight along a path, or once round on a turntable.
+// Many pictures of one terrain: a flight along a path, or one turn on a turntable.
 #pragma once
 
 #include <functional>
@@ -23,27 +23,27 @@ struct FrameOptions {
 
 void add_frame_options(Command& command, FrameOptions& options);
 
-/// Throws Error if several frames have an output without a place for their number.
+/// Throws Error if several frames would have the same output name, which lacks a placeholder for the number.
 void check_frames(const FrameOptions& options, const std::string& output);
 
 /// Converts positions of a table to world metres.
 struct PathPlaces {
   const Places& places;
   const Scene& scene;  ///< targets without z are on its surface
-  /// The eye over (x, y) of a position; null: every eye needs z.
+  /// Returns the eye over (x, y) of a position; null: every eye needs z.
   std::function<dvec3(const dvec3& at, const std::string& what)> above_surface{};
 };
 
-/// Returns the cameras of the frames; `framed` makes those of a turntable, which starts at `view`. Eyes without z
-/// follow the surface, between the rows of the table as well. Throws Error naming file and line.
+/// Returns the cameras of the frames. `framed` creates those of a turntable, which starts at `view`. Eyes without z
+/// follow the surface, also between the rows of the table. Throws Error naming file and line.
 std::vector<Camera> frame_cameras(const FrameOptions& options, const ViewSettings& view, int width, int height,
                                   const std::function<Camera(const ViewSettings&)>& framed, const PathPlaces& path);
 
-/// The output's name with frame i (from 0) in place of its #s, at least as many digits.
+/// The output's name with the number of frame i (from 0) in place of its #s, padded to that many digits.
 std::string frame_name(const std::string& output, int i);
 
-/// Calls make(camera, name) for the frames that do not exist yet, and prints a summary. Stops at a frame that fails;
-/// earlier ones stay.
+/// Calls make(camera, name) for the frames that do not exist yet, and prints a summary. Stops at the first frame that
+/// fails; earlier frames are kept.
 void make_frames(const FrameOptions& options, const std::string& output, const std::vector<Camera>& cameras,
                  const std::function<void(const Camera&, const std::string&)>& make);
 

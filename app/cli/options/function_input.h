@@ -10,9 +10,9 @@
 
 namespace scarp::cli {
 
-/// Without --march.
+/// The march without --march.
 constexpr const char* kFunctionMarch = "lipschitz-local";
-/// Without --view and --fov.
+/// The view without --view and --fov.
 constexpr ViewSettings kFunctionView{.azimuth_deg = 190, .elevation_deg = 14, .distance = 0.5, .fov_deg = 45};
 
 struct FunctionInput {
@@ -25,7 +25,8 @@ struct FunctionInput {
 
 /// Declares --function and, unless its help is empty, --extent.
 void add_function_option(Command& command, FunctionInput& input, const std::string& extent);
-/// These and --preset. `march` and `settings` are the variables of --march and its settings; a preset sets them first.
+/// Declares these options and --preset. `march` and `settings` are the variables of --march and its settings, which a
+/// preset sets before other options apply.
 void add_function_options(Command& command, FunctionInput& input, const std::string& extent, std::string& march,
                           MarchSettings& settings);
 

@@ -65,7 +65,7 @@ ReliefRange ramp_range_from(const std::string& text) {
   return {range[0], range[1]};
 }
 
-// Adds options of looks that are lit.
+// Adds options for lit looks.
 auto lit(Command& command, Topic topic) {
   return [&command, topic](Binding to, Option option) {
     option.topic = topic;
@@ -148,7 +148,7 @@ void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& f
 void add_water_options(Command& command, PictureRequest& o) {
   const WaterSettings usual;
   const auto water = lit(command, Topic::water);
-  // A scene file may have water and fog of its own.
+  // A scene file may have its own water and fog.
   const Rule wet = needs(
       "--water M", [&o] { return o.water_level.has_value(); }, kEveryInput & ~kScene);
   water(&o.water_level, {.names = "--water",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The options of pictures with ground colours, water, fog and few large pixels.
+// The options of pictures for ground colours, water, fog and large pixels.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,17 @@ struct PictureFileNames {
 /// Declares the options. Both structures must outlive the command.
 void add_look_options(Command& command, PictureRequest& request, PictureFileNames& files);
 
-/// Reads the ramp and the detail texture. Throws Error naming the file, also if both the ramp and the request define
-/// heights.
+/// Reads the ramp and the detail texture. Throws Error naming the file, also if both the ramp file and the request
+/// define heights.
 PictureFiles read_picture_files(const PictureFileNames& files, const PictureRequest& request);
 
-/// The image of --overlay; no image without the option.
+/// The image of --overlay; null without the option.
 struct OverlayFiles {
   std::shared_ptr<const Drape> drape;
   std::vector<std::string> files;  ///< all files that were opened
 };
 /// Reads the image `name`, unless that is empty, for a raster of `cols` x `rows` samples, or for any scene if there is
-/// no georeference. With more than `most_pixels` over the raster it is averaged. Throws Error naming the file.
+/// no georeference. An image with more than `most_pixels` over the raster is averaged. Throws Error naming the file.
 OverlayFiles read_overlay_files(const std::string& name, const Georeference& georeference, int cols, int rows,
                                 bool mirror, std::int64_t most_pixels);
 

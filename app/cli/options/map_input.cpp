@@ -18,7 +18,7 @@
 namespace scarp::cli {
 namespace {
 
-// The same samples with cells of other lengths.
+// The same samples with other cell lengths.
 HeightField with_cells(const HeightField& field, double cell_x, double cell_y) {
   HeightFieldSettings settings = field.settings();
   settings.cell_x = cell_x;
@@ -122,7 +122,7 @@ void MapInput::refuse_outside(const TablePlace& place, std::string_view what, do
 
 dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   dvec2 at = position_of(place, lonlat, what);
-  // Places on the border may be a rounding outside.
+  // Rounding may put places on the border outside.
   const double last_col = field_.cols() - 1, last_row = field_.rows() - 1, rounding = 0.5 / kSubcells;
   if (!(at.x >= -rounding && at.y >= -rounding && at.x <= last_col + rounding && at.y <= last_row + rounding))
     refuse_outside(place, what, 0);

@@ -23,7 +23,7 @@ struct MapOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
   std::string coordinates;          ///< of places; empty: map, or local without a georeference
-  std::optional<double> curvature;  ///< coefficient; empty: by the body
+  std::optional<double> curvature;  ///< coefficient; empty: depends on the body
   double plane_error = 0.1;         ///< cells
   std::string surface = "crossings";
   int threads = 0;
@@ -38,7 +38,7 @@ void add_curvature_option(Command& command, std::optional<double>& coefficient);
 
 /// Declares --surface.
 void add_surface_option(Command& command, std::string& surface);
-/// "bilinear", or what `crossings` means.
+/// "bilinear", or a description of `crossings`.
 std::string_view surface_text(std::string_view surface);
 
 class MapInput {
@@ -59,22 +59,22 @@ class MapInput {
 
   /// Position in columns and rows. Messages start with `what`. Throws Error for a position outside the samples.
   dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
-  /// Position in columns and rows of a place that may lie outside.
+  /// The same for a place that may be outside.
   dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
-  /// The sample nearest to a place, as grid_of(); a place up to half a cell beyond the border counts.
+  /// The sample nearest to a place, as grid_of(). Places up to half a cell beyond the border are valid.
   Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// Converts a position in columns and rows to map coordinates, degrees or metres, as --coords specifies.
   dvec2 place_of(double col, double row) const;
   /// Longitude and latitude in degrees; nullopt without a CRS.
   std::optional<dvec2> lonlat_of(double col, double row) const;
 
-  /// The field with the lengths of its cells at a place. Geographic rasters only; others keep those of their centre.
-  /// Throws Error if samples within `reach` metres are farther off than --plane-error allows.
+  /// The field with the cell lengths at a place, for geographic rasters; other rasters keep those at their centre.
+  /// Throws Error if samples within `reach` metres are displaced by more than --plane-error allows.
   HeightField field_at(double col, double row, double reach);
   /// The ground of --surface bilinear; nullopt for `crossings`. `field` is one of field_at(). Throws Error naming the
   /// file.
   std::optional<BilinearGround> bilinear_ground(const HeightField& field) const;
-  /// Azimuth of grid north at that place, radians.
+  /// Azimuth of grid north at a place, in radians.
   double grid_north_at(double col, double row, double reach);
 
  private:

@@ -18,7 +18,7 @@ namespace {
 constexpr Inputs kMarched{kTerrain | kFunction, "what traces voxels and meshes has no settings"};
 constexpr Inputs kFunctionsOnly{kFunction, "rasters have cells to measure steps in, and end"};
 
-// Names for completion. The tables of each kind of field reject others.
+// Names for completion. The table of each kind of field rejects all others.
 std::vector<std::string> march_names() {
   std::vector<std::string> names;
   const auto add = [&](const auto& table) {
@@ -53,7 +53,7 @@ namespace {
 constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};
 
 void add_fixed_step_options(Command& command, FixedStepSettings& fixed_step) {
-  // The look comanche steps over a raster alone by its own rules (step_march_of() in frame_view.h).
+  // Over a single raster, the look comanche steps by its own rules (step_march_of() in frame_view.h).
   std::vector<Rule> plain;
   if (command.find("--steps")) {
     plain.push_back({"has no effect with --look comanche or --lowres, whose rays take --steps N",

@@ -32,7 +32,7 @@ bool is_mesh_input(const std::vector<std::string>& inputs) {
 }
 
 void add_mesh_options(Command& command, MeshOptions& options) {
-  // The same options place a mesh that is the input.
+  // The same options place a mesh that is itself the input.
   const Rule of_mesh = needs(
       "--mesh FILE", [&command] { return command.given("--mesh"); }, kEveryInput & ~kMesh);
   command.add(
@@ -100,7 +100,7 @@ std::string local_mesh_at(const MeshOptions& options, const Places& places) {
 
 namespace {
 
-// The point of a lattice nearest to the centre of the scene that has a surface; otherwise the centre at the lowest
+// The lattice point with a surface that is nearest to the scene's centre; if there is none, the centre at the lowest
 // height.
 dvec3 place_near_middle(const Scene& scene) {
   constexpr int kHalf = 32;  // lattice points from the centre to the border
@@ -150,7 +150,7 @@ Scene MeshInput::alone() const {
 
 #else
 
-// The rule of --mesh has rejected all meshes.
+// The check of --mesh has already rejected all meshes.
 Scene MeshInput::with_mesh(Scene scene, const Places&) const { return scene; }
 
 Scene MeshInput::alone() const {

@@ -38,11 +38,11 @@ class MeshInput {
   /// Reads `path`, unless it is empty.
   MeshInput(const std::string& path, const MeshOptions& options);
 
-  /// Returns the scene with the mesh. Without --mesh-at it stands in the middle on the highest surface, else on the
-  /// surface nearest to the middle, else at the lowest height of the scene. Throws Error if --mesh-at has neither Z nor
-  /// a surface.
+  /// Returns the scene with the mesh. Without --mesh-at, the mesh stands on the highest surface in the middle, or on
+  /// the surface nearest to the middle, or at the lowest height of the scene. Throws Error if --mesh-at has neither Z
+  /// nor a surface.
   Scene with_mesh(Scene scene, const Places& places) const;
-  /// Returns the mesh alone, without --mesh-at in the coordinates of its file.
+  /// Returns the mesh alone; without --mesh-at, in the coordinates of its file.
   Scene alone() const;
 
   const TriangleMesh& mesh() const { return mesh_; }

@@ -22,7 +22,7 @@
 namespace scarp::cli {
 namespace {
 
-// --exaggeration auto, by the field without exaggeration.
+// Applies --exaggeration auto, from the field without exaggeration.
 void choose_exaggeration(const Raster& raster, FieldOptions& settings, std::vector<std::string>& notes) {
   const HeightFieldSettings plain{.cell_x = raster.georeference.cell_x_m,
                                   .cell_y = raster.georeference.cell_y_m,
@@ -45,7 +45,7 @@ void choose_exaggeration(const Raster& raster, FieldOptions& settings, std::vect
   }
 }
 
-// Throws Error for a march of other inputs. Unknown names are left to the lookup.
+// Throws Error for a march of another kind of input. The lookup rejects unknown names.
 template <class Table>
 void require_march_of(const Table& table, std::string_view inputs, const std::string& march) {
   const auto in = [&](const auto& entries) {

@@ -38,7 +38,7 @@ struct InputOptions {
   std::string march;  ///< empty: the fastest exact one
   MarchSettings march_settings;
   std::string device;
-  /// Whether the camera will move: large rasters are read for any view, and the CPU traces rays in addition to
+  /// Whether the camera will move. If so, large rasters are read for any view, and the CPU traces rays in addition to
   /// `device`.
   bool moves = false;
 
@@ -66,7 +66,7 @@ struct OpenedInput {
   std::optional<HeightFunction> function{};  ///< functions
 };
 
-/// Reads the inputs and builds a scene of them, without the mesh of --mesh. `ramp`, one of ramp_names(), colours the
+/// Reads the inputs and builds their scene, without the mesh of --mesh. `ramp`, one of ramp_names(), colours the
 /// numbers of volumes; empty: one colour. Throws Error naming the file.
 OpenedInput open_input(InputKind kind, const InputOptions& options, const std::string& ramp = {});
 

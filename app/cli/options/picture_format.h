@@ -14,7 +14,7 @@ struct PictureFormat {
   PictureKind kind;
   std::string_view name;        ///< "JPEG"
   std::string_view extensions;  ///< without dots: "jpg jpeg"; the first is shown
-  std::string_view holds;       ///< for help, after the extension; empty: a picture
+  std::string_view holds;       ///< contents, for help, after the extension; empty: a picture
   bool layers = false;          ///< linear light and geometry, instead of display colours
   bool map = false;             ///< georeferenced: needs --top
   bool margins = true;          ///< may have margins around the picture

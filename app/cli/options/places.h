@@ -2,7 +2,7 @@
 // Positions of options and tables (--eye, --target, --mesh-at, --path, rays) in world metres.
 //
 //   local        metres as in the world: z includes the exaggeration
-//   map, lonlat  by the raster's georeference (source/coordinates.h); z is a height of the file in metres
+//   map, lonlat  by the raster's georeference (source/coordinates.h); z is in metres, as in the file
 #pragma once
 
 #include <optional>
@@ -39,15 +39,16 @@ struct PlaceRaster {
 
 class Places {
  public:
-  /// `exaggeration` multiplies z of map and lonlat positions. Throws Error naming the file: a raster without the
+  /// `exaggeration` multiplies z of map and lonlat positions. Throws Error naming the file if the raster lacks the
   /// georeference or CRS that the coordinates require.
   Places(const PlaceRaster& raster, Coordinates coordinates, double exaggeration);
 
   const CoordinateFrame& frame() const { return frame_; }
-  /// Returns a position in world metres. Throws Error beginning with `what` for one outside the CRS.
+  /// Returns a position in world metres. Throws Error beginning with `what` for a position outside the domain of the
+  /// CRS.
   dvec3 world(const dvec3& given, std::string_view what) const;
   dvec3 world_direction(const dvec3& given) const;
-  /// Returns the position of an option, without Z on the surface. Throws Error as above and on_surface().
+  /// Returns the position of an option; without Z, on the surface. Throws Error as above and as on_surface().
   dvec3 world(const TypedPlace& given, const Scene& scene, std::string_view what) const;
   /// Returns `at`, a position in world metres, moved vertically to the surface (surface_at()). Throws Error naming the
   /// bounds of the scene if there is none.
@@ -65,7 +66,7 @@ class Places {
 /// does not count.
 std::optional<double> surface_at(const Scene& scene, double x, double y);
 
-/// Horizontal bounds of a scene: of the samples of a raster alone, else of the box. z is 0 or that of the box.
+/// Horizontal bounds of a scene: for a single raster, of its samples; otherwise of the box. z is 0 or that of the box.
 WorldBox ground_box(const Scene& scene);
 
 }  // namespace scarp::cli

@@ -38,7 +38,7 @@ HeightRange height_range_from(const std::string& text) {
   return {n[0], n[1]};
 }
 
-// The words of --coords are no CRS; PROJ would look for one with such a name.
+// The choices of --coords are not CRSs; PROJ would search for a CRS with that name.
 std::string crs_from(const std::string& text) {
   for (const Coordinates kind : {Coordinates::local, Coordinates::map, Coordinates::lonlat}) {
     if (text == name_of(kind)) {
@@ -68,7 +68,7 @@ void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const
 }
 
 void add_raster_options(Command& command, RasterOptions& options) {
-  // "S,OFFSET" leaves no room for --offset.
+  // "S,OFFSET" already sets the offset.
   const auto one_offset = [&command] { return command.value("--scale").find(',') == std::string::npos; };
   constexpr Inputs kRasters{kTerrain, "it interprets raster files"};
   const auto add = [&](Binding to, Option option) {

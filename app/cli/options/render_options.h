@@ -19,7 +19,7 @@
 namespace scarp::cli {
 
 constexpr double kComancheFov = 60;       // degrees, without --fov
-constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
+constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: over the shoulder of the default camera
 
 /// --view.
 struct TypedView {
@@ -62,16 +62,16 @@ struct RenderOptions : InputOptions {
   bool no_plinth = false;
   bool full = false;  ///< reads all samples of large rasters
   int threads = 0;
-  std::vector<std::string> typed;  ///< the typed values: files among them are not overwritten
+  std::vector<std::string> typed;  ///< the typed values; files among them must not be overwritten
 };
 
-/// Declares the options of pictures; if `written`, those of files, figures and several frames as well.
+/// Declares the options of pictures; if `written`, also those of files, figures and several frames.
 void declare_picture(Command& command, RenderOptions& options, bool written);
 
 /// Adds the subcommand and declares its options.
 Command& declare_render(Program& program, RenderOptions& options);
 
-/// Returns the view of the options over the defaults of a look.
+/// Returns the view of the options, completed by the defaults of the look.
 ViewSettings view_of(const CameraOptions& camera, Look look);
 
 /// Checks everything that needs neither the input nor the output. Throws Error.

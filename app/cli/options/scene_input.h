@@ -20,10 +20,10 @@ bool is_scene_input(const std::vector<std::string>& inputs);
 PictureRequest request_of(const SceneFile& file);
 /// Throws Error naming the first option of the request that has no effect together with `own`, the request of a file.
 void check_effect(const PictureRequest& asked, const PictureRequest& own);
-/// Returns the view of the options, completed by that of a file, which has no eye.
+/// Returns the view of the options, completed by that of a file without an eye.
 ViewSettings view_of(const SceneCamera& own, const CameraOptions& camera, Look look);
 
-/// Describes a scene: for --json, and as lines of text.
+/// Describes a scene: as JSON, and as lines of text.
 nlohmann::ordered_json describe_scene(const std::string& path);
 std::string scene_text_of(const nlohmann::ordered_json& info);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of several subcommands that belong to no other file.
+// Options shared by several subcommands that do not belong in any other file.
 #pragma once
 
 #include <string>

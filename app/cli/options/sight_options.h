@@ -32,7 +32,7 @@ struct SightPlaces {
 /// Declares --from, --to and --lines.
 void add_sight_places(Command& command, SightPlaces& places);
 
-/// Returns every line from each --from to each --to, or those of --lines. Throws Error.
+/// Returns the lines from each --from to each --to, or those of --lines. Throws Error.
 PlaceTable sight_places(const SightPlaces& places);
 
 /// The ends of one line.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The options of `scarp view`: those of a picture, and of the window.
+// The options of `scarp view`: those of a picture and those of the window.
 #pragma once
 
 #include <string>

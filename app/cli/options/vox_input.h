@@ -48,7 +48,7 @@ void add_vox_rounding_options(Command& command, VoxLookOptions& options);
 /// Declares --normals, --corner-ao, ...
 void add_vox_look_options(Command& command, VoxLookOptions& options);
 
-/// Calls work(). Errors in the contents of a file name it, too.
+/// Calls work(). Adds the file's name to errors in its contents.
 template <class Work>
 auto naming(const std::string& path, const Work& work) {
   try {
@@ -63,7 +63,7 @@ auto naming(const std::string& path, const Work& work) {
 /// Colours for the numbers of a volume, from the smallest to the largest.
 std::vector<VoxelColour> colours_of(const std::string& ramp);
 
-/// A voxel file read.
+/// The contents of a voxel file.
 struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
   PlacedVoxels voxels;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp composite`: combines another renderer's picture with ours, pixel by pixel by depth.
+// `scarp composite`: combines another renderer's picture with ours by depth, pixel by pixel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct CompositeOptions {
   DepthOptions depth;
 };
 
-// Depths of a picture; NaN is nothing, as infinity is.
+// Depths of a picture; NaN and infinity mean nothing was hit.
 ExrSamples read_depth(const std::string& path, const std::string& channel) {
   if (!std::filesystem::exists(path))
     throw Error(fmt::format("picture '{}': does not exist (name an EXR picture)", path));

@@ -12,8 +12,8 @@
 namespace scarp::cli {
 namespace {
 
-// In text heights: grid of the search, width of a character and of the room at both ends, distance from one labelled
-// line to the next, and from a line to the middle of its text.
+// In text heights: grid of the search, width of a character, width of the space at both ends, distance between labelled
+// lines, and maximum distance of a line from the middle of its text.
 constexpr double kStep = 0.5, kCharacter = 0.6, kEnds = 0.6, kApart = 1.1, kMostBend = 0.35;
 constexpr int kChecks = 4;  // on either side of the label's middle
 
@@ -47,7 +47,7 @@ class Search {
 
  private:
   struct Found {
-    double bend;  // pixels between the line and a straight one, at most
+    double bend;  // maximum deviation of the line from a straight one, in pixels
     FigureLabel label;
   };
 
@@ -84,7 +84,7 @@ class Search {
     }
     if (bend > kMostBend * settings_.text) return;
     double angle = std::atan2(along.y, along.x);
-    // Upright.
+    // Keeps the text upright.
     if (angle > std::numbers::pi / 2) angle -= std::numbers::pi;
     if (angle <= -std::numbers::pi / 2) angle += std::numbers::pi;
     found_.push_back({bend, {{middle.x, middle.y}, angle, text}});

@@ -11,8 +11,7 @@ namespace scarp::cli {
 
 namespace {
 
-// GLM's matrices are for column vectors and stored by columns, which is the same order as for row vectors stored by
-// rows.
+// GLM's matrices are column-major for column vectors: the memory layout of row-major matrices for row vectors.
 ExrMatrix matrix(const char* name, const glm::dmat4& m) {
   ExrMatrix stored{name, {}};
   for (int i = 0; i < 16; ++i) stored.elements[static_cast<std::size_t>(i)] = static_cast<float>(m[i / 4][i % 4]);

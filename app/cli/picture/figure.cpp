@@ -24,7 +24,7 @@ namespace scarp::cli {
 namespace {
 
 constexpr int kNumbers = 6, kColours = 256;
-constexpr double kBarShare = 0.25;  // of the picture's width, at most
+constexpr double kBarShare = 0.25;  // maximum fraction of the picture's width
 
 std::array<std::uint8_t, 3> bytes(vec3 linear) {
   return {srgb_byte(linear.x), srgb_byte(linear.y), srgb_byte(linear.z)};
@@ -52,7 +52,7 @@ FigureLegend legend_of(std::string title, double low, double high, const Ramp& r
 
 namespace {
 
-// The legend of the only height ramp in the scene: that of a material, or that of ground without a material.
+// The legend of the only height ramp in the scene: of a material, or of ground without a material.
 FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& scene, const PaintExtent& extent) {
   const HeightRamp* ramp = nullptr;
   int ramps = 0;
@@ -127,7 +127,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
   }
 }
 
-// The point in the picture's centre, otherwise the centre of the scene. Throws Error if neither is in front of the
+// The point in the centre of the picture, or else the centre of the scene. Throws Error if neither is in front of the
 // camera.
 dvec3 middle_of(const FigureSubject& subject, std::string_view option) {
   const dvec2 size = subject.camera.size();
@@ -140,7 +140,7 @@ dvec3 middle_of(const FigureSubject& subject, std::string_view option) {
 
 // Radians clockwise from up.
 double north_in_picture(const FigureSubject& subject, double grid_north_azimuth) {
-  constexpr double kAhead = 1e-3;  // of the distance: short enough to be straight in perspective
+  constexpr double kAhead = 1e-3;  // fraction of the distance: short enough to be straight in perspective
   const Camera& camera = subject.camera;
   const dvec3 there = middle_of(subject, "--north-arrow");
   const double metres = kAhead * dot(there - camera.eye(), camera.forward());

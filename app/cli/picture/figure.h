@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Annotations of a picture, drawn as its options (figure_options.h) ask.
+// Annotations of a picture, as requested by its options (figure_options.h).
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct FigureSubject {
   const Scene& scene;
   const Camera& camera;
   bool map = false;                          ///< seen without perspective
-  const std::optional<SolidRange>& numbers;  ///< of a volume that is coloured by its numbers
+  const std::optional<SolidRange>& numbers;  ///< set for a volume that is coloured by its numbers
   const Georeference& georeference;          ///< of a raster
   int cols = 0, rows = 0;                    ///< likewise
 };
@@ -33,11 +33,11 @@ struct FigureSubject {
 std::optional<Figure> figure_of(const FigureOptions& options, const PictureSettings& settings,
                                 const FigureSubject& subject);
 
-/// Adds the legend of a rendered picture if requested. Throws Error if colours have no scale.
+/// Adds the legend of a rendered picture, if requested. Throws Error if its colours have no scale.
 void add_legend(const FigureOptions& options, const PictureSettings& settings, const FigureSubject& subject,
                 const Picture& picture, std::optional<Figure>& figure);
 
-/// Returns the legend of a ramp over numbers from low to high, which the ramp expects multiplied by `per_colour`.
+/// Returns the legend of a ramp over numbers from low to high. The ramp expects them multiplied by `per_colour`.
 /// Numbers at its ticks are multiples of a power of ten of at least `least_step`. Builds with Cairo only.
 FigureLegend legend_of(std::string title, double low, double high, const Ramp& ramp, double per_colour = 1,
                        double least_step = 0);

@@ -6,7 +6,7 @@
 
 namespace scarp::cli {
 
-/// Steps, heights and verdicts, depending on the look.
+/// Prints steps, heights or verdicts, depending on the look.
 void print_findings(const Picture& picture);
 
 }  // namespace scarp::cli

@@ -45,8 +45,8 @@ constexpr double kSpacings[] = {1e-6,
                                 30};
 constexpr double kWantedLines = 5, kMostWanted = 12;  // along the longer side
 constexpr int kMostLines = 200;
-constexpr int kLattice = 17;      // points a side that find the range of longitudes and latitudes
-constexpr int kPieces = 64;       // of a line
+constexpr int kLattice = 17;      // points per side, to find the range of longitudes and latitudes
+constexpr int kPieces = 64;       // per line
 constexpr double kBeyond = 0.05;  // fraction of the range by which lines extend beyond it, to reach the border
 
 struct Range {
@@ -86,8 +86,8 @@ class Graticule {
     const dvec2 size = camera.size();
     std::optional<double> middle;
     for (int i = 0; i < kLattice * kLattice; ++i) {
-      // Starts in the middle. Half a pixel inside the border, because the longitude of the border may be that of the
-      // other side.
+      // Starts in the middle. Stays half a pixel inside the border, because the longitude on the border may be that of
+      // the other side.
       const int k = (i + kLattice * kLattice / 2) % (kLattice * kLattice);
       const auto at = [&](int n, double pixels) { return 0.5 + n / (kLattice - 1.0) * (pixels - 1); };
       dvec3 p = camera.ray(at(k % kLattice, size.x), at(k / kLattice, size.y)).origin;
@@ -103,7 +103,7 @@ class Graticule {
     const double most = std::max(longitudes_.size(), latitudes_.size());
     std::size_t i = 0;
     while (i + 1 < std::size(kSpacings) && most / kSpacings[i] > kWantedLines) ++i;
-    // Closer if the shorter side would have no line.
+    // Uses a closer spacing if no line would cross the shorter side.
     const auto leaves_one_out = [&](double spacing) {
       return longitudes_.multiples(spacing) == 0 || latitudes_.multiples(spacing) == 0;
     };

@@ -12,8 +12,8 @@
 namespace scarp::cli {
 
 /// Lines of round longitudes and latitudes (WGS 84) over a map by a camera of Camera::top(), `spacing_deg` apart;
-/// nullopt: as far apart as gives about five. `per_pixel`: pixels of the picture per pixel of the camera. Throws Error
-/// without a georeference and CRS, and where no line, or more than 200, would cross the map.
+/// nullopt: chosen for about five lines. `per_pixel`: pixels of the picture per pixel of the camera. Throws Error
+/// without a georeference or CRS, and if no line, or more than 200, would cross the map.
 std::vector<FigureLine> graticule_of(const Georeference& georeference, int cols, int rows, const Camera& camera,
                                      double per_pixel, std::optional<double> spacing_deg);
 

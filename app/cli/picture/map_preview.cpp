@@ -72,7 +72,7 @@ Paint paint_of_classes(const MapBand& band, std::span<const std::uint8_t> codes)
   return {[=](std::size_t i) { return colours[codes[i]]; }, std::move(key)};
 }
 
-// The range of the colours: complete for integers; for other values without 1 % at either end, which includes lines of
+// The range of the colours: complete for integers; for other values without 1 % at either end, which excludes lines of
 // sight straight down.
 template <class Sample>
 std::pair<double, double> range_of(std::vector<Sample> numbers) {
@@ -117,7 +117,7 @@ Paint paint_of(const MapBand& band, const std::string& ramp) {
   return std::visit(paint, band.samples);
 }
 
-// Pixels over the nodes of some rows; averages of blocks if the picture has fewer pixels.
+// Pixels over the nodes of some rows; averages of blocks if the picture has fewer pixels than nodes.
 Drape drape_of(const Paint& paint, const MapInput& input, const RowBand& rows, int picture_width) {
   const int cols = input.field().cols(), block = std::max(1, cols / (2 * picture_width));
   Drape drape{(cols + block - 1) / block, (rows.rows() + block - 1) / block, {}};

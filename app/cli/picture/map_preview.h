@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of computed maps: the first band over the shaded elevation model, as `render --top --overlay` draws it, with
-// legend, scale bar and north arrow beside it.
+// a legend, scale bar and north arrow beside it.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ const PictureFormat& preview_format_of(const std::string& path);
 
 class MapPreview {
  public:
-  /// Reserves the file. Throws Error for a model without ground, and for a file of the input.
+  /// Reserves the file. Throws Error for a model without ground, and if the file is one of the inputs.
   MapPreview(std::string path, const MapInput& input);
 
   /// Draws the map of these rows. Bands without classes are coloured by one of ramp_names(). Throws Error naming the

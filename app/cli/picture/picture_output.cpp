@@ -14,8 +14,8 @@
 namespace scarp::cli {
 namespace {
 
-// Nearly the white of a figure's background, but not grey, so that everything drawn over it is detected as a change:
-// with_figure().
+// Nearly the white of a figure's background, but not grey, so that with_figure() detects everything drawn over it as a
+// change.
 constexpr std::array<std::uint8_t, 3> kBelowFigure = {250, 255, 250};
 
 Image on_white(Image image) {

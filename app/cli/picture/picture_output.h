@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes a rendered picture with its figure, in the format of its name.
+// Writes a rendered picture with its figure, in the format that its name implies.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@
 
 namespace scarp::cli {
 
-/// The place of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster of this many rows.
-/// Nullopt without a georeference.
+/// The position on the map of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster with
+/// this number of rows. Nullopt without a georeference.
 std::optional<MapPlace> place_of_map(const Camera& camera, int width, int height, const Georeference& georeference,
                                      int cols, int rows);
 

@@ -35,10 +35,10 @@ SceneDetail detail_of(const Camera& camera, int aa) {
   return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
 }
 
-// Maximum length of camera rays: infinite, except over wrapped ground. There, unless requested, the extent of the
-// picture, and from outside of the box twice the distance to the field in addition. That reaches the field's far
-// corners: their distance exceeds the sum of the longer side and the distance to the field by less than half of that
-// side, and a camera that sees a whole field is farther away.
+// Maximum length of camera rays: infinite, except over wrapped ground. There, unless requested, it is the extent of the
+// picture, plus twice the distance to the field for a camera outside the box. That reaches the field's far corners:
+// their distance exceeds the sum of the longer side and the distance to the field by less than half of that side, and a
+// camera that sees a whole field is farther away than that.
 double reach_of(const PictureRequest& asked, double across, const Scene& scene, const WorldBox& box,
                 const Camera& camera) {
   constexpr double kFarthestCorner = 2;
@@ -81,7 +81,7 @@ void PreparedScene::open() {
   build_s_ = watch.lap();
 }
 
-// --view replaces all of a function's own view, the view angle included.
+// --view replaces the whole view of a function, including the view angle.
 ViewSettings PreparedScene::chosen_view() const {
   const CameraOptions& camera = request_.camera;
   const ViewSettings view = view_of(input_.camera, camera, look_of(options_.picture));
@@ -101,11 +101,11 @@ std::string PreparedScene::note_on_relief() const {
 
 bool PreparedScene::serves(InputRequest asked) const {
   InputRequest read = request_;
-  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least. With fewer
-  // samples the raster was read completely.
+  // Averaged rasters have at least a quarter of the allowed number of samples, because blocks are at least 2 x 2. A
+  // raster with fewer samples was read completely.
   const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
   if (4 * samples < Decimation{}.above) asked.input.raster.decimation = read.input.raster.decimation;
-  // NaN, a value of --nodata, differs from itself.
+  // NaN, which --nodata accepts, is not equal to itself.
   std::optional<double>&a = asked.input.raster.nodata, &b = read.input.raster.nodata;
   if (a && b && std::isnan(*a) && std::isnan(*b)) a.reset(), b.reset();
   return asked == read;
@@ -142,7 +142,7 @@ WorldBox PreparedScene::scene_box() const {
 
 void PreparedScene::finish(Camera& camera, const RenderOptions& options) {
   camera.set_reach(reach_of(options.picture, subject_.across, scene_, scene_box(), camera));
-  // The judge must stop where the march does.
+  // The judge's rays must end where those of the march do.
   if (request_.kind == InputKind::function && look_of(options.picture) == Look::error)
     camera.set_reach(std::min(camera.reach(), input_.function_reach));
   if (input_.coarse_voxels)
@@ -167,7 +167,7 @@ dvec3 PreparedScene::typed_eye() const {
   return above_surface(places_->world(dvec3(eye.x, eye.y, 0), kEye), kEye);
 }
 
-// --eye-above over the surface at (x, y) of `at`, or over water that covers it.
+// Applies --eye-above over the surface at (x, y) of `at`, or over water that covers it.
 dvec3 PreparedScene::above_surface(const dvec3& at, std::string_view what) const {
   dvec3 eye = places_->on_surface(at, input_.scene, what);
   if (picture_.water) eye.z = std::max(eye.z, picture_.water->level * exaggeration());

@@ -29,19 +29,19 @@ class PreparedScene {
   void open();
 
   const RenderOptions& options() const { return options_; }
-  /// Whether options with this request have the same scene, and picture() accepts them.
+  /// Whether options with this request have the same scene and are valid for picture().
   bool serves(InputRequest asked) const;
   /// The settings of the options, for any camera.
   const PictureSettings& picture() const { return picture_; }
-  /// The settings of the options, or of others whose request serves() accepts, for a camera; null: for any camera.
-  /// Throws Error naming a file, or a setting that is out of range.
+  /// The settings of `options`, whose request serves() must accept, for a camera; null: for any camera. Throws Error
+  /// naming a file, or a setting that is out of range.
   PictureSettings picture(const RenderOptions& options, const Camera* camera) const;
   PictureSettings picture(const Camera& camera) const { return picture(options_, &camera); }
-  /// The scene as it was read. scene() may have coarser voxels or be on a device.
+  /// The scene as read. scene() may have coarser voxels or be on a device.
   const Scene& given_scene() const { return input_.scene; }
   const Scene& scene() const { return scene_; }
   const RenderInput& input() const { return input_; }
-  /// The view of the options, else of the input, else the default.
+  /// The view of the options, or of the input, or the default.
   const ViewSettings& view() const { return view_; }
   const Places& places() const { return *places_; }
   const SceneOnDevice& there() const { return there_; }
@@ -52,7 +52,7 @@ class PreparedScene {
   double raised() const { return raised_; }
   /// ", on NAME", and the number of drawn rays; empty on the CPU.
   std::string on_device() const;
-  /// For unbounded scenes a point: the centre of the picture's extent.
+  /// Box of the scene; for unbounded scenes, a point: the centre of the picture's extent.
   WorldBox scene_box() const;
   /// The factor between heights of the file and z.
   double exaggeration() const;

@@ -51,7 +51,7 @@ void settle_output(RasterOutput& options, const MapOptions& map) {
   if (options.driver.empty()) options.driver = raster_driver_of(map.output);
   require_raster_driver(options.driver, options.creation);
   keep_inputs(map.output, map.typed);
-  // Not kept: formats choose their own temporary files.
+  // Only a check: formats choose their own temporary files.
   if (!options.dry_run) const ReplaceFile writable(map.output);
   if (options.preview.empty()) return;
   preview_format_of(options.preview);
@@ -80,7 +80,7 @@ RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBa
   map.rows = rows.rows();
   const Georeference& geo = input.georeference();
   if (geo.present) {
-    // GDAL's transform is that of pixel corners; nodes are at pixel centres.
+    // GDAL's transform refers to pixel corners; nodes are at pixel centres.
     auto m = geo.map_from_node;
     const double north = rows.first - 0.5;
     m[0] += -0.5 * m[1] + north * m[2];

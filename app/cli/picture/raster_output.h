@@ -25,14 +25,14 @@ struct RasterOutput {
 /// Declares --of, --co, --part, --preview, --dry-run and --quiet.
 void add_raster_output_options(Command& command, RasterOutput& options);
 
-/// Throws Error for formats and files that cannot be written, before hours of work, and for files of the command line;
-/// sets the driver.
+/// Throws Error, before hours of work, for formats and files that cannot be written and for files that are inputs. Sets
+/// the driver.
 void settle_output(RasterOutput& options, const MapOptions& map);
 
 /// Returns the rows of --part. Throws Error.
 RowBand rows_of_part(const MapInput& input, const RasterOutput& options);
 
-/// Returns a map of these rows with the input's georeference, without bands. `method` and the pairs go into the
+/// Returns a map of these rows with the input's georeference, without bands. `method` and the pairs are written to the
 /// metadata.
 RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBand& rows, const std::string& method,
                  std::vector<std::pair<std::string, std::string>> metadata);

@@ -17,12 +17,12 @@
 namespace scarp::cli {
 namespace {
 
-// Samples, or pixels of an overlay, for a picture of everything: 4 x 4 to a pixel. The near ground of a slanted view
-// has pixels about four times as close as the mean, and other views have enough.
+// Samples, or pixels of an overlay, for a picture of everything: 4 x 4 to a pixel. In a slanted view, pixels on near
+// ground are about four times as dense as on average; other views need fewer samples.
 constexpr std::int64_t kSamplesPerPixel = 16;
 
-// The samples that a picture shows. A small picture has as many as one of 1000 x 1000 pixels, which reads equally fast;
-// views of a part have as many as rasters that are read completely.
+// The number of samples to read for a picture. Small pictures get as many as one of 1000 x 1000 pixels, which is read
+// equally fast; views of a part get as many as rasters that are read completely.
 std::int64_t samples_shown(const RenderOptions& options) {
   constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const CameraOptions& camera = options.camera;
@@ -38,7 +38,7 @@ std::int64_t samples_shown(const RenderOptions& options) {
 // Returns whether rasters of any size are read completely; otherwise large ones are averaged.
 bool reads_all_samples(const RenderOptions& options) {
   const bool measures = entry_of(look_of(options.picture)).measures;
-  // The shared border would be averaged with its neighbours.
+  // Averaging would mix the shared border with its neighbours.
   return options.full || measures || options.field.wrap == Wrap::shared_border;
 }
 

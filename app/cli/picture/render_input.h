@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inputs of `scarp render` with the defaults of their pictures. Readers see an InputRequest, not the options.
+// The inputs of `scarp render` with the defaults of their pictures. Readers get an InputRequest, not the options.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace scarp::cli {
 /// The options that the scene of a picture depends on. Options with equal requests have the same scene.
 struct InputRequest {
   InputKind kind = InputKind::terrain;
-  InputOptions input{};             ///< with the decimation of rasters, and the reach of functions
+  InputOptions input{};             ///< including the decimation of rasters and the reach of functions
   std::string ramp{};               ///< colours of the numbers of volumes; empty: one colour
   std::string overlay{};            ///< file; empty: none
   std::int64_t overlay_pixels = 0;  ///< over the raster; an image with more is averaged
@@ -31,20 +31,20 @@ struct InputRequest {
 
   bool operator==(const InputRequest&) const = default;
 };
-/// Large rasters are read in the detail of the picture; rays over functions end at the view distance.
+/// Large rasters are read at the resolution of the picture; rays over functions end at the view distance.
 InputRequest input_request(InputKind kind, const RenderOptions& options);
 
 /// A scene, and the default picture settings of this kind of input.
 struct RenderInput {
   Scene scene;
-  PictureSubject subject{};             ///< without files except the overlay, and without the shape of a map
+  PictureSubject subject{};             ///< without files except the overlay, and without the aspect ratio of a map
   std::vector<std::string> notes{};     ///< one line each, for users
   std::vector<std::string> files{};     ///< files read in addition to typed ones
   PlaceRaster raster{};                 ///< defines positions; terrain only
   std::string march{};                  ///< label of the printed times; empty: none
   SceneCamera camera{};                 ///< the input's own; functions have only a target
   bool coarse_voxels = false;           //
-  double function_reach = 0;            ///< metres, of rays over functions; 0: no function
+  double function_reach = 0;            ///< length of rays over functions in metres; 0: no function
   std::optional<SolidRange> numbers{};  ///< range that a volume's colours show
   /// Frames a scene that contains this one; sets FieldView::raised if the eye was raised out of the ground.
   std::function<FieldView(const Scene&, const ViewSettings&, const PictureSettings&)> framed{};

@@ -32,7 +32,7 @@ class Render {
   Render(InputKind kind, RenderOptions options) : prepared_(kind, std::move(options)) {}
 
   void run() {
-    // Reserved first, so that an unwritable path is reported before the work.
+    // The file is reserved first, so that an unwritable path is reported before the work starts.
     ReplaceFile file(options().output);
     prepared_.open();
     if (options().frames.several()) return make_all();
@@ -98,7 +98,7 @@ class Render {
                                 prepared_.input().raster.rows};
     std::optional<Figure> figure = figure_of(options().figure, settings, subject);
     Picture picture = render_picture(prepared_.scene(), camera, settings, progress);
-    // The look of errors should be green throughout.
+    // A picture of the look error has one colour if nothing is wrong.
     look_if_blank(name, settings, camera, settings.look != Look::error && has_one_colour(picture.image));
     add_legend(options().figure, settings, subject, picture, figure);
     std::optional<MapPlace> place;
@@ -116,7 +116,7 @@ class Render {
     blank_.add(name, why_blank(prepared_.scene(), camera, settings, facts));
   }
 
-  // Last: what fails prints one line alone.
+  // Printed last: a run that fails prints only one line.
   void tell_notes() const {
     for (const std::string& note : prepared_.input().notes) fmt::print(stderr, "note: {}\n", note);
     if (const std::string note = note_on_low_water(prepared_.scene(), prepared_.picture(), prepared_.facts());
@@ -130,7 +130,7 @@ class Render {
     }
   }
 
-  // Contour lines that are invisible.
+  // Warns about invisible contour lines.
   void tell_of_contours(const PictureSettings& settings, const Camera& camera) const {
     const double interval = settings.ground.contours;
     if (!(interval > 0)) return;
@@ -147,7 +147,7 @@ class Render {
     }
   }
 
-  // From below the ground its underside is invisible.
+  // Warns about eyes below the ground, whose underside is invisible.
   void tell_if_buried(const Camera& camera, const std::string& whose) const {
     const auto ground = prepared_.scene().height(camera.eye().x, camera.eye().y);
     if (!ground || camera.eye().z >= *ground) return;

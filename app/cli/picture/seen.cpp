@@ -17,11 +17,12 @@ namespace {
 
 constexpr double kLeastSeen = 0.005;     // of the pixels
 constexpr double kLeastContrast = 0.02;  // that is visible through fog; see fog.h
-constexpr double kMostRays = 8192;       // the smallest fraction is about 40 of them, with an error of a few tenths
+constexpr double kMostRays = 8192;       // kLeastSeen is about 40 of them, with a relative error of a few tenths
 
-// Relief of natural ground is a small part of its extent; even a single cliff is hardly four times as high as wide.
+// The relief of natural ground is a small fraction of its extent; even a single cliff is rarely four times as high as
+// wide.
 constexpr double kTooSteep = 4;
-constexpr double kNearlyAll = 0.99;  // of the samples, that are holes
+constexpr double kNearlyAll = 0.99;  // fraction of samples that are holes
 
 double longer_side(const HeightField& field) { return std::max(field.width(), field.depth()); }
 
@@ -29,7 +30,7 @@ double exaggeration_of(const Scene& scene) { return scene.terrain() ? scene.terr
 
 bool is_on_scene(const Scene& scene, const Hit& hit) { return hit && !scene.field_of(hit.object).is_backdrop(); }
 
-// Metres from a point to a box; 0 inside.
+// Distance in metres from a point to a box; 0 inside.
 double way_to(const WorldBox& box, const dvec3& p) {
   return length(glm::max(glm::max(box.low - p, p - box.high), dvec3(0.0)));
 }
@@ -116,7 +117,7 @@ std::string of_view(const Scene& scene, const Camera& camera, int width, int hei
   if (box.high.x < 0 || box.high.y < 0 || box.low.x > size.x || box.low.y > size.y)
     return area ? "--area is beside the scene" : "the camera looks past the scene (--target)";
   const dvec2 extent = glm::min(box.high, size) - glm::max(box.low, dvec2(0.0));
-  // The box itself covers few pixels; a surface in it still fewer.
+  // If the box covers few pixels, a surface in it covers even fewer.
   constexpr double kSmall = 4 * kLeastSeen;
   if (box.in_front == 8 && extent.x * extent.y < kSmall * size.x * size.y) {
     if (area) return "--area has little of the scene in it";

@@ -22,14 +22,14 @@ struct SeenShares {
   double nearest = 0;      ///< metres to the nearest hit; 0 without one
 };
 
-/// Traces at most some thousand rays.
+/// Traces at most a few thousand rays.
 SeenShares seen_shares(const Scene& scene, const Camera& camera, const PictureSettings& picture);
 
 /// Facts for the reasons, besides scene and camera.
 struct BlankFacts {
   ReliefRange heights{};  ///< of the ground, exaggerated
   bool one_colour = false;
-  bool area = false;          ///< --area chose the view
+  bool area = false;          ///< whether --area determined the view
   double function_reach = 0;  ///< metres, of rays over functions; 0: no function
 };
 
