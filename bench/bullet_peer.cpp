@@ -30,7 +30,7 @@ struct Nearest : btTriangleRaycastCallback {
 }  // namespace
 
 struct BulletPeer::Shape {
-  std::vector<float> heights;  // Bullet's rows go north
+  std::vector<float> heights;  // Bullet's rows run northwards
   std::unique_ptr<btHeightfieldTerrainShape> shape;
   btVector3 middle, low, high;  // Bullet centres the shape on its origin
   double build_s = 0;

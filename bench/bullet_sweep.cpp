@@ -19,7 +19,7 @@ btVector3 bullet(const dvec3& p) {
 }  // namespace
 
 struct BulletSweeper::Shape {
-  std::vector<float> heights;  // Bullet's rows go north
+  std::vector<float> heights;  // Bullet's rows run northwards
   std::unique_ptr<btHeightfieldTerrainShape> ground;
   std::unique_ptr<btCollisionObject> object;
 };

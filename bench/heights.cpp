@@ -38,7 +38,8 @@ struct HeightsOptions {
 
 using Json = nlohmann::ordered_json;
 
-// Embree's triangles take about 210 bytes per sample while they are built; fields that need more than 8 GB go without.
+// Embree's triangles take about 210 bytes per sample while they are built; fields that would need more than 8 GB are
+// measured without them.
 constexpr double kTriangleBytes = 210, kMostTriangleBytes = 8e9;
 bool has_room_for_triangles(const HeightField& field) {
   const double bytes = kTriangleBytes * field.cols() * field.rows();

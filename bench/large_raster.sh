@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Pictures of a raster that has many more samples than pixels, beside gdal_translate's averages of it: see README.md.
+# Pictures of a raster with many more samples than pixels, compared with averages by gdal_translate: see README.md.
 # usage: large_raster.sh SCARP [SIDE [OUT.csv]]
 set -euo pipefail
 
@@ -11,7 +11,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# Prints seconds of wall and processor time, and the peak of memory in MB, of a command.
+# Prints wall-clock and processor time in seconds, and peak memory in MB, of a command.
 measured() {
   /usr/bin/time -o times -f '%e %U %S %M' "$@" >/dev/null 2>&1
   awk '{ printf "%.2f %.2f %d", $1, $2 + $3, $4 / 1024 }' times
@@ -34,7 +34,7 @@ measured() {
         read -r all all_cpu all_mb <<<"$(measured "$scarp" render large.tif -o a.png "${picture[@]}")"
         read -r peer peer_cpu peer_mb <<<"$(measured gdal_translate -q -r average -outsize "$reduced" "$reduced" large.tif few.tif)"
         read -r few few_cpu _ <<<"$(measured "$scarp" render few.tif -o b.png "${picture[@]}")"
-        # How many times the time of gdal_translate the reduction takes.
+        # Time of the reduction, relative to that of gdal_translate.
         awk -v OFS=, -v a="$all" -v p="$peer" -v f="$few" -v ac="$all_cpu" -v pc="$peer_cpu" -v fc="$few_cpu" -v head="$type,$([[ $layout == YES ]] && echo tiled || echo striped),${compression,,},$side,$reduced" \
           -v am="$all_mb" -v pm="$peer_mb" 'BEGIN { print head, a, ac, am, p, pc, pm, f, fc, sprintf("%.2f", (a - f) / p), sprintf("%.2f", (ac - fc) / pc) }'
         rm -f large.tif few.tif

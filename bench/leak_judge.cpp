@@ -295,7 +295,7 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const auto place = place_of(hit);
   if (!place) return "in a hole";
   const Real t = hit.t, e = sideways(t), b = bound(t);
-  // A rim may be touched from beside it, within rounding.
+  // Within rounding, a ray next to a rim may touch it.
   if (std::abs(x(t) - place->col - hit.u) > e + allowance(0) ||
       std::abs(y(t) - place->row - hit.v) > e + allowance(1)) {
     return "not where the ray is";

@@ -45,7 +45,8 @@ TEST(PixelMatch, MatchesFromEveryCamera) {
   expect_match("standard", 4, pixel_match_frames(160, 90).back());
 }
 
-// A voxel 10 m away, 1 m a side, looked at along x: 10 pixels a side in a picture of 0.01 per pixel and metre.
+// A voxel with sides of 1 m, 10 m away, seen along x: 10 x 10 pixels in a picture with a pixel width of 0.01 per metre
+// of distance.
 class OneVoxel : public testing::Test {
  protected:
   OneVoxel() : grid_(ivec3(1)) { grid_.set(ivec3(0), 1); }

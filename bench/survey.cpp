@@ -143,7 +143,7 @@ void run_survey(const SurveyOptions& options, const ReportOptions& report) {
   hold_to_instruction_set(options.trace.instruction_set);
   Survey survey(options);
   FieldOptions field = options.trace.field;
-  // Read first: a file that cannot be read fails at once.
+  // Read first, so that unreadable files fail immediately.
   std::vector<BenchField> files;
   for (const std::string& dem : options.dems) {
     field.dem = dem;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The window on elevation models, on a display without a screen (Xvfb), moved by xdotool: see README.md.
+# Measures the window with elevation models on a virtual display (Xvfb), controlled by xdotool: see README.md.
 # usage: view.sh SCARP [SIDES [OUT.csv]]
 set -euo pipefail
 
@@ -10,7 +10,7 @@ folder=$(mktemp -d)
 view_pid='' display_pid=''
 trap 'kill $view_pid $display_pid 2>/dev/null || true; rm -rf "$folder"' EXIT
 cd "$folder"
-# Settings of the user would change the window.
+# User settings would change the window.
 export XDG_CONFIG_HOME=$folder
 times=times.csv
 
@@ -21,12 +21,12 @@ until [[ -s display ]]; do sleep 0.05; done
 export DISPLAY=:$(<display)
 
 difference() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.3f", b - a }'; }
-# The first picture of a kind that was presented after a time, for a generation above a number: its time.
+# Time of the first picture of a kind that was presented after a given time, for a generation above a given number.
 presented() { # PASS_PATTERN AFTER ABOVE
   awk -F, -v pass="$1" -v after="$2" -v above="$3" \
     '$1 == "present" && $4 ~ pass && $2 > after && $3 > above { print $2; exit }' $times
 }
-# Waits for the picture of the view as it is.
+# Waits for the converged picture of the current view.
 until_converged() { # AFTER ABOVE
   until [[ -n "$(presented converged "$1" "$2")" ]]; do
     kill -0 $view_pid
@@ -34,10 +34,10 @@ until_converged() { # AFTER ABOVE
   done
   presented converged "$1" "$2"
 }
-# The last generation that was requested before the first event after a time.
+# The last generation that was requested before the first event after a given time.
 generation_at() { awk -F, -v after="$1" '$1 == "event" && $2 > after { print $3; exit }' $times; }
 median_and_most() { sort -n | awk '{ all[NR] = $1 } END { printf "%.0f %.0f", 1000 * all[int((NR + 1) / 2)], 1000 * all[NR] }'; }
-# Milliseconds from before each event to the present that carries it. The events are lines "TIME" in `injected`.
+# Milliseconds from just before each event to the present that shows its effect. The events are lines "TIME" in `injected`.
 latencies() {
   awk -F, 'NR == FNR { injected[++n] = $1; next }
     $1 == "event" { event_time[++e] = $2; event_generation[e] = $3 }
@@ -69,14 +69,14 @@ latencies() {
     first_rows=$(awk -F, '$1 == "present" { print $6; exit }' $times)
     full=$(presented 'full|converged' 0 0)
 
-    # Idle: hundredths of a second of the processor, in five seconds.
+    # Idle: processor time in hundredths of a second, over five seconds.
     sleep 1
     ticks() { awk '{ print $14 + $15 }' /proc/$view_pid/stat; }
     before=$(ticks)
     sleep 5
     idle=$(awk -v t=$(($(ticks) - before)) -v per="$(getconf CLK_TCK)" 'BEGIN { printf "%.1f", 100 * t / per / 5 }')
 
-    # Single moves, from rest. The first press and move may be of another window: not counted.
+    # Single moves, from rest. The first press and move may go to another window and are not counted.
     xdotool mousemove 900 400 sleep 0.2 mousedown 1 sleep 0.5
     : >injected
     for ((i = 0; i < 20; ++i)); do
@@ -87,7 +87,7 @@ latencies() {
     sleep 1
     read -r rest rest_most <<<"$(latencies)"
 
-    # Turning: moves every 16 ms for six seconds, of which the last five count.
+    # Turning: a move every 16 ms for six seconds, of which the last five count.
     turn=()
     for ((i = 0; i < 380; ++i)); do turn+=(mousemove_relative -- $((i / 38 % 2 ? 4 : -4)) 0 sleep 0.016); done
     xdotool "${turn[@]}" &
@@ -106,7 +106,7 @@ latencies() {
       sort -n | awk -v s="$(difference "$from" "$to")" '{ all[NR] = $1 } END { printf "%.1f %d", NR / s, all[int((NR + 1) / 2)] }')"
     read -r turned turned_most <<<"$(latencies)"
 
-    # The converged picture, beside `scarp render` of the same view.
+    # The converged picture, compared with `scarp render` of the same view.
     moved=$EPOCHREALTIME
     xdotool mousemove_relative -- 40 10 mouseup 1
     until [[ -n "$(generation_at "$moved")" ]]; do sleep 0.02; done

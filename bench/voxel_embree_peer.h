@@ -12,7 +12,7 @@
 
 namespace scarp::bench {
 
-/// A scene; outlives the engines made from it. Rays of its engines go to infinity.
+/// A scene; outlives the engines made from it. Rays of its engines are infinite.
 class VoxelEmbreePeer {
  public:
   /// embree-user: the march is that of the model.

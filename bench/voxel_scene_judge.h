@@ -6,12 +6,12 @@
 //   grid    cell (x, y, z) of the lattice -> solid or not
 //   ray     origin in halves of a voxel, direction of whole numbers, ends in whole multiples of it
 //
-// The rule, in the directions of the lattice: planes crossed at once are crossed in the order x, y, z; a ray along a
-// plane belongs to the upper side, and a ray that starts on a plane to the cell that it enters.
+// The rule, in the directions of the lattice: planes crossed simultaneously are crossed in the order x, y, z; a ray
+// along a plane belongs to the upper side, and a ray that starts on a plane to the cell that it enters.
 //
 // Half of the scenes have sides and places that are rounded, such as 0.1 m at 371.3 m: there a plane has a slightly
 // different position in each object, and a ray one that differs slightly from any plane. Results for rays along planes
-// must nevertheless follow the rule exactly. Where a rounded ray crosses several planes at once, any order is
+// must nevertheless follow the rule exactly. Where a rounded ray crosses several planes simultaneously, any order is
 // admissible, but the ray must not pass between two cells that touch.
 #pragma once
 

@@ -86,7 +86,7 @@ double peak_mib() {
 }
 
 #ifdef SCARP_BENCH_NANOVDB
-// The voxels of columns that rays can hit: from each top down to the lowest one beside it.
+// Sets the voxels of columns that rays can hit: from each top down to the lowest adjacent top.
 void set_visible_voxels(int side, const std::vector<std::int32_t>& tops, const NanovdbPeer::Set& set) {
   const auto top = [&](int x, int y) {
     return x < 0 || y < 0 || x >= side || y >= side

@@ -12,7 +12,7 @@ namespace scarp::cli {
 constexpr int kSignalled = 128;
 
 /// From now on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT makes every terminal_progress() request a stop, so that
-/// partial files are removed on exit. A second signal ends the program at once, and so does the first if it is not
+/// partial files are removed on exit. A second signal ends the program immediately, and so does the first if it is not
 /// polled within two seconds; partial files are removed in both cases. Signals that were ignored when the program
 /// started stay ignored. A file size limit (SIGXFSZ) makes writing fail and does not end the program.
 void catch_interrupts();

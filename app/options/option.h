@@ -119,7 +119,7 @@ struct Option {
   Looks looks{};                        ///< likewise
   std::string_view marches{};           ///< marches that read it, "naive relaxed"; empty: all; likewise
   std::vector<Rule> rules{};            ///< likewise; checked after given options that they mention
-  std::vector<std::string> excludes{};  ///< options that cannot be given beside it
+  std::vector<std::string> excludes{};  ///< options that cannot be combined with it
 };
 
 /// An option with properties derived from its declaration.

@@ -19,7 +19,8 @@ namespace {
 
 // Sliders without declared limits range from a fraction to a multiple of the default.
 constexpr double kSpan = 64;
-// Sliders of lengths go down to this fraction of the picture's extent, and those of heights beyond the highest ground.
+// Sliders of lengths start at this fraction of the picture's extent; sliders of heights extend this far beyond the
+// ground.
 constexpr double kLeastLength = 1e-3, kBeyond = 0.25;
 constexpr double kMostCount = 100;  // of integers without a limit
 // Larger ranges have no slider.

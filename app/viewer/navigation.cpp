@@ -19,7 +19,7 @@ constexpr double kGoTo = 0.4;                        // fraction of the distance
 constexpr double kSpeedShare = 0.08;                 // of the scene, per second
 constexpr double kFast = 5;                          // times as fast
 constexpr double kWalkSpeed = 5;                     // metres per second
-constexpr double kStepHeight = 1.0;                  // metres that a walker climbs at once
+constexpr double kStepHeight = 1.0;                  // metres that a walker can climb in one step
 constexpr double kArm = 0.3;                         // metres that a walker keeps from a wall
 constexpr double kStride = 0.5;                      // step in metres at which the ground is queried
 constexpr double kLeastMap = 1e-6, kMostMap = 100;   // times the size of the scene

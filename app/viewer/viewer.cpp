@@ -446,7 +446,7 @@ class Viewer {
     if (!shown_) return;
     std::vector<Image> images;
     for (const Picture& side : shown_->sides) {
-      // Large pixels have sharp edges; a picture beside them has a different size.
+      // Large pixels keep sharp edges; a picture next to them has a different size.
       images.push_back(shown_->large_pixels ? stretched(side.image, width_, height_) : side.image);
     }
     if (images.size() > 1) {

@@ -18,7 +18,7 @@ fail() {
   printf 'pack.sh: %s\n' "$1" >&2
   exit 1
 }
-# The file that the linker would load by this name.
+# The file that the linker would load for this name.
 system_library() { ldconfig -p | awk -v name="$1" '$1 == name && /x86-64/ && !found { found = $NF } END { print found }'; }
 
 cp "$here/run.sh" "$tree/run.sh"
@@ -28,7 +28,7 @@ for program in scarp-bench $(cut -d ' ' -f 2 "$tree/tests.txt" | sort -u); do
   strip -o "$tree/bin/$program" "$build/bin/$program"
 done
 
-# Everything but glibc.
+# Everything except glibc.
 ldd "$tree"/bin/* | awk '/=> \// { print $1, $3 }' | sort -u | while read -r name path; do
   case $name in
     libc.so.* | libm.so.* | libdl.so.* | libpthread.so.* | librt.so.* | ld-linux*) ;;

@@ -50,13 +50,13 @@ cd "$here" || exit 1
 
 now() { date +%s; }
 started=$(now)
-# Programs that a signal cannot end are abandoned after 10 more seconds.
+# Programs that do not end on a signal are abandoned after 10 more seconds.
 deadline=$((started + seconds - 10))
 # Leaves time for the tests.
 bench_deadline=$((started + (seconds - 10) * 2 / 3))
 
 export HOME="${HOME:-$folder/logs}" RC_PARAMS=seed=20261121
-# The driver uses these libraries, too: the bundle's only where the system's are missing or too old.
+# The driver uses these libraries as well, so those of the bundle are used only if the system's are missing or too old.
 use_libraries() { export LD_LIBRARY_PATH="$1${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; }
 if ldd bin/* 2>&1 | grep -q 'not found'; then use_libraries "$here/lib/spare"; fi
 validation='without the validation layer'
@@ -67,14 +67,14 @@ else
   export SCARP_TEST_VALIDATION=off
 fi
 
-# So that programs that are ended leave the lines they printed.
+# Keeps the lines that programs printed before they were ended.
 by_lines=(env)
 ! stdbuf -oL true 2>/dev/null || by_lines=(stdbuf -oL)
 
 summary=()
 add_row() { summary+=("$(printf '%-24s %-18s %5s  %s' "$@")"); }
 
-# step NAME LIMIT COMMAND...: runs it in the time that is left, with its output in logs/NAME.log. Sets `result` and `took`.
+# step NAME LIMIT COMMAND...: runs the command in the remaining time, with its output in logs/NAME.log. Sets `result` and `took`.
 step() {
   local name=$1 limit=$2 log="$folder/logs/$1.log" begin pid left
   shift 2
@@ -132,7 +132,7 @@ measure() {
   add_row "$name" "$result" "$took" "$figures"
 }
 
-# "chunk 5100 Mrays/s, naive x 2.1; primary ...": max-mip, and its speed over naive's at equal error of position.
+# "chunk 5100 Mrays/s, naive x 2.1; primary ...": max-mip, and its speed relative to naive at equal position error.
 figures_of() {
   awk -F, '$3 == "max-mip" {
       text = text (text == "" ? "" : "; ") $2 ($NF == 1 ? "" : " at exaggeration " $NF + 0)
@@ -142,7 +142,7 @@ figures_of() {
     END { print text }' "$1"
 }
 
-# test_program NAME LIMIT PROGRAM [FILES]: a test of ctest; those that are skipped count apart.
+# test_program NAME LIMIT PROGRAM [FILES]: runs a test of ctest; skipped tests are counted separately.
 test_program() {
   local name=$1 limit=$2 program=$3 files=${4:-} log="$folder/logs/$1.log" passed failed skipped last note
   asked_for "$name" tests || return
@@ -179,7 +179,7 @@ add_row devices "$result" "$took" "${chosen:-$(tail -n 1 "$folder/logs/devices.l
 
 classes=chunk,primary,shadow,ao
 if [[ -z $small ]]; then
-  # Fewer rays are judged than by default, 80,000 in the compared classes: the search must fit into the limits.
+  # Fewer rays are judged than by default, 80,000 in the compared classes: the search must fit within the limits.
   measure gpu-1025 gpu 30 gpu --device "$device" --sizes 1025 --classes $classes --judged 5000
   measure gpu-4097 gpu 60 gpu --device "$device" --sizes 4097 --classes $classes --judged 5000
   measure gpu-4097-steep gpu 50 gpu --device "$device" --sizes 4097 --classes chunk,primary --exaggerations 4,16 --judged 5000 --repeats 3

@@ -26,7 +26,7 @@ class BilinearGround {
 
   const HeightField& field() const { return field_; }
 
-  /// Returns the shade of a node; self_shaded if the cell beside it blocks the ray.
+  /// Returns the shade of a node; self_shaded if the adjacent cell blocks the ray.
   Shade shade(const SunRay& sun, Node node) const;
 
   /// Answers one query, as scarp::line_of_sight() without curvature. `clearance` covers crossings and the points

@@ -11,7 +11,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kUnsure = 2;
-// Blurs are bounds; a position within twice the blur of a vertex counts as beside it.
+// Blurs are bounds; a position within twice the blur of a vertex counts as next to it.
 constexpr double kBeside = 2;
 
 }  // namespace

@@ -14,7 +14,7 @@
 // than the piece it replaced stores by how much (`slack`), and targets that close to it are left to the caller.
 //
 // Source: H. J. Haverkort and L. Toma, "A comparison of I/O-efficient algorithms for visibility computation on massive
-// grid terrains", arXiv 1810.01946, 2018, model R3 (there in doubles alone). Cost: a merge copies the pieces once and
+// grid terrains", arXiv 1810.01946, 2018, model R3 (there only in doubles). Cost: a merge copies the pieces once and
 // compares those under the new segments.
 #pragma once
 
@@ -72,7 +72,7 @@ class HorizonEnvelope {
   struct Piece {
     double begin = 0;
     HorizonLine line;
-    double error = 0;  ///< line.error, or more beside an implicit vertex
+    double error = 0;  ///< line.error, or more next to an implicit vertex
     double slack = 0;  ///< the envelope may be higher by this much
     double blur = 0;   ///< uncertainty of `begin`; 0 for a sample's position
   };

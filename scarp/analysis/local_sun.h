@@ -20,8 +20,8 @@ struct LocalSun {
   UtcTime time{};
   bool refraction = false;
   /// Sets x and y to longitude and latitude in degrees (WGS 84) of the nodes (first_col + i, row), from several threads
-  /// at once (NodePlaces, scarp/source/raster/node_places.h). Fields of one column or row also need the nodes beside
-  /// it.
+  /// at once (NodePlaces, scarp/source/raster/node_places.h). For fields of one column or row, the neighbouring nodes
+  /// outside are also requested.
   std::function<void(int row, int first_col, std::span<dvec3> places)> places{};
 };
 

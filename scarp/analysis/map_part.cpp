@@ -61,7 +61,7 @@ std::vector<Value> fill_rows(const Viewpoint& view, const RowBand& band, Value g
 RowBand rows_towards(const HeightField& field, const SunDirection& sun, const RowBand& band) {
   const SunRay ray = sun_ray(field, sun);
   const double relief = field.max_height() - field.min_height();
-  // Ground beside the first crossing, and one row for rounding.
+  // One row for the ground next to the first crossing, and one for rounding.
   constexpr int kMargin = 2;
   const double reach = kMargin + std::abs(static_cast<double>(ray.row)) * relief / ray.rise;
   const int rows = static_cast<int>(std::min<double>(std::ceil(reach), field.rows()));

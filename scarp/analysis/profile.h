@@ -17,7 +17,7 @@ struct ProfilePoint {
   double drop = 0;          ///< metres by which it appears lower
   double sight = 0;         ///< height of the line of sight there, metres above sea: curved upwards by `drop`
   bool visible = true;      ///< whether the eye sees the ground at this point
-  bool after_hole = false;  ///< whether crossings beside nodata lie between the previous point and this one
+  bool after_hole = false;  ///< whether there are crossings next to nodata between the previous point and this one
 };
 
 /// Returns the points in order, ends included. A crossing at a node counts once. Throws as SightLine does.

@@ -27,7 +27,7 @@ struct SightCrossing {
 };
 
 /// Calls visit(crossing) for the crossings of one axis that count, outwards from the start, until it returns false.
-/// Calls skip(Crossing) for those beside nodata.
+/// Calls skip(Crossing) for those next to nodata.
 template <class Visit, class Skip>
 void visit_sight(const SightLine& line, int axis, const Visit& visit, const Skip& skip, const LineRange& range) {
   const auto steps = [](double cells) { return std::llround(cells * static_cast<double>(kSubcells)); };

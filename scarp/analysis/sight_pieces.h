@@ -13,7 +13,7 @@
 
 namespace scarp {
 
-/// The nodes beside a piece of a line; also the grid lines that it may cross. Ends included.
+/// The range of nodes next to a piece of a line, which is also that of the grid lines that it may cross. Ends included.
 struct SightBox {
   int low[2], high[2];  ///< columns, rows
 };

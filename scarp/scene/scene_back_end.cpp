@@ -5,7 +5,7 @@
 //   hierarchy ──▶ pairs of a ray and an object whose box it hits, sorted by field ──▶ one call per field
 //
 // The hierarchy cannot shorten rays along the way, as it does for single rays: all boxes up to the ground are tested.
-// Rays of a scene of one field at the origin go to the back end as they are.
+// Rays of a scene of one field at the origin are passed to the back end unchanged.
 #include "scarp/scene/scene_back_end.h"
 
 #include <algorithm>

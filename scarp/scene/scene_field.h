@@ -61,7 +61,7 @@ struct SceneFieldParts {
 
   struct Voxels {
     const VoxelObjects* objects;
-    /// Start of a shadow ray from a voxel; null: beside that voxel.
+    /// Start of a shadow ray from a voxel; null: next to that voxel.
     std::function<Ray(const Ray& ray, const Hit& from)> shadow_ray;
   };
 

@@ -43,7 +43,7 @@ class SceneQuery {
   /// As Scene::occluded(), under the rules. With sides or a filter, rays from voxels with smooth normals start on the
   /// voxels.
   bool occluded(const Ray& ray, const Hit* from = nullptr) const;
-  /// As Scene::closest_hits() and Scene::occluded(), under the rules. A mask alone costs nothing.
+  /// As Scene::closest_hits() and Scene::occluded(), under the rules. A mask without sides and filter costs nothing.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from = {}) const;
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;

@@ -33,7 +33,7 @@ class VoxelField final : public SceneField {
   std::optional<WorldBox> extent() const override { return objects_.box(); }
   double farthest_voxel() const override { return objects_.farthest(); }
 
-  // A ray alone does not identify the voxel that it starts on: without `from` all rays are free.
+  // A ray does not itself identify the voxel that it starts on: without `from` all rays are free.
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return objects_.closest_hit(ray, from, stats);
   }

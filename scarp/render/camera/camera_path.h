@@ -3,7 +3,7 @@
 //
 // Eye and target each run along a Catmull-Rom spline in its centripetal form (C. Yuksel et al., "Parameterization and
 // applications of Catmull-Rom curves", 2011), which has neither loops nor cusps between its points. Both share the
-// eye's parameter: at every point of the table the camera looks at the target of that point.
+// eye's parameter: at every station the camera looks at the station's target.
 #pragma once
 
 #include <vector>

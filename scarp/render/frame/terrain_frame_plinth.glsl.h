@@ -32,7 +32,7 @@ bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTw
   ScarpSpan x = scarp_span_x(field, line);
   ScarpSpan y = scarp_span_y(field, line);
   ScarpTwoFloat over = scarp_two_later(scarp_two(0.0), scarp_two_later(x.begin, y.begin));
-  if (over.high >= kScarpNever) return true;  // along a side, beside the field
+  if (over.high >= kScarpNever) return true;  // parallel to a side, outside the field
   bool from_below = above_base(line, over) < 0.0;
   if (from_below && line.direction.z <= 0.0) return true;
   // Walls of solid ground end at the base as well.

@@ -337,7 +337,7 @@ Image render_whole_frame(const Scene& scene, const Camera& camera, const Picture
   glsl::FrameSettings numbers{};
   set_camera(numbers, field, camera, settings);
   const double zero = zero_of_heights(field, view.paint());
-  // In a scene of only_heights(), any object beside the terrain is its plinth.
+  // In a scene of only_heights(), any other object is the terrain's plinth.
   std::optional<Plinth> plinth;
   if (scene.objects().size() > 1) plinth.emplace(field, plinth_base(field));
   set_field(numbers, field, plinth, zero);

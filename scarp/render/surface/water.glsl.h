@@ -82,8 +82,8 @@ SCARP_FN vec3 scarp_through_water(vec3 behind, vec3 deep, vec3 per_metre, float 
   vec3 left = scarp_left_after(per_metre, metres);
   return behind * left + deep * (vec3(1.0f) - left);
 }
-/// Length in metres of the path of sunlight through the water to a bottom `depth` metres below its level. Below the
-/// surface the sun stands higher: sin = cos(altitude) / n from the vertical.
+/// Length in metres of the path of sunlight through the water to a bottom `depth` metres below its level. Under water
+/// the sun appears higher: its angle from the vertical has the sine cos(altitude) / n.
 SCARP_FN real scarp_sun_way(real depth, real to_sun_z, real index) {
   real sideways = sqrt(max(real(0.0), real(1.0) - to_sun_z * to_sun_z)) / index;
   return max(real(0.0), depth) / sqrt(real(1.0) - sideways * sideways);

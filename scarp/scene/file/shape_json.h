@@ -9,7 +9,7 @@
 //   {"ellipsoid": {"radii": [3, 2, 1], "at": ..}}                    {"ground": "name of a field of the scene"}
 //   {"translate": [x, y, z], "of": SHAPE}                            {"scale": 2, "of": SHAPE}
 //   {"rotate": {"axis": [0, 0, 1], "degrees": 30}, "of": SHAPE}
-//   {"repeat": {"period": [4, 4, 0], "count": [3, 3, 0]}, "of": SHAPE}      count 0: without end
+//   {"repeat": {"period": [4, 4, 0], "count": [3, 3, 0]}, "of": SHAPE}      count 0: unlimited
 //   {"union": [SHAPE, ..], "smooth": 0.3}    {"intersection": [SHAPE, ..]}    {"subtract": [FROM, WHAT, ..]}
 //
 // Lengths are metres. An inner material overrides an outer one.

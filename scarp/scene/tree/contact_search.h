@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Private to the station: sweeps, overlaps and closest points over many objects, for BoxTree::search(). Results do not
-// depend on the order of the search: they equal those of each object alone.
+// depend on the order of the search: they equal those of separate queries of each object.
 #pragma once
 
 #include <cstdint>

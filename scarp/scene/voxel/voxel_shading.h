@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shading of voxels: normals and corner darkening, computed from the grid alone.
+// Shading of voxels: normals and corner darkening, computed only from the grid.
 #pragma once
 
 #include "scarp/field/voxel_grid.h"
