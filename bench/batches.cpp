@@ -33,7 +33,7 @@ struct BatchesOptions {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t kRaysPerPass = 2'000'000;  // at least: small batches are repeated
+constexpr std::int64_t kRaysPerPass = 2'000'000;  // minimum: small batches are repeated
 
 // Median wall-clock time, in seconds, of a pass over `rays` in batches.
 double seconds(const HeightTarget& target, bool any_hit, const std::vector<Ray>& rays, std::size_t batch, int repeats) {

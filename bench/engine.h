@@ -22,7 +22,7 @@ struct Engine {
   std::string mode;       ///< the march, or one of Embree's (bench/embree_modes.h)
   double bytes = 0;       ///< memory that tracing needs: samples or vertices, and the acceleration structure
   double peak_bytes = 0;  ///< peak memory during the build
-  double build_s = 0;     ///< from samples to ready for tracing
+  double build_s = 0;     ///< time from samples to readiness for tracing
   /// Whether it is one of many variants, which are timed in full only if they are among the fastest in a short trial.
   bool on_trial = false;
   /// Whether it takes RaySet::fan: rays are numbered as in the fan, and `begin` and `end` are bounds of strips of 16

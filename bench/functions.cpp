@@ -35,7 +35,7 @@ namespace {
 // `functions`: the marches over terrain functions, checked by proofs.
 struct FunctionsOptions {
   int width = 480, height = 270;  // pixels
-  int octaves = 9;                // of the fractals
+  int octaves = 9;                // number of octaves of the fractals
   std::uint64_t seed = 1;
   int repeats = 3;
   std::int64_t judged = 4000;  // about this many rays per function are judged

@@ -122,7 +122,7 @@ struct Contender {
   MarchSettings settings;
   Judgement judged{};
   double fetches = 0;          // per ray
-  double seconds_per_ray = 0;  // of the judged pass, which has the counters
+  double seconds_per_ray = 0;  // in the judged pass, which has the counters
 };
 
 class Comparison {

@@ -35,7 +35,7 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
     if (row["mode"] == "max-mip" || row["mode"] == "fan") {
       EXPECT_EQ(row["miss_rate"], 0.0);
       EXPECT_EQ(row["false_rate"], 0.0);
-      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: the promised accuracy
+      EXPECT_LT(row["error_p99"], 1e-3);  // cells: the promised accuracy
       if (ray_class == "nodes") {
         EXPECT_EQ(row["lost"], 0);
       }

@@ -26,7 +26,7 @@ class HoleCounts {
 
  private:
   int stride_ = 0;
-  std::vector<std::int32_t> sums_;  // of the cells north-west of a node; empty without holes
+  std::vector<std::int32_t> sums_;  // number of hole cells north-west of each node; empty without holes
 };
 
 /// A node of the grid.
@@ -40,7 +40,7 @@ struct LeakField {
   std::optional<ProceduralDem> generator;  ///< set if the samples are those of a procedural DEM
   MaxPyramid pyramid{field};
   HoleCounts holes{field};
-  std::vector<Node> rim{};  ///< nodes with a height and with a hole beside them
+  std::vector<Node> rim{};  ///< nodes with a height that are next to a hole
   /// Embree's triangles over the same samples; null for fields that wrap, are solid or have holes.
   std::unique_ptr<EmbreePeer> embree{};
 

@@ -10,9 +10,9 @@ namespace {
 
 using Real = long double;
 
-constexpr Real kUnit = 0x1p-53L;  // of the marches' doubles
+constexpr Real kUnit = 0x1p-53L;  // unit roundoff of the marches' doubles
 constexpr Real kRoundings = 16;   // numerics.md
-constexpr Real kCounted = 11;     // of these are counted there
+constexpr Real kCounted = 11;     // of these, the number that is counted there
 
 Real height(const CellHeights& h, Real u, Real v) {
   const Real north = h.h00 + u * (static_cast<Real>(h.h10) - h.h00),

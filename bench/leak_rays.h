@@ -21,8 +21,8 @@ enum class LeakClass : std::uint8_t {
   tangent,    ///< level, at the height of a node on their path
   two_nodes,  ///< through two nodes
   border,     ///< starting on the border, along it, through its nodes and corners
-  rims,       ///< at nodes beside holes, and past them
-  seam,       ///< at nodes and edges of the seam, copies away
+  rims,       ///< at nodes next to holes, and past them
+  seam,       ///< at nodes and edges of the seam, several periods away
   below,      ///< starting below the ground
   plane,      ///< from the surface of a plane, in it and slightly off it
   saddles,    ///< from the surface of saddles

@@ -71,7 +71,7 @@ struct Job {
 class Leaks {
  public:
   Leaks(const LeaksOptions& options, const std::vector<LeakField>& fields) : options_(options) {
-    double for_embree_share = 0;  // of all rays
+    double for_embree_share = 0;  // fraction of all rays
     for (const LeakClass leak_class : kLeakClasses) {
       auto& suited = grounds_[static_cast<std::size_t>(leak_class)];
       std::ptrdiff_t have_embree = 0;

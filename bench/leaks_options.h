@@ -15,7 +15,7 @@ struct LeaksOptions {
   std::uint64_t seed = 1;
   int large = 2049;                       ///< side of the large field, in samples
   std::int64_t judge_every = 4096;        ///< one in this many rays over a small field is also traced by exhaustive
-  std::int64_t embree_rays = 10'000'000;  ///< at most about this many are also traced by Embree; 0: none
+  std::int64_t embree_rays = 10'000'000;  ///< approximate maximum of rays also traced by Embree; 0: none
   std::string dump;                       ///< file for the first failing rays; empty: leaks-SEED.txt
   bool fans = false;                      ///< instead: fans compared with the scalar march
   double fan_margin = 1;                  ///< factor of their margin; below 1, hits may be lost

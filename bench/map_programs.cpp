@@ -48,7 +48,7 @@ struct Question {
 
 struct MapProgram {
   std::string name, map;
-  std::string program;  // on PATH
+  std::string program;  // name on PATH
   std::string package;  // Debian package
   std::vector<std::string> words;
   std::string script;  // job.sh; empty: none

@@ -27,7 +27,8 @@ constexpr double kPixelMargin = 1e-3;
 struct PixelMatch {
   std::int64_t pixels = 0, hits = 0;
   std::int64_t near_edges = 0;  ///< pixels closer to an edge than the margin
-  std::int64_t differ = 0;  ///< of the others: another object, voxel or face than the quads, or t off by more than e
+  std::int64_t differ =
+      0;  ///< other pixels that show another object, voxel or face than the quads, or with t off by more than e
   std::int64_t near_edge_wrong = 0;  ///< near an edge, but the hit is on none of the faces that meet there
   double ray_pixels = 0;             ///< derived bound on the error of a ray at the smallest depth in the picture
   double t_error = 0;                ///< the largest error of t, in multiples of e

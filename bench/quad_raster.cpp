@@ -18,8 +18,8 @@ constexpr int kStripRows = 32;
 
 // Homogeneous picture coordinates are linear in those of a grid.
 struct Projection {
-  dvec3 origin;               // of the grid's corner
-  std::array<dvec3, 3> axis;  // of a voxel's side
+  dvec3 origin;               // position of the grid's corner
+  std::array<dvec3, 3> axis;  // vectors along the sides of a voxel
 };
 
 Projection projection(const PictureFrame& frame, const VoxelPlace& place) {

@@ -69,7 +69,7 @@ struct SeenFace {
 struct NearEdge {
   std::uint32_t pixel = 0;  ///< row * width + column
   FaceOf face;
-  double least_t = 0;  ///< of its corners
+  double least_t = 0;  ///< smallest t of its corners
 };
 
 struct RasterPicture {

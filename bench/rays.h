@@ -70,7 +70,7 @@ struct RayFan {
   dvec3 origin{0.0};
   int columns = 0, rows = 0;  ///< columns: a multiple of 16; 0: the set is not a fan
   std::vector<float> dx{}, dy{}, dz{};
-  std::vector<std::uint32_t> place{};  ///< of each ray of the set
+  std::vector<std::uint32_t> place{};  ///< index in the fan of each ray of the set
 
   bool empty() const { return columns == 0; }
 };

@@ -50,8 +50,8 @@ struct SeamTerrain {
   int cells;
   double cell, base;
   Surface surface;
-  bool levels;  // of resolution
-  bool tiles;   // of one TiledTerrain
+  bool levels;  // whether tiles have several levels of resolution
+  bool tiles;   // whether the fields are tiles of one TiledTerrain
   Placement place{};
   std::optional<Scene> scene{};
 

@@ -90,7 +90,7 @@ struct SimtShader {
 };
 
 struct SimtShaders {
-  std::string compilers;  ///< with versions
+  std::string compilers;  ///< names and versions
   std::vector<SimtShader> shaders;
 
   /// Throws Error if there is no shader with this name.

@@ -23,7 +23,7 @@ namespace {
 // `voxel-edits`: time that voxel accelerators take to follow an edit.
 struct VoxelEditsOptions {
   int side = 256;     // voxels
-  double radius = 8;  // of the sphere that is added and removed, in voxels
+  double radius = 8;  // radius in voxels of the sphere that is added and removed
   int edits = 40;
 };
 

@@ -42,10 +42,10 @@ struct VoxelEmbreePeer::Scene {
   std::atomic<std::int64_t> bytes{0};
   std::string name;
   std::vector<VoxelPlace> places;
-  std::shared_ptr<const VoxelModel> model;  // of user geometry
+  std::shared_ptr<const VoxelModel> model;  // for user geometry
   VoxelTarget target;
   glm::dmat3 grid_from_world{1.0};
-  std::vector<Quad> quads;  // of triangles
+  std::vector<Quad> quads;  // faces drawn as triangles
   std::vector<float> vertices;
   std::vector<std::uint32_t> indices;
   RTCDevice device = nullptr;

@@ -67,7 +67,7 @@ struct Built {
 // Rays of a picture from eight sides; from their hits, rays to a sun, and random rays to the sky.
 struct RayClasses {
   std::vector<Ray> camera, sun, sky;
-  std::vector<Hit> hits;         // of the camera's rays that hit
+  std::vector<Hit> hits;         // hits of camera rays
   std::vector<const Hit*> from;  // likewise
 
   RayClasses(const Scene& scene, int width) {

@@ -66,7 +66,7 @@ class VoxelSceneJudge {
         base_(rounded_ ? random_base(random, side_) : dvec3(0.0)),
         corner_(random.below(9) - 4, random.below(9) - 4, random.below(9) - 4) {
     const int objects = 2 + random.below(23), models = 1 + random.below(4);
-    const bool tiles = random.below(3) == 0;  // of one size, side by side
+    const bool tiles = random.below(3) == 0;  // equal sizes, side by side
     const ivec3 tile(1 + random.below(5), 1 + random.below(5), 1 + random.below(5));
     constexpr std::array<double, 3> kShares = {1, 0.6, 0.15};
     std::vector<VoxelGrid> grids;
@@ -316,8 +316,8 @@ class VoxelSceneJudge {
   std::vector<std::uint8_t> solid_;
   bool rounded_;  // whether sides or positions are rounded
   double side_;
-  dvec3 base_;             // of the lattice in the world, in metres
-  ivec3 corner_;           // and from there, in voxels
+  dvec3 base_;             // position of the lattice in the world, in metres
+  ivec3 corner_;           // corner relative to base_, in voxels
   std::vector<ivec3> at_;  // places of the objects on the lattice
   PlacedVoxels placed_;
 };

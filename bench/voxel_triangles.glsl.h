@@ -9,8 +9,8 @@ SCARP_GLSL_BEGIN
 
 struct VoxelTrianglesPush {
   Address faces;    ///< words: voxel, 8 bits for each of x, y, z, and the face
-  Address objects;  ///< of each object, its origin less the eye
-  float side;       ///< of a voxel
+  Address objects;  ///< origin of each object, minus the eye
+  float side;       ///< side of a voxel
   float near;       ///< depth 1; without perspective: depth 0
   // Clip coordinates x, y and w of a place less the eye: dot of these and (place, 1).
   vec4 x;

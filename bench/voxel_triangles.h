@@ -50,7 +50,7 @@ struct TrianglesMatch {
   std::int64_t pixels = 0;
   std::int64_t near_edges = 0;  ///< pixels within the snap of an edge
   std::int64_t other = 0;       ///< pixels among these that do not show the face that the ray hits
-  std::int64_t differ = 0;      ///< of the others
+  std::int64_t differ = 0;      ///< other pixels that differ
   std::string first;            ///< pixel that differs
 };
 

@@ -35,7 +35,7 @@ struct Control {
   bool rests = false;     ///< currently unset
   bool whole = false;     ///< whole numbers
   bool logarithmic = false;
-  double least = 0, most = 1;  ///< of sliders
+  double least = 0, most = 1;  ///< ends of the slider
   std::array<double, 3> numbers{};
   std::vector<std::string> choices{};
   std::string choice{};
@@ -45,10 +45,10 @@ struct Control {
 struct ControlScales {
   double low = 0, high = 0;               ///< heights in metres, not exaggerated
   double across = 1;                      ///< extent of the picture in metres
-  double steps_low = 0, steps_high = 64;  ///< of the colours of the look `steps`
+  double steps_low = 0, steps_high = 64;  ///< range of the colours of the look `steps`
   double exaggeration = 1;
-  std::vector<std::string> marches{};  ///< of the input; empty: it has no choice
-  std::string march{};                 ///< in use
+  std::vector<std::string> marches{};  ///< available for the input; empty: no choice
+  std::string march{};                 ///< current march
 };
 
 /// The controls of the options that have an effect, in the order of their declarations.

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSteepest = 89.5 * kDegree;         // look_at() turns over beyond
-constexpr double kTurnPerHeight = std::numbers::pi;  // of a drag over the height of the picture
-constexpr double kWheelStep = 0.85;                  // nearer per step
+constexpr double kTurnPerHeight = std::numbers::pi;  // turn by a drag over the height of the picture
+constexpr double kWheelStep = 0.85;                  // factor of the distance per step
 constexpr double kGoTo = 0.4;                        // fraction of the distance that remains after a double click
-constexpr double kSpeedShare = 0.08;                 // of the scene, per second
-constexpr double kFast = 5;                          // times as fast
+constexpr double kSpeedShare = 0.08;                 // fraction of the scene's size, per second
+constexpr double kFast = 5;                          // factor of the speed
 constexpr double kWalkSpeed = 5;                     // metres per second
 constexpr double kStepHeight = 1.0;                  // metres that a walker can climb in one step
 constexpr double kArm = 0.3;                         // metres that a walker keeps from a wall

@@ -26,7 +26,7 @@ struct PanelState {
   std::string device{};                    ///< device that traces rays
   const WorkedPicture* shown = nullptr;    ///< the picture in the window
   const WorkedVerdict* verdict = nullptr;  ///< verdict on that picture
-  std::vector<std::string> names{};        ///< of its sides
+  std::vector<std::string> names{};        ///< names of its sides
   bool times = true;                       ///< whether to show the time of the picture
   bool busy = false;
   std::optional<Reading> reading{};

@@ -29,7 +29,7 @@ struct Presenter::Impl {
   VkCommandBuffer commands = VK_NULL_HANDLE;
   VkFence done = VK_NULL_HANDLE;
   DeviceMemory texture, staging, readback;
-  int width = 0, height = 0;  // of the texture
+  int width = 0, height = 0;  // size of the texture
   bool uploads = false;       // the texture must be filled from the staging buffer
   bool has_imgui = false;
 

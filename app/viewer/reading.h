@@ -36,7 +36,7 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
 struct MeasuredLine {
   double flat = 0, rise = 0;  ///< metres
   bool sees = false;
-  std::vector<float> heights{};  ///< of the ground at even distances, without exaggeration; NaN: none
+  std::vector<float> heights{};  ///< heights of the ground at equal distances, without exaggeration; NaN: no ground
 };
 MeasuredLine measure_line(const Scene& scene, const dvec3& from, const dvec3& to, double above, double exaggeration);
 

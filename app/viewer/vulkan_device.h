@@ -25,7 +25,7 @@ struct DeviceMemory {
   VkBuffer buffer = VK_NULL_HANDLE;
   VkImage image = VK_NULL_HANDLE;
   VkDeviceMemory memory = VK_NULL_HANDLE;
-  void* mapped = nullptr;  ///< of buffers
+  void* mapped = nullptr;  ///< address; buffers only
 };
 
 class VulkanDevice {
@@ -55,7 +55,7 @@ class VulkanDevice {
   std::uint32_t family = 0;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
-  int objections = 0;  ///< of the validation layer
+  int objections = 0;  ///< messages of the validation layer
 
  private:
   void make_instance(bool validation);

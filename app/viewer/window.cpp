@@ -15,7 +15,7 @@ namespace scarp::viewer {
 namespace {
 
 constexpr float kFontPixels = 13;  // size for which Dear ImGui's font is drawn
-constexpr float kMostScale = 8;    // of fonts that are textures
+constexpr float kMostScale = 8;    // limit for fonts in textures
 
 }  // namespace
 

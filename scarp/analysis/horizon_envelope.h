@@ -97,7 +97,7 @@ class HorizonEnvelope {
 
  private:
   struct Comparison {
-    int sign = 0;  // of segment minus piece; kUnsure
+    int sign = 0;  // sign of segment minus piece, or kUnsure
     double difference = 0;
     double bound = 0;
   };

@@ -47,8 +47,8 @@ class SightLine {
 /// The first crossing, from the start, that blocks a line of sight.
 struct Obstruction {
   double along = 0;         ///< 0 at the start, 1 at the end
-  double col = 0, row = 0;  ///< its place
-  double height = 0;        ///< of the ground there, metres above sea
+  double col = 0, row = 0;  ///< its position
+  double height = 0;        ///< height of the ground there in metres above sea
 };
 
 /// Result of line_of_sight(). Numbers are rounded; `visible` is exact.

@@ -12,7 +12,7 @@ namespace scarp {
 struct ProfilePoint {
   double along = 0;         ///< 0 at the start, 1 at the end
   double distance = 0;      ///< from the start, metres
-  double col = 0, row = 0;  ///< its place
+  double col = 0, row = 0;  ///< its position
   double ground = 0;        ///< metres above sea; NaN at an end on a hole
   double drop = 0;          ///< metres by which it appears lower
   double sight = 0;         ///< height of the line of sight there, metres above sea: curved upwards by `drop`

@@ -23,7 +23,7 @@ class RingFrame {
         side_from_(along_cols_ ? origin.row : origin.col) {}
 
   bool along_cols() const { return along_cols_; }
-  int sign() const { return sign_; }  ///< of a step of the sweep, in rings
+  int sign() const { return sign_; }  ///< direction of the sweep: +1 or -1 ring per step
   int rings() const { return rings_; }
   int sides() const { return sides_; }
   int x(int ring) const { return sign_ * (ring - ring_from_); }

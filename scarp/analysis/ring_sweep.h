@@ -81,7 +81,7 @@ class RingSweep {
   }
 
  protected:
-  static constexpr int kLine = 64 / sizeof(double);  // of the cache
+  static constexpr int kLine = 64 / sizeof(double);  // doubles per cache line
   static constexpr int kStrip = BlockMaxima::kSide;  // rings loaded together: a line of the cache if they are columns
 
   /// [low, high]: the part of the horizon that matters. `target_raise`: height of targets above samples.
@@ -408,11 +408,11 @@ class RingSweep {
   HorizonBins bins_;
   std::vector<SideRange> active_;  // samples of the strip that are not skipped
   std::ptrdiff_t stride_;          // an odd number of cache lines, so that rings do not evict one another
-  std::vector<double> heights_;    // of the strip and the ring before it
+  std::vector<double> heights_;    // heights of the strip and the ring before it
   std::vector<int> risen_;         // samples of the ring that may be above the horizon, in order
-  std::vector<char> clear_;        // for those: whether the whole edge to the next sample is above the horizon
-  int last_above_ = -2;            // the last sample that is certainly above it
-  bool joined_ = false;            // whether the edge from it to the next sample is as far as the vertices between
+  std::vector<char> clear_;  // per sample in risen_: whether the whole edge to the next sample is above the horizon
+  int last_above_ = -2;      // the last sample that is certainly above it
+  bool joined_ = false;      // whether the edge from it to the next sample is as far as the vertices between
   std::vector<HorizonSegment> segments_;
 };
 

@@ -157,7 +157,7 @@ class ShadowStrip : public RingSweep<ShadowStrip<T>, T> {
   const BlockMaxima& maxima_;
   Shade* codes_;
   SunEdges edges_;
-  double across_, rise_;  // of one ring towards the sun
+  double across_, rise_;  // change per ring towards the sun
   double x_ = 0, u_of_ring_ = 0, s_of_ring_ = 0;
 };
 

@@ -14,8 +14,8 @@ namespace scarp {
 inline constexpr double kSunDiameter = 0.533 * std::numbers::pi / 180;
 
 struct SunStrip {
-  double rise;  ///< of its middle above the sun's centre, radians
-  float share;  ///< of the disc's area
+  double rise;  ///< height of its middle above the sun's centre, radians
+  float share;  ///< fraction of the disc's area
 };
 
 /// Strips from the lowest to the highest.

@@ -41,9 +41,9 @@ class SunAtTime {
 
  private:
   UtcTime terrestrial_;
-  double earth_[2][3], from_sun_[3];   // of the Earth: barycentric place and velocity, and place seen from the sun
+  double earth_[2][3], from_sun_[3];   // Earth: barycentric position and velocity, and position relative to the sun
   double pole_x_, pole_y_, origin_s_;  // celestial pole and origin
-  double rotation_, origin_sp_;        // of the Earth, and the terrestrial origin
+  double rotation_, origin_sp_;        // rotation of the Earth, and the terrestrial origin
 };
 
 /// `refraction`: applies that of a standard atmosphere at this height and 10 degrees Celsius, which lifts the sun by

@@ -8,7 +8,7 @@ namespace scarp {
 
 /// Counts of a sweep.
 struct SweepStatistics {
-  std::int64_t samples = 0;  ///< in all rings, including those beside a part of a sector
+  std::int64_t samples = 0;  ///< in all rings, including samples next to a part of a sector
   std::int64_t skipped = 0;  ///< in blocks below the horizon
   std::int64_t careful = 0;  ///< not certainly below the horizon
   std::int64_t walked = 0;   ///< left to a ray

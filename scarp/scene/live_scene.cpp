@@ -82,7 +82,7 @@ struct LiveScene::State {
   std::unordered_map<const SceneField*, std::uint32_t> index_of;
   std::vector<std::uint32_t> free_fields;
   std::vector<Object> objects;
-  std::vector<WorldBox> boxes;  // of objects; empty for unbounded ones
+  std::vector<WorldBox> boxes;  // box per object; empty for unbounded objects
   std::vector<std::uint32_t> free_objects;
   std::uint32_t nothing = 0;  // the field of removed objects
   std::uint32_t others = 0;   // objects that are not backdrops
@@ -90,7 +90,7 @@ struct LiveScene::State {
   std::set<std::uint32_t> unbounded;
   std::set<std::pair<double, std::uint32_t>> batched;  // by size, the largest first, as in Scene
   std::set<std::pair<double, std::uint32_t>> voxels;   // by farthest_of()
-  std::uint32_t placed_voxels = 0;                     // of them, those that are not in place
+  std::uint32_t placed_voxels = 0;                     // number of voxel objects that are not in place
   BoxTreeEditor tree{scene.tree_};
 
   // Since the last update().

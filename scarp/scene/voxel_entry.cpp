@@ -8,7 +8,7 @@
 namespace scarp {
 namespace {
 
-constexpr int kColourBits = 24;  // of entries that are colours: 8 of red, green and blue
+constexpr int kColourBits = 24;  // bits of entries that are colours: 8 each of red, green and blue
 
 // Null for hits of other fields.
 const VoxelObjects* objects_of(const Scene& scene, const Hit& hit) {

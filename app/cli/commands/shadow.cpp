@@ -49,7 +49,7 @@ struct ShadowOptions : MapOptions {
 // A sun over the field. The azimuth is relative to grid north.
 struct Sun {
   SunDirection direction;
-  std::string name;   // of the band
+  std::string name;   // name of the band
   std::string place;  // azimuth and altitude in degrees
 #ifdef SCARP_ERFA
   std::optional<LocalSun> local{};  // replaces the direction

@@ -22,7 +22,7 @@ namespace scarp::cli {
 struct MapOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
-  std::string coordinates;          ///< of places; empty: map, or local without a georeference
+  std::string coordinates;          ///< kind of coordinates of places; empty: map, or local without a georeference
   std::optional<double> curvature;  ///< coefficient; empty: depends on the body
   double plane_error = 0.1;         ///< cells
   std::string surface = "crossings";

@@ -65,7 +65,7 @@ std::vector<VoxelColour> colours_of(const std::string& ramp);
 
 /// The contents of a voxel file.
 struct VoxInput {
-  std::optional<VoxFile> document;  ///< of MagicaVoxel
+  std::optional<VoxFile> document;  ///< MagicaVoxel only
   PlacedVoxels voxels;
   std::optional<SolidRange> numbers{};  ///< volumes: range of the colours
   std::vector<std::string> notes{};     ///< one line each, for users

@@ -15,8 +15,8 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kLeastSeen = 0.005;     // of the pixels
-constexpr double kLeastContrast = 0.02;  // that is visible through fog; see fog.h
+constexpr double kLeastSeen = 0.005;     // fraction of the pixels
+constexpr double kLeastContrast = 0.02;  // smallest contrast that is visible through fog; see fog.h
 constexpr double kMostRays = 8192;       // kLeastSeen is about 40 of them, with a relative error of a few tenths
 
 // The relief of natural ground is a small fraction of its extent; even a single cliff is rarely four times as high as

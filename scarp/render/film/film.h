@@ -74,7 +74,7 @@ constexpr std::size_t kMostPointsOfTile = 1024;
 struct PicturePoint {
   double x, y;
   int pixel_x, pixel_y;
-  int index;  ///< of the point in its pixel, from 0
+  int index;  ///< index of the point in its pixel, from 0
 };
 
 /// Returns aa x aa evenly spaced points per pixel: pixels row by row, the points of one pixel together.

@@ -43,14 +43,14 @@ class FrameTile {
     std::size_t point;
     double t;
     double reflectance;
-    vec3 glitter;                       // of the sun, if the mirrored ray hits nothing
+    vec3 glitter;                       // glitter of the sun, if the mirrored ray hits nothing
     std::size_t mirror;                 // in sent_
     std::optional<std::size_t> bottom;  // likewise
   };
   // A mirroring surface hit by a camera ray.
   struct MirrorPoint {
     std::size_t point;
-    float share;  // of the light of `mirror`, tinted; the rest is the surface's own
+    float share;  // fraction of the light of `mirror`, tinted; the rest is the surface's own
     vec3 tint;
     std::size_t mirror;  // in sent_
   };
@@ -59,7 +59,7 @@ class FrameTile {
     Ray ray;
     Hit hit;
     std::uint32_t point = 0;
-    std::uint32_t steps = 0;  // of the march, if it was counted
+    std::uint32_t steps = 0;  // steps of the march, if counted
     vec3 colour{0.0f};        // of lit surfaces without the air in front; of everything else with it
     bool lit = false;         // whether it is such a surface
   };
@@ -106,7 +106,7 @@ class FrameTile {
   std::vector<MirrorPoint> mirrors_;
   std::vector<const Hit*> sent_from_;  // surfaces on which rays of sent_ start; null for rays from water
   std::vector<std::optional<Water::Meeting>> meetings_;  // by point; empty without water
-  RoundKind round_ = RoundKind::look;                    // of the current round
+  RoundKind round_ = RoundKind::look;                    // kind of the current round
   bool asked_ = false;
   std::size_t asked_points_ = 0;
   std::vector<Open> open_;

@@ -18,7 +18,7 @@ struct PictureLayers {
   std::vector<float> depth;          ///< metres along the camera's view axis, infinity for a miss
   std::vector<vec3> normal;          ///< unit, world, of the surface itself (not the shading normal); 0 for a miss
   std::vector<vec3> position;        ///< metres, world; 0 for a miss
-  std::vector<std::uint32_t> steps;  ///< of all marches
+  std::vector<std::uint32_t> steps;  ///< sum over all marches
 };
 
 /// Layers of a picture without hits. Throws Error if the settings are out of range or the look is not `shaded`.

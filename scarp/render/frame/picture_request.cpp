@@ -66,7 +66,7 @@ std::optional<WaterSettings> water_of(const PictureRequest& r) {
 }
 
 FogSettings fog_of(const PictureRequest& r, const PictureSubject& subject, const Camera* camera) {
-  constexpr double kWays = 10;  // to the box
+  constexpr double kWays = 10;  // visibility in multiples of the distance to the box
   FogSettings fog;
   fog.kind = r.fog.value_or(fog.kind);
   fog.sun_tint = r.sun_tint.value_or(fog.sun_tint);

@@ -81,7 +81,7 @@ struct PictureSubject {
   PictureFiles files{};           //
   double grid_north_azimuth = 0;  ///< radians clockwise from true north
   double across = 0;              ///< extent of the picture in metres; 0: unknown
-  ReliefRange heights{};          ///< of the ground, exaggerated
+  ReliefRange heights{};          ///< heights of the ground, exaggerated
   double exaggeration = 1;
   std::optional<double> function_extent{};  ///< side of the shown ground in metres, and the distance of its haze
   WorldBox box{};                           ///< used for the distance of cameras; see resolve()

@@ -67,13 +67,13 @@ struct FramePatch {
   vec2 across;
   vec2 across_low;
 };
-const int kFrameOctaves = 4;   ///< of a set, at most: kScarpMostOctaves of ground_paint.glsl.h
+const int kFrameOctaves = 4;   ///< maximum per set: kScarpMostOctaves of ground_paint.glsl.h
 const int kFramePatches = 12;  ///< kScarpPatchSets * kFrameOctaves
 
 struct FrameRampPiece {
   float low;
   float high;
-  uint begin;  ///< of its colours
+  uint begin;  ///< index of its first colour
   uint count;
 };
 
@@ -87,7 +87,7 @@ struct FrameSettings {
   ScarpLine line_down;
   vec3 forward;
   float reach;        ///< kScarpNever: no end
-  float pixel_width;  ///< at one metre, or of an orthographic camera
+  float pixel_width;  ///< at a depth of one metre, or for an orthographic camera
   int orthographic;
   int width;  ///< pixels
   int height;
@@ -142,11 +142,11 @@ struct FrameSettings {
   vec3 to_sun;
   vec3 sun_line;  ///< in grid units
   vec3 sun_line_low;
-  int sun_rays;     ///< of a point: 0 without shadows, 1 where the sun is a point
-  int sky_rays;     ///< of a point
+  int sun_rays;     ///< per point: 0 without shadows, 1 if the sun is a point
+  int sky_rays;     ///< per point
   float sun_depth;  ///< of the sun's disc as a cap, 1 - cos(radius); 0: a point
   float ao_distance;
-  int samples;  ///< of a point, for each purpose: 0 without soft light
+  int samples;  ///< per point and purpose: 0 without soft light
   uint seed;    ///< of SamplePattern
   int index_bits;
   vec3 sky_side;
@@ -198,7 +198,7 @@ struct FramePush {
   uint first;        ///< pixel
   uint count;        ///< pixels
   uint threads;      ///< pixels, rays or grounds that the stage is for
-  int point;         ///< of the pixels
+  int point;         ///< index of the point in its pixel
   int light;         ///< index of the current ray among those to sun and sky
   uint tell_sights;  ///< 1
 };
@@ -234,15 +234,15 @@ struct FrameSeen {
   int asked;          ///< 0: no ray
   int kind;           ///< kFrameNothing, kFrameGround, kFrameWall
   ScarpTwoFloat t;    ///< time; for a ray that marches, its start
-  float per_time;     ///< of ScarpSent
-  ScarpTwoFloat end;  ///< time; kept of rays from the water
+  float per_time;     ///< as in ScarpSent
+  ScarpTwoFloat end;  ///< time; kept for rays from the water
   ivec2 cell;         ///< of ground and walls
   vec2 place;
   float sun_cosine;  ///< visible sun: the sum over its rays
   float sky;         ///< visible sky: its unblocked rays
-  float weight;      ///< of the light ray that is being traced
-  vec3 normal;       ///< of ground, for shading
-  vec3 light;        ///< of ground, before the air between
+  float weight;      ///< weight of the light ray that is being traced
+  vec3 normal;       ///< shading normal of ground
+  vec3 light;        ///< light of ground, without the air in front
   uint steps;
 };
 

@@ -60,7 +60,7 @@ bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTw
   }
   ScarpTwoFloat z = scarp_line_height(line, over);
   ScarpCell ground = scarp_cell(field, cell.x, cell.y, z.high);
-  if (ground.hole) return false;  // of solid ground: the march finds the walls at its rim
+  if (ground.hole) return false;  // the march finds the walls at the rims of holes
   if (z.low > scarp_surface(field, ground, place.x, place.y)) return false;
   seen.kind = kFrameWall;
   seen.t = over;

@@ -7,7 +7,7 @@
 
 SCARP_GLSL_BEGIN
 
-const vec3 kScarpSunlight = vec3(1.0f, 0.83f, 0.58f);  ///< of fog below a plain sky, towards the sun
+const vec3 kScarpSunlight = vec3(1.0f, 0.83f, 0.58f);  ///< colour of fog towards the sun, below a plain sky
 
 /// A colour seen through `metres` of haze along a ray with this unit direction. Haze has the colour of the sky behind
 /// it, and that of the horizon below.

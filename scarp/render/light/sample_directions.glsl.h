@@ -12,7 +12,7 @@ SCARP_FN real2 scarp_on_disc(real2 square) {
   real a = real(2.0) * square.x - real(1.0);
   real b = real(2.0) * square.y - real(1.0);
   if (a == real(0.0) && b == real(0.0)) return real2(real(0.0), real(0.0));
-  real quarter = real(0.78539816339744830962);  // of half a turn
+  real quarter = real(0.78539816339744830962);  // an eighth of a turn
   if (abs(a) > abs(b)) return real2(a * cos(quarter * (b / a)), a * sin(quarter * (b / a)));
   return real2(b * sin(quarter * (a / b)), b * cos(quarter * (a / b)));
 }

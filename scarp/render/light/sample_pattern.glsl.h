@@ -14,12 +14,12 @@ const uint kScarpPointsOfSun = 1u;
 
 /// The points of one pixel for one purpose.
 struct ScarpPixelPoints {
-  uint x;  ///< of the pixel's first point, before scrambling
+  uint x;  ///< coordinates of the pixel's first point, before scrambling
   uint y;
   uint seed_x;
   uint seed_y;
   uint seed_order;
-  int index_bits;  ///< of a pixel's block of the sequence
+  int index_bits;  ///< number of index bits in a pixel's block of the sequence
 };
 
 /// A bijection of 32 bits in which every bit of the result depends on all (Wellons 2018, "lowbias32").

@@ -31,7 +31,7 @@ class PixelPoints {
 
  private:
   friend class SamplePattern;
-  std::uint32_t x_ = 0, y_ = 0;  // of the pixel's first point, before scrambling
+  std::uint32_t x_ = 0, y_ = 0;  // coordinates of the pixel's first point, before scrambling
   std::uint32_t seed_x_ = 0, seed_y_ = 0, seed_order_ = 0;
   int index_bits_ = 0;
 };
@@ -50,7 +50,7 @@ class SamplePattern {
 
  private:
   std::uint32_t seed_;
-  int index_bits_;  // of a pixel's block of the sequence
+  int index_bits_;  // number of index bits in a pixel's block of the sequence
 };
 
 }  // namespace scarp

@@ -25,7 +25,7 @@ struct ScarpSky {
   vec3 zenith;        ///< Y, x, y at the zenith, divided by Perez's formula at the zenith
   vec3 horizon;       ///< mean colour of the horizon, linear light
   vec3 ground;        ///< pale ground below the horizon, linear light
-  vec3 disc;          ///< of the sun, linear light
+  vec3 disc;          ///< radiance of the sun's disc, linear light
   float disc_square;  ///< squared chord of the disc's angular radius on the unit sphere; 0: invisible
 };
 

@@ -6,7 +6,7 @@ namespace scarp {
 
 struct SunSettings {
   double azimuth_deg = 315;  ///< compass azimuth, clockwise from true north; finite
-  double altitude_deg = 45;  ///< of its middle above the horizon; above 0, at most 90
+  double altitude_deg = 45;  ///< altitude of its centre above the horizon; above 0, at most 90
   double size_deg = 0.533;   ///< apparent diameter, for soft shadows; 0 (a point) to 90
 };
 

@@ -37,7 +37,7 @@ void validate(const ComancheSettings& settings) {
 double default_reach(const HeightField& field) { return std::max(field.width(), field.depth()); }
 
 Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height) {
-  constexpr double kAbove = 1.0, kDown = 0.2;  // of the relief; of the distance ahead
+  constexpr double kAbove = 1.0, kDown = 0.2;  // fractions of the relief and of the distance ahead
   const double low = field.min_height(), relief = field.max_height() - low;
   const double x = 0.3 * field.width(), y = 0.1 * field.depth();
   dvec3 eye(x, y, low + kAbove * relief);

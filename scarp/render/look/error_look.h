@@ -54,9 +54,9 @@ struct ErrorCounts {
   std::string judges{};                          ///< names of the judges' marches
   std::vector<std::string> caveats{};            ///< Scene::caveats() of the judged scene
   double tolerance_m = 0;           ///< along the ray, of the field with the smallest cells; 0: fields have no cells
-  double share = 0;                 ///< of the distance, the tolerance of fields without cells
+  double share = 0;                 ///< tolerance of fields without cells, as a fraction of the distance
   std::int64_t proven = 0;          ///< pixels of a function that interval bisection decided
-  std::int64_t contradictions = 0;  ///< of those, pixels where the judge disagrees: 0, unless there is a bug
+  std::int64_t contradictions = 0;  ///< pixels among those where the judge disagrees: 0 unless there is a bug
 
   std::int64_t operator[](Verdict verdict) const { return pixels[static_cast<std::size_t>(verdict)]; }
 };

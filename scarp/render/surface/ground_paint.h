@@ -28,7 +28,8 @@ struct Drape {
   int height = 0;                  ///< pixels, >= 1
   std::vector<std::uint8_t> rgba;  ///< 4 bytes per pixel, sRGB, from the north-west; opacity 0 shows the ground below
   dvec2 first{0.0}, last{1.0};     ///< corners of the first and the last pixel, last > first
-  bool mirrored = false;  ///< for an extent mirrored as by source/mirrored.h; fractions then refer to its quarter
+  bool mirrored =
+      false;  ///< whether the extent is mirrored as by source/mirrored.h; fractions then refer to its quarter
 };
 
 struct GroundPaintSettings {
@@ -53,7 +54,7 @@ struct PaintExtent {
   double low = 0, high = 1;      ///< heights in metres
   double exaggeration = 1;       ///< factor contained in heights
   double cell = 1;               ///< metres of a cell or voxel
-  dvec2 origin{0.0}, size{1.0};  ///< of the overlay, in metres: its south-west corner, and east and north from there
+  dvec2 origin{0.0}, size{1.0};  ///< of the overlay, in metres: south-west corner, and extent to the east and north
   bool repeats = false;          ///< whether the overlay repeats
 };
 

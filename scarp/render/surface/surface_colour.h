@@ -24,7 +24,7 @@ class SurfaceColours {
   vec3 colour(std::size_t material, const SceneSurface& surface) const;
 
   std::vector<Material> materials_;
-  std::vector<std::optional<Ramp>> ramps_;  // by material; of those that have a ramp
+  std::vector<std::optional<Ramp>> ramps_;  // by material; nullopt without a ramp
 };
 
 }  // namespace scarp

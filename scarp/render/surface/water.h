@@ -27,7 +27,7 @@ struct WaterSettings {
   double turbidity = 0.04;         ///< absorption per metre, the same for all colours; >= 0
   vec3 srgb{0.10f, 0.25f, 0.33f};  ///< colour of deep water, sRGB 0..1
   double waves = 0.02;             ///< mean slope of the surface (root mean square), 0..0.5; 0: a mirror
-  double wavelength = 0;           ///< of the longest wave in metres, >= 0; 0: two cells or voxels
+  double wavelength = 0;           ///< length of the longest wave in metres, >= 0; 0: two cells or voxels
   bool refraction = true;          ///< whether rays continue to the bottom; false: the water has one colour
   bool reflection = true;          ///< whether reflected rays are traced; false: they see only the sky
 };
@@ -53,7 +53,7 @@ class Water {
   struct Meeting {
     double t;                  ///< in lengths of the ray's direction
     dvec3 normal;              ///< unit, of the still water: up, or level at the sides of the basin
-    std::optional<Hit> sea{};  ///< where is_sea() holds: object and cell
+    std::optional<Hit> sea{};  ///< set where is_sea() is true: object and cell
   };
   /// Returns where a ray enters the water from outside, within its range; a surface may be hit before. Returns nullopt
   /// if the ray starts in the water, over holes of a terrain, and where the ground is above the level.

@@ -24,7 +24,7 @@ bool is_solid(double value, std::optional<double> from) { return from ? value >=
 
 // Source of the voxels of a grid: from(v) in the file, with the axes rotated.
 struct FromFile {
-  ivec3 size;  // of the grid
+  ivec3 size;  // size of the grid
   LatticeRotation turn, back;
 
   // A quarter turn about x: the file's y becomes z.

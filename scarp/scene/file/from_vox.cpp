@@ -278,7 +278,7 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
   std::vector<std::uint32_t> model_of(instances.size());
   std::map<int, std::uint32_t> shared;
   std::vector<VoxelGrid*> grids;
-  std::vector<ivec3> lows;  // of the grids in their models
+  std::vector<ivec3> lows;  // lower corners of the grids in their models
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const auto own = cut.find(i);
     const auto next = static_cast<std::uint32_t>(grids.size());

@@ -30,7 +30,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostShown = 60;  // of a position or a name
+constexpr std::size_t kMostShown = 60;  // characters of a position or a name
 
 std::string shortened(const std::string& text) {
   return text.size() <= kMostShown ? text : text.substr(0, kMostShown) + "...";
@@ -39,9 +39,9 @@ std::string shortened(const std::string& text) {
 // One level of the containers that the parser is in.
 struct Level {
   bool list;
-  std::size_t index = 0;         // of a list
-  std::string key{};             // of an object
-  std::set<std::string> keys{};  // that occurred
+  std::size_t index = 0;         // position in a list
+  std::string key{};             // current key of an object
+  std::set<std::string> keys{};  // keys so far
 };
 
 std::string pointer(const std::vector<Level>& levels) {

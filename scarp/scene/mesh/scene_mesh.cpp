@@ -52,7 +52,7 @@ struct MeshRay {
   dvec3 start{0.0};      ///< near the mesh
   dvec3 direction{0.0};  ///< unit
   double start_s = 0;    ///< t of `start`, relative to the world ray's origin
-  double length = 1;     ///< of the world ray's direction: s = t * length
+  double length = 1;     ///< length of the world ray's direction: s = t * length
   double first_t = 0, last_t = 0;
   double reach = 0;              ///< s at which the mesh or the range ends
   std::uint32_t passed = kNone;  ///< the triangle that the ray starts on

@@ -39,7 +39,7 @@ SceneFieldPtr scene_mesh(const TriangleMesh& mesh);
 /// Edges of a mesh. It is closed, and has an inside, if none is open.
 struct MeshEdges {
   std::size_t all = 0;
-  std::size_t open = 0;  ///< that belong to an odd number of triangles
+  std::size_t open = 0;  ///< edges that belong to an odd number of triangles
 };
 /// Returns nullopt for other kinds of field.
 std::optional<MeshEdges> mesh_edges(const SceneField& field);

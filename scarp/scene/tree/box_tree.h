@@ -151,7 +151,7 @@ struct BoxTree::Beam {
   /// Lengths along the beam: (t - start) * per_t of each ray; per_t is 0 for rays that miss the outer box.
   alignas(16) std::array<double, kRays> start, per_t;
   std::uint64_t inside = 0;  ///< a bit for each ray that enters the outer box
-  float end;                 ///< of the ray that ends last
+  float end;                 ///< end of the ray that ends last
 
   /// End of the beam, from the ends of its rays.
   float end_of(std::span<const double> t_max) const;
@@ -160,8 +160,8 @@ struct BoxTree::Beam {
   friend BoxTree;
   enum class Way { up, down, both };
   struct Axis {
-    Way way;                 // of all its rays
-    float low, high;         // of the origins
+    Way way;                 // common to all rays
+    float low, high;         // bounds of the origins
     float per_up, per_down;  // length per distance for the steepest rays in this direction
     float per_least;         // for the flattest rays, if all have the same sign
   };

@@ -89,7 +89,7 @@ class BoxTreeEditor {
   std::vector<Slot> leaf_;            // per object
   std::vector<std::uint8_t> height_;  // per node: levels below it, itself included
   std::vector<std::uint32_t> unused_;
-  double area_ = 0, area_built_ = 0;  // of the boxes of all nodes but the root
+  double area_ = 0, area_built_ = 0;  // surface area of the boxes of all nodes except the root
   std::uint64_t edits_ = 0, edits_allowed_ = 0;
   bool lost_ = false;  // whether an edit was left to rebuild()
 };

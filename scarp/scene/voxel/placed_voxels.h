@@ -37,7 +37,7 @@ WorldBox world_box(const PlacedVoxels& voxels);
 
 /// Options of readers for the models of files.
 struct VoxelFileOptions {
-  std::string_view march{};      ///< of voxel_marches(); empty: see file_voxel_march()
+  std::string_view march{};      ///< name in voxel_marches(); empty: see file_voxel_march()
   bool surface_colours = false;  ///< VoxelGrid::drop_hidden_entries(): saves memory; interior colours are lost
   VoxelRounding rounding{};
 };

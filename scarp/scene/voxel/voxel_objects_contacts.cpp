@@ -35,7 +35,7 @@ bool VoxelObjects::overlaps(const TurnedBox& box) const {
         const Turn& turn = turns_[object.turn];
         TurnedBox own = box;
         own.centre = turn.grid_from_world * (box.centre - object.origin);
-        own.turn = turn.grid_from_world * box.turn;  // with the scale
+        own.turn = turn.grid_from_world * box.turn;  // includes the scale
         found = scarp::overlaps(models_[object.model]->grid(), own);
         return found ? -1.0 : 0.0;
       });
