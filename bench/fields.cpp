@@ -26,7 +26,7 @@ Surface surface_of(const FieldOptions& options) {
   return options.surface == "triangles" ? Surface::triangles : Surface::bilinear;
 }
 
-// The slope is taken at this many cells of every row.
+// Number of cells of every row at which the slope is sampled.
 constexpr int kSlopesPerRow = 64;
 
 double mean_slope_deg(const HeightField& field) {
@@ -72,7 +72,7 @@ BenchField procedural(const FieldOptions& options) {
 BenchField from_file(const std::string& path, [[maybe_unused]] Surface surface) {
 #ifdef SCARP_BENCH_GDAL
   Raster raster = read_raster(path, {});
-  // From metres to cells, in all three axes.
+  // Converts metres to cells along all three axes.
   const double cell_m = raster.georeference.cell_x_m;
   raster.georeference.cell_y_m /= cell_m;
   raster.georeference.cell_x_m = 1;

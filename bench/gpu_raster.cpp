@@ -7,10 +7,9 @@
 // depth, 1/z, changes by g_x, g_y per pixel, from the triangle that the ray has hit; with v = 2^-24 the two may differ
 // by
 //
-//   s_x |g_x| + s_y |g_y|         corners are drawn up to s pixels off their positions: 2^-(bits + 1) by the sub-pixel
-//   grid
-//                                 of the device, and 8 v of the terms of x and w (6 roundings: the matrix,
-//                                 the sample minus the eye's, a product, three sums); the same for y
+//   s_x |g_x| + s_y |g_y|         corners are drawn up to s pixels off their positions: 2^-(bits + 1) by the device's
+//                                 sub-pixel grid, and 8 v of the terms of x and w (6 roundings: the matrix, the sample
+//                                 minus the eye's, a product, three sums); the same for y
 //   (8 v S_w / z + 4 v) / z       w itself, the division, the depth as a float; the rays' directions as floats
 //   4 v (1/z + W |g_x| + H |g_y|) the plane through a triangle's depths, W x H pixels
 //   d N_z / (z |N P|)             the march: up to d = 2 rho lower or higher (doc/dev/numerics.md)

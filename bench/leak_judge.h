@@ -3,7 +3,8 @@
 // right.
 //
 // Everything is computed from world coordinates in long double with a 64-bit mantissa, so the judge's own rounding is
-// 2^-11 of the marches'. B below is the bound of rounding errors of a clearance in a march: 16 u (abs(o_z) + abs(d_z t)
+// 2^-11 of the marches'. Below, B is the bound on the rounding error of a clearance in a march: 16 u (abs(o_z) +
+// abs(d_z t)
 // + max abs(sample) + (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md.
 // Decisions within B are not judged. None of the marches' own rules are used.
 #pragma once

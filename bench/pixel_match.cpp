@@ -51,7 +51,7 @@ class Rows {
     bool same = static_cast<bool>(hit) == covered && (!hit || face == seen.face);
     if (same && hit) {
       const int axis = static_cast<int>(face.face) / 2;
-      // Twice as much along slow axes (kSlow of march/voxel/voxel_ray.h).
+      // The error is twice as large along slow axes (kSlow of march/voxel/voxel_ray.h).
       const dvec3 d = glm::abs(ray.direction);
       const double off = off_ * (d[axis] < 0x1p-14 * std::max({d.x, d.y, d.z}) ? 2 : 1);
       const double error = std::abs((hit.t - seen.t) * ray.direction[axis]) / off;
@@ -110,7 +110,7 @@ PixelMatch compare_with_quads(const RasterPicture& quads, std::span<const Hit> h
                               const PictureFrame& frame) {
   const ivec3 size = grid.bounds().high - grid.bounds().low;
   const double longest = std::max({size.x, size.y, size.z});
-  // In metres; rounding in double is far below.
+  // In metres; the rounding error in double is far smaller.
   const double off = (std::ldexp(1, -21) + std::ldexp(longest, -29)) * side * (1 + std::ldexp(1, -10));
   PixelMatch match;
   const dvec2 corner = frame.place(0, 0) * frame.pixel;

@@ -53,7 +53,7 @@ TEST_F(PixelMatchOnDevice, MatchesTheReferencePicture) {
   expect_match("standard", 1, pixel_match_frames(320, 180)[0], "voxel-octants");
 }
 
-// Every object has a quad or three.
+// Every object shows one to three quads.
 TEST_F(PixelMatchOnDevice, MatchesFromInside) {
   expect_match("degenerate", 4, pixel_match_frames(320, 180).back(), "voxel-bricks");
 }

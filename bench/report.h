@@ -26,7 +26,8 @@ void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows
 /// A number with this many significant digits, as short as possible; "-" for null.
 std::string short_number(const nlohmann::ordered_json& value, int digits = 3);
 
-/// A table of text: the first row is the head. The first `left` columns are left-aligned, the others right-aligned.
+/// Prints a table of text; the first row is the heading. The first `left` columns are left-aligned, the others
+/// right-aligned.
 void print_table(const std::vector<std::vector<std::string>>& lines, std::size_t left);
 
 /// Processor, cores, system, compiler, Embree: one line.

@@ -33,7 +33,7 @@ struct SweepsOptions {
   int size = 1025;      // samples per side of the field, >= 1025
   int sweeps = 20'000;  // of each class compared with Bullet; 0: none
   int repeats = 5;
-  std::int64_t judged = 100'000;  // random ones over small fields and voxels
+  std::int64_t judged = 100'000;  // number of random sweeps over small fields and voxels
   std::uint64_t seed = 1;
 };
 
@@ -57,7 +57,7 @@ HeightField as_triangles(const HeightField& field) {
 
 struct Class {
   std::string name;
-  double radius, height, least, most;  // metres, of capsules the length of the segment; of the motion
+  double radius, height, least, most;  // metres; height: length of a capsule's segment; least, most: of the motion
   bool along;                          // over the ground, not through the air
   int fewer;                           // one in this many: Bullet tests all triangles of a box around the motion
 };

@@ -18,10 +18,10 @@
 namespace scarp::bench {
 namespace {
 
-// `view`: the window, measured by view.sh on a display without a screen.
+// `view`: the window, measured by view.sh on a virtual display.
 struct ViewOptions {
   std::vector<int> sizes{2049, 4097, 8193};
-  std::string csv;  // file to write the rows to; empty: the output
+  std::string csv;  // file to write the rows to; empty: standard output
 };
 
 // Throws Error if the script cannot be started; otherwise does not return.

@@ -53,7 +53,7 @@ struct SceneFieldParts {
     const Field* field;
     const Entry* march;
     const MarchSettings* settings;
-    double seam = 0;  ///< of heights: as HeightTarget::seam
+    double seam = 0;  ///< for height fields: as HeightTarget::seam
   };
   using Heights = Marched<HeightField, HeightMarchEntry>;
   using Function = Marched<HeightFunction, FunctionMarchEntry>;

@@ -53,7 +53,7 @@ class MapInput {
   /// Notes for users, printed last.
   std::vector<std::string> notes;
 
-  /// The coefficient of --cc, else 6/7 on Earth and 1 elsewhere.
+  /// The coefficient of --cc, or by default 6/7 on Earth and 1 on other bodies.
   SightCurvature curvature() const;
   std::string curvature_text() const;
 

@@ -54,7 +54,7 @@ class PreparedScene {
   std::string on_device() const;
   /// Box of the scene; for unbounded scenes, a point: the centre of the picture's extent.
   WorldBox scene_box() const;
-  /// The factor between heights of the file and z.
+  /// The ratio of z to heights in the file.
   double exaggeration() const;
 
   /// The camera of the options.

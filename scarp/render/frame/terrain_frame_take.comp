@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/render/frame/terrain_frame_stage.glsl.h"
-// Reads the ground through the stage.
+// The next file reads the ground through the stage.
 #include "scarp/march/height/ray_blocks.glsl.h"
 #include "scarp/march/height/surface_normal.glsl.h"
 

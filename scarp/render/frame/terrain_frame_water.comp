@@ -8,7 +8,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/render/frame/terrain_frame_stage.glsl.h"
-// These include it for ground and directions.
+// The following files use its definitions of ground and directions.
 #include "scarp/march/height/cell_surface.glsl.h"
 #include "scarp/render/frame/terrain_frame_meet_water.glsl.h"
 #include "scarp/render/frame/terrain_frame_place.glsl.h"

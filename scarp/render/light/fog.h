@@ -5,8 +5,8 @@
 //
 //   distance    T = exp(-s t)                           the same air everywhere (Bouguer)
 //   height      T = exp(-integral of s exp(-(z - z0) / H)), air that thins out upwards by the factor e every H metres:
-//               with the ray's z = z_eye + t d the integral is s exp(-(z_eye - z0) / H) t (1 - exp(-x)) / x, x = t d /
-//               H
+//               with the ray's z = z_eye + t d the integral is s exp(-(z_eye - z0) / H) t (1 - exp(-x)) / x, where
+//               x = t d / H
 //   iterations  T = 1 - steps / most steps              cost of the march, as in the founding text on the semi-
 //               voxel caster: it depends on how the march steps, and is kept for comparison
 //

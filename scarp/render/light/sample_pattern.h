@@ -2,16 +2,15 @@
 // Positions of a pixel's samples in the unit square: low-discrepancy points that depend only on pixel and seed, and are
 // therefore the same in every run and for any number of threads.
 //
-//   points   the first two dimensions of Sobol's sequence (Sobol 1967), a (0,2)-sequence: of 2^m consecutive points
-//   from
-//            a multiple of 2^m on, every elementary interval of area 2^-m holds exactly one
+//   points   the first two dimensions of Sobol's sequence (Sobol 1967), a (0,2)-sequence: every elementary interval
+//            of area 2^-m contains exactly one of 2^m consecutive points that start at a multiple of 2^m
 //   random   Owen's nested uniform scrambling (Owen 1995), by hashing (Laine and Karras 2011; the hash is Vegdahl's of
 //            2021): unbiased, and the intervals keep their one point each
 //   pixels   take blocks of ONE sequence, in Morton order with its digits shuffled (Ahmed and Wonka 2020): neighbours
 //            complement each other, so the error of the picture is blue noise, which the eye averages
 //
 //            and take their points in a shuffled order, again nested (Burley 2020); otherwise the upper left corner of
-//            every pixel would look at the same part of the sun
+//            every pixel would sample the same part of the sun
 //
 // A pixel's samples may be drawn in several consecutive passes: each pass is stratified, and so are all of them
 // together.

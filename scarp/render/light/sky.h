@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Settings of the sky.
 //
-//   plain       a pale gradient without a sun, against which terrain is distinct; sun and sky together give white light
+//   plain       a pale gradient without a sun, against which terrain stands out; sun and sky together give white light
 //   scattering  sunlight scattered in clear air (A. J. Preetham, P. Shirley, B. Smits, "A practical analytic model for
 //               daylight", SIGGRAPH 1999), with the sun's disc. The model sets the colours and relative brightness of
 //               sky, sun and ground: a low sun is orange

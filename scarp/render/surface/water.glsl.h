@@ -29,7 +29,7 @@ SCARP_FN real3 scarp_refracted(real3 direction, real3 normal, real index) {
 /// The minimum sine by which mirrored rays rise: below it they would travel over a thousand metres per metre of height.
 const float kScarpLeastMirroredRise = 1e-3f;
 
-/// Waves must not send a mirrored ray into the water: it then runs along the surface.
+/// If waves would send a mirrored ray into the water, it runs along the surface instead.
 SCARP_FN real3 scarp_kept_above(real3 mirrored) {
   real least = real(kScarpLeastMirroredRise);
   return mirrored.z < least ? normalize(real3(mirrored.x, mirrored.y, least)) : mirrored;

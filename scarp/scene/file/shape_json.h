@@ -3,8 +3,8 @@
 //
 //   {"sphere": {"radius": 1, "at": [0, 0, 2]}, "material": "red"}
 //   {"box": {"half": [1, 2, 0.5], "round": 0.1, "at": ..}}          {"plane": {"normal": [0, 0, 1], "height": 0}}
-//   {"capsule": {"from": [..], "to": [..], "radius": 1}}             {"cylinder": {"radius": 1, "half_height": 2, "at":
-//   ..}}
+//   {"capsule": {"from": [..], "to": [..], "radius": 1}}
+//   {"cylinder": {"radius": 1, "half_height": 2, "at": ..}}
 //   {"cone": {"radius": 1, "height": 2, "top": 0, "at": ..}}         {"torus": {"radius": 2, "tube": 0.5, "at": ..}}
 //   {"ellipsoid": {"radii": [3, 2, 1], "at": ..}}                    {"ground": "name of a field of the scene"}
 //   {"translate": [x, y, z], "of": SHAPE}                            {"scale": 2, "of": SHAPE}

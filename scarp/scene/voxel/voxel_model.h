@@ -30,7 +30,7 @@ void require_marchable(const VoxelMarchEntry& march, const ivec3& size);
 /// A scene must be built again after edits of its models, or be edited through a LiveScene (live_scene.h).
 class VoxelModel {
  public:
-  /// The part of the grid in which rays are followed.
+  /// The part of the grid in which rays are traced.
   enum class Extent {
     bounds,  ///< the box around its solid voxels
     grid,    ///< all of it, as in the founding post
@@ -58,7 +58,7 @@ class VoxelModel {
 
   const VoxelGrid& grid() const { return grid_; }
   const VoxelMarchEntry& march() const { return *march_; }
-  /// The voxels in which rays are followed; empty if none is solid.
+  /// The voxels in which rays are traced; empty if none is solid.
   const VoxelBox& box() const { return box_; }
   VoxelTarget target() const;
 
