@@ -5,7 +5,7 @@
 //   corner  (X, Y, W) = (right, up, forward) . (corner - eye), X and Y in pixels; W = 1 without perspective
 //   edge    e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign gives the side, e / |(e_x, e_y)| pixels away
 //   inside  all four edges have the sign of the quad; also right for quads that reach behind the eye
-//   depth that of the plane at (x, y): t = (k - eye_a) / direction_a
+//   depth   that of the plane at (x, y): t = (k - eye_a) / direction_a
 //
 // Sources: M. Olano, T. Greer, "Triangle scan conversion using 2D homogeneous coordinates", Graphics Hardware 1997;
 // J. Pineda, "A parallel algorithm for polygon rasterization", SIGGRAPH 1988.

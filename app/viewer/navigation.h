@@ -2,7 +2,7 @@
 // Navigation in a scene by mouse and keys: takes events and time, and returns cameras. Independent of window and
 // device.
 //
-//   orbit around a point; left drag turns, right or middle drag pans, the wheel moves closer
+//   orbit  around a point; left drag turns, right or middle drag pans, the wheel moves closer
 //   fly    W A S D Q E move, a drag looks around, the wheel changes the speed
 //   walk   as fly, 1.7 m above the ground; exact rays detect obstacles, so walls are never crossed
 //   top    a map, straight down; a drag pans, the wheel zooms towards the cursor

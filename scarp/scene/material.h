@@ -25,7 +25,7 @@ struct PlainColour {
 
 /// A ramp of render/surface/ramp.h over heights.
 struct HeightRamp {
-  std::string ramp;          ///< a name of ramp_names()
+  std::string ramp;          ///< a name from ramp_names()
   double low = 0, high = 1;  ///< metres of world z, low <= high
 };
 

@@ -53,7 +53,7 @@ class BlankPictures {
 
  private:
   int pictures_ = 0, blank_ = 0;
-  std::string first_, why_;  // of the first blank picture
+  std::string first_, why_;  // name and reason of the first blank picture
 };
 
 /// Returns a note for water below all ground; empty: there is none.

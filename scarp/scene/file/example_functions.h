@@ -19,8 +19,8 @@ std::span<const ExampleFunction> example_functions();
 /// Throws Error listing the names if the function is unknown.
 Function example_function(std::string_view name);
 
-/// Returns the function named in example_functions(), or else read from a JSON file at this path. Throws Error: unknown
-/// file, not JSON (with the line), or not a function (with the position in the file).
+/// Returns the function named in example_functions(), or else read from a JSON file at this path. Throws Error if the
+/// file is unknown, is not JSON (with the line), or is not a function (with the position in the file).
 Function read_function(const std::string& name_or_path);
 
 }  // namespace scarp

@@ -8,7 +8,7 @@
 namespace scarp {
 
 /// Entries are RGB in 24 bits. Grids are parts cut to the smallest box around their voxels; empty parts are omitted.
-/// Throws Error: unknown march, or more than 1 GiB of memory (16 bytes per voxel if that is more), before it is
+/// Throws Error for an unknown march, or more than 1 GiB of memory (16 bytes per voxel if that is more), before it is
 /// allocated.
 PlacedVoxels placed_voxels_from(const VoxelParts& file, const VoxelFileOptions& options = {});
 

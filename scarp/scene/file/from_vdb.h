@@ -9,8 +9,8 @@
 namespace scarp {
 
 /// A voxel is the cube around its grid point in the file. Entries are RGB in 24 bits; without colours, all voxels are
-/// plain. Throws Error: unknown march, no solid voxel, a grid too large for the march, or more than 4 GiB of memory,
-/// before it is allocated.
+/// plain. Throws Error for an unknown march, no solid voxel, a grid too large for the march, or more than 4 GiB of
+/// memory, before it is allocated.
 PlacedVoxels placed_voxels_from(const VdbVoxels& file, const VoxelFileOptions& options = {}, UpAxis up = UpAxis::z);
 
 }  // namespace scarp

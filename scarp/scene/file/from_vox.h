@@ -18,7 +18,7 @@ struct FromVoxOptions {
 /// because many programs do not write alpha. Where instances overlap, one voxel remains at each position, the one that
 /// MagicaVoxel shows: from the first instance in files of version 200 and later, from the last in older files. An
 /// instance that loses voxels gets its own model; all others share the models of the file. If instances coincide, one
-/// remains. Grids are models cut to the smallest box around their voxels. Throws Error: unknown march, too many
+/// remains. Grids are models cut to the smallest box around their voxels. Throws Error for an unknown march, too many
 /// overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it is allocated.
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options = {});
 

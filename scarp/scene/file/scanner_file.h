@@ -29,9 +29,9 @@ struct ScannerFile {
   std::vector<std::string> files;   ///< files that were read besides the file itself
 };
 
-/// Parses the text of a file in `folder`. Throws Error without the file's name: no JSON, missing, unknown and mistyped
-/// keys, values out of range, a path whose times do not rise. The message names the position as a JSON pointer and the
-/// expected value.
+/// Parses the text of a file in `folder`. Throws Error, without the file's name, for text that is not JSON, missing,
+/// unknown and mistyped keys, values out of range, and a path whose times do not rise. The message names the position
+/// as a JSON pointer and the expected value.
 ScannerFile parse_scanner(std::string_view text, const std::string& folder);
 
 /// Reads a file. Throws Error naming it.

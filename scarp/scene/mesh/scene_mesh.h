@@ -33,7 +33,7 @@ constexpr double kMeshRounding = 0x1p-18;
 /// triangle and hits neither it nor anything closer than kMeshRounding. Rays are moved to the mesh in double before
 /// they are rounded to float32, so distance and coordinates far from the origin cost no accuracy.
 ///
-/// Throws Error: no triangles, corners that are not finite, out of memory.
+/// Throws Error if there are no triangles, corners are not finite, or memory is insufficient.
 SceneFieldPtr scene_mesh(const TriangleMesh& mesh);
 
 /// Edges of a mesh. It is closed, and has an inside, if none is open.
