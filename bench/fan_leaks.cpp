@@ -2,8 +2,8 @@
 // `scarp-bench leaks --fans`: a large number of fans compared with the scalar march, which `leaks` judges.
 //
 // Eyes are at any height over nodes, edges and cells, beside the field, far from it and below it. Columns go through
-// nodes and points of edges, or are those of cameras and scanners; some have unordered rays. Over fields that wrap, rays
-// end, most of them some copies on.
+// nodes and points of edges, or are those of cameras and scanners; some have unordered rays. Over fields that wrap,
+// rays end, most of them some copies on.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: MIT The marches of well-known terrain shaders, each as a technique from the table and its
-// numbers. The shaders' code is not included. Lengths are in metres; for a shader with other units, `numbers` states
-// the conversion. `scarp-bench functions --presets` measures what each preset misses;
-// doc/user/from-height-to-distance.md shows the results.
+// SPDX-License-Identifier: MIT
+// The marches of well-known terrain shaders, each as a technique from the table and its numbers. The shaders' code is
+// not included. Lengths are in metres; for a shader with other units, `numbers` states the conversion. `scarp-bench
+// functions --presets` measures what each preset misses; doc/user/from-height-to-distance.md shows the results.
 #pragma once
 
 #include <span>
