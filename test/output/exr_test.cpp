@@ -2,7 +2,6 @@
 #include "scarp/output/exr.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,23 +12,15 @@
 #include "full_disk.h"
 #include "output/read_exr.h"
 #include "scarp/base/error.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ExrFile : public testing::Test {
+class ExrFile : public testing::Test, protected test::Scratch {
  protected:
-  ExrFile() {
-    std::string name = (fs::temp_directory_path() / "scarp-exr-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~ExrFile() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
-
-  fs::path folder_;
 };
 
 // Incompressible numbers.
@@ -73,7 +64,7 @@ TEST_F(ExrFile, RoundTrips) {
     const Imath::M44f& matrix = read.matrices.at("worldToNDC");
     EXPECT_EQ(matrix[3][1], 13) << "row by row";
   }
-  EXPECT_EQ(files(), 1) << "temporary files were left behind";
+  EXPECT_EQ(files().size(), 1u) << "temporary files were left behind";
 }
 
 TEST_F(ExrFile, FullDiskKeepsTheOldPicture) {
@@ -94,7 +85,7 @@ TEST_F(ExrFile, FullDiskKeepsTheOldPicture) {
     }
     EXPECT_NE(message.find("a.exr"), std::string::npos) << limit_of_size << ": '" << message << "'";
     EXPECT_EQ(test::read_exr(path("a.exr")).width, 2);
-    EXPECT_EQ(files(), 2) << "temporary files were left behind";
+    EXPECT_EQ(files().size(), 2u) << "temporary files were left behind";
   }
 }
 
@@ -111,7 +102,7 @@ TEST_F(ExrFile, RejectsInvalidPictures) {
     EXPECT_THROW(write_exr(path("a.exr"), bad), Error);
   }
   EXPECT_THROW(write_exr(path("no/folder/a.exr"), {1, 1, {good}}), Error);
-  EXPECT_EQ(files(), 0);
+  EXPECT_EQ(files().size(), 0u);
 }
 
 }  // namespace

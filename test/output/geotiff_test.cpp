@@ -4,7 +4,6 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <random>
@@ -13,24 +12,16 @@
 #include "full_disk.h"
 #include "scarp/base/error.h"
 #include "scarp/output/jpeg.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
 
 namespace fs = std::filesystem;
 
-class RasterOutput : public testing::Test {
+class RasterOutput : public testing::Test, protected test::Scratch {
  protected:
-  RasterOutput() {
-    std::string name = (fs::temp_directory_path() / "scarp-raster-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-    GDALAllRegister();
-  }
-  ~RasterOutput() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
-
-  fs::path folder_;
+  RasterOutput() { GDALAllRegister(); }
 };
 
 std::vector<std::uint8_t> noise(int width, int height, int bytes) {
@@ -76,7 +67,7 @@ TEST_F(RasterOutput, RoundTrips) {
         ASSERT_EQ(bytes[i], band < 3 ? rgb[3 * i + static_cast<std::size_t>(band)] : alpha[i]) << band << " " << i;
     }
   }
-  EXPECT_EQ(files(), 1) << "other files were left behind";
+  EXPECT_EQ(files().size(), 1u) << "other files were left behind";
 }
 
 TEST_F(RasterOutput, WritesNoGeoreferenceWithoutOne) {
@@ -100,7 +91,7 @@ TEST_F(RasterOutput, JpegIsCloseToThePicture) {
   ASSERT_EQ(read->RasterIO(GF_Read, 0, 0, 64, 48, bytes.data(), 64, 48, GDT_Byte, 3, nullptr, 3, 3 * 64, 1, nullptr),
             CE_None);
   for (std::size_t i = 0; i < rgb.size(); ++i) ASSERT_NEAR(bytes[i], rgb[i], 12) << i;
-  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(files().size(), 1u);
 }
 
 TEST_F(RasterOutput, FullDiskLeavesNoFile) {
@@ -117,7 +108,7 @@ TEST_F(RasterOutput, FullDiskLeavesNoFile) {
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find(name + ": cannot be written"), 0u) << error.what();
       }
-      EXPECT_EQ(files(), 0);
+      EXPECT_EQ(files().size(), 0u);
     }
   }
 }

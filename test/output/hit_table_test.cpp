@@ -2,7 +2,6 @@
 #include "scarp/output/hit_table.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,28 +12,19 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
 
 namespace fs = std::filesystem;
 
-class HitTables : public testing::Test {
+class HitTables : public testing::Test, protected test::Scratch {
  protected:
-  HitTables() {
-    std::string name = (fs::temp_directory_path() / "scarp-table-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~HitTables() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   static std::string bytes_of(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  bool empty() const { return fs::is_empty(folder_); }
-
-  fs::path folder_;
 };
 
 HitRow a_hit() {

@@ -2,7 +2,6 @@
 #include "scarp/output/png.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <random>
@@ -11,23 +10,15 @@
 #include "full_disk.h"
 #include "output/read_png.h"
 #include "scarp/base/error.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Png : public testing::Test {
+class Png : public testing::Test, protected test::Scratch {
  protected:
-  Png() {
-    std::string name = (fs::temp_directory_path() / "scarp-png-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~Png() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
-
-  fs::path folder_;
 };
 
 // Incompressible bytes.
@@ -47,7 +38,7 @@ TEST_F(Png, RoundTrips) {
     EXPECT_EQ(read.height, height);
     EXPECT_EQ(read.bytes, bytes) << width << " x " << height;
   }
-  EXPECT_EQ(files(), 1) << "temporary files were left behind";
+  EXPECT_EQ(files().size(), 1u) << "temporary files were left behind";
 }
 
 TEST_F(Png, FullDiskKeepsTheOldPicture) {
@@ -62,14 +53,14 @@ TEST_F(Png, FullDiskKeepsTheOldPicture) {
   }
   EXPECT_NE(message.find("a.png"), std::string::npos) << "message: '" << message << "'";
   EXPECT_EQ(test::read_png(path("a.png")).width, 2);
-  EXPECT_EQ(files(), 1) << "temporary files were left behind";
+  EXPECT_EQ(files().size(), 1u) << "temporary files were left behind";
 }
 
 TEST_F(Png, RejectsPicturesWithoutPixels) {
   const std::uint8_t byte = 0;
   EXPECT_THROW(write_png(path("a.png"), {&byte, 0, 1}), Error);
   EXPECT_THROW(write_png(path("a.png"), {nullptr, 1, 1}), Error);
-  EXPECT_EQ(files(), 0);
+  EXPECT_EQ(files().size(), 0u);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "scarp/output/point_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -18,6 +17,7 @@
 #include "base/refusal.h"
 #include "full_disk.h"
 #include "scarp/base/error.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
@@ -49,16 +49,8 @@ class Bytes {
   std::string bytes_;
 };
 
-class PointFiles : public testing::Test {
+class PointFiles : public testing::Test, protected test::Scratch {
  protected:
-  PointFiles() {
-    std::string name = (fs::temp_directory_path() / "scarp-points-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~PointFiles() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  bool empty() const { return fs::is_empty(folder_); }
   Bytes written(const std::string& name, const std::vector<ScanPoint>& points, const LasSettings& las = {}) const {
     PointFile file(path(name), las);
     file.add(points);
@@ -68,8 +60,6 @@ class PointFiles : public testing::Test {
     std::ifstream in(path(name), std::ios::binary);
     return Bytes({std::istreambuf_iterator<char>(in), {}});
   }
-
-  fs::path folder_;
 };
 
 std::vector<ScanPoint> some_points(std::size_t count) {

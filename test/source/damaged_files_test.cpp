@@ -49,17 +49,17 @@ TEST_F(DamagedFiles, NamesADirectory) {
 }
 TEST_F(DamagedFiles, NamesAnEmptyFile) {
   for (const char* name : {"e.tif", "e.npy", "e.npz", "N00E010.hgt"})
-    expect_says(read_error(write_bytes(name, "")), "0 bytes", fmt::format("{}", name));
+    expect_says(read_error(write(name, "")), "0 bytes", fmt::format("{}", name));
 }
 TEST_F(DamagedFiles, RecognisesGitLfsPointers) {
   const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
   for (const char* name : {"p.tif", "p.npy", "p.npz"})
-    expect_says(read_error(write_bytes(name, pointer)), "git lfs pull", fmt::format("{}", name));
+    expect_says(read_error(write(name, pointer)), "git lfs pull", fmt::format("{}", name));
 }
 TEST_F(DamagedFiles, RejectsOtherFiles) {
-  expect_says(read_error(write_bytes("t.tif", "hello")), "not a raster format");
-  expect_says(read_error(write_bytes("t.tif", std::string(5000, '\0'))), "not a raster format");
-  expect_says(read_error(write_bytes("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
+  expect_says(read_error(write("t.tif", "hello")), "not a raster format");
+  expect_says(read_error(write("t.tif", std::string(5000, '\0'))), "not a raster format");
+  expect_says(read_error(write("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
 }
 
 // The correct advice, and nothing that only GDAL's developers understand.
@@ -131,18 +131,18 @@ TEST_F(DamagedFiles, ReportsTruncatedArchives) {
 
 TEST_F(DamagedFiles, NamesTheSourceOfAVirtualRaster) {
   const auto vrt_of = [&](const std::string& source, int relative) {
-    return write_bytes("v.vrt", fmt::format("<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand "
-                                            "dataType=\"Int16\" band=\"1\"><SimpleSource><SourceFilename "
-                                            "relativeToVRT=\"{}\">{}</SourceFilename><SourceBand>1</SourceBand>"
-                                            "</SimpleSource></VRTRasterBand></VRTDataset>",
-                                            relative, source));
+    return write("v.vrt", fmt::format("<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand "
+                                      "dataType=\"Int16\" band=\"1\"><SimpleSource><SourceFilename "
+                                      "relativeToVRT=\"{}\">{}</SourceFilename><SourceBand>1</SourceBand>"
+                                      "</SimpleSource></VRTRasterBand></VRTDataset>",
+                                      relative, source));
   };
   write_tiff("two.tif", GDT_Int16, 2, 2, {1, 2, 3, 4});
   EXPECT_NO_THROW(read_raster(vrt_of("two.tif", 1), {}));
   for (const int relative : {0, 1}) {
     const auto named = [&](const std::string& name) { return relative ? name : path(name); };
     expect_says(read_error(vrt_of(named("none.tif"), relative)), "source '" + path("none.tif") + "' does not exist");
-    write_bytes("p.tif", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n");
+    write("p.tif", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n");
     const std::string text = read_error(vrt_of(named("p.tif"), relative));
     expect_says(text, "source '" + path("p.tif") + "': Git LFS pointer");
     expect_says(text, "git lfs pull");
@@ -212,9 +212,9 @@ TEST_F(DamagedFiles, RejectsAKeyOutsideArchives) {
 TEST_F(DamagedFiles, RejectsRastersLargerThanMemoryUpFront) {
   // A sparse file: 100 GB would be needed for 200,000 x 130,000 floats, the file has some MB.
   const std::string file = path("huge.vrt");
-  write_bytes("huge.vrt",
-              "<VRTDataset rasterXSize=\"2000000\" rasterYSize=\"2000000\"><VRTRasterBand dataType=\"Float32\" "
-              "band=\"1\"/></VRTDataset>");
+  write("huge.vrt",
+        "<VRTDataset rasterXSize=\"2000000\" rasterYSize=\"2000000\"><VRTRasterBand dataType=\"Float32\" "
+        "band=\"1\"/></VRTDataset>");
   const std::string text = read_error(file);
   expect_says(text, "2000000 x 2000000");
   expect_says(text, "--window");

@@ -192,8 +192,8 @@ TEST_F(ExrRaster, RejectsASubsampledChannel) {
 
 TEST_F(ExrRaster, RejectsOtherFiles) {
   expect_says(read_error(path("none.exr")), "does not exist");
-  expect_says(read_error(write_bytes("e.exr", "")), "0 bytes");
-  expect_says(read_error(write_bytes("t.exr", "hello, this is text")), "not an EXR image");
+  expect_says(read_error(write("e.exr", "")), "0 bytes");
+  expect_says(read_error(write("t.exr", "hello, this is text")), "not an EXR image");
   std::filesystem::create_directory(path("d.exr"));
   expect_says(read_error(path("d.exr")), "folder without");
   RasterOptions options;
@@ -210,7 +210,7 @@ TEST_F(ExrRaster, DamagedImagesAreRejectedOrReadCompletely) {
   for (const Imf::Compression packing : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
     const std::string whole = bytes_of(write_exr("a.exr", {"Y"}, Imf::FLOAT, 200, 150, values, packing));
     for (const double share : {0.0005, 0.003, 0.1, 0.5, 0.97}) {
-      write_bytes("cut.exr", whole.substr(0, 1 + static_cast<std::size_t>(static_cast<double>(whole.size()) * share)));
+      write("cut.exr", whole.substr(0, 1 + static_cast<std::size_t>(static_cast<double>(whole.size()) * share)));
       read_error(path("cut.exr"));
     }
     // With a changed byte of the header or of the table behind it: an Error or samples, nothing else.
@@ -220,7 +220,7 @@ TEST_F(ExrRaster, DamagedImagesAreRejectedOrReadCompletely) {
       std::string bytes = small;
       bytes[at] = static_cast<char>(bytes[at] ^ 0x55);
       try {
-        read_raster(write_bytes("bad.exr", bytes), {});
+        read_raster(write("bad.exr", bytes), {});
       } catch (const Error&) {
       }
     }

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,24 +17,13 @@
 #include "scarp/base/error.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster/read_raster.h"
+#include "scratch.h"
 
 namespace scarp::test {
 
-class Files : public ::testing::Test {
+class Files : public ::testing::Test, protected Scratch {
  protected:
-  Files() {
-    GDALAllRegister();
-    std::string name = (std::filesystem::temp_directory_path() / "scarp-source-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~Files() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::string write_bytes(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
+  Files() { GDALAllRegister(); }
 
   std::string bytes_of(const std::string& file) const {
     std::ifstream in(file, std::ios::binary);
@@ -73,8 +61,6 @@ class Files : public ::testing::Test {
     if (edit) edit(*dataset);
     return path(name);
   }
-
-  std::filesystem::path folder_;
 };
 
 /// The samples of any type as doubles.

@@ -273,8 +273,7 @@ TEST_F(PictureScale, OtherFilesGetOnlyANote) {
   const Raster is_signed = read_raster(write_tiff("b.tif", GDT_Int16, 3, 2, {0, 1, 2, 3, 4, 5}), {});
   EXPECT_TRUE(has_note(is_signed, "use --scale, --bounds or --exaggeration"));
   const Raster raw = read_raster(
-      write_bytes("c.npy", npy_bytes(npy_dictionary("<u2", "(2, 2)"), sample_bytes<std::uint16_t>({0, 1, 2, 65535}))),
-      {});
+      write("c.npy", npy_bytes(npy_dictionary("<u2", "(2, 2)"), sample_bytes<std::uint16_t>({0, 1, 2, 65535}))), {});
   EXPECT_EQ(1, raw.scale);
   EXPECT_TRUE(has_note(raw, "--height-range LOW,HIGH, --scale"));
 }

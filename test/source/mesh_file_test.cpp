@@ -12,25 +12,15 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
 
 using nlohmann::json;
 
-class MeshFiles : public testing::Test {
+class MeshFiles : public testing::Test, protected test::Scratch {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("scarp-mesh-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return (folder_ / name).string();
-  }
   // The error message, without the file name.
   std::string refusal(const std::string& name, const std::string& bytes) const {
     const std::string path = write(name, bytes);
@@ -43,8 +33,6 @@ class MeshFiles : public testing::Test {
     }
     return "read";
   }
-
-  std::filesystem::path folder_;
 };
 
 // A triangle in glTF: corners in one buffer, floats; indices of 16 bits behind them.

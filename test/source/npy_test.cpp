@@ -16,7 +16,7 @@ class Npy : public Files {
  protected:
   std::string write_npy(const std::string& name, const std::string& descr, const std::string& shape,
                         const std::string& samples, bool fortran = false) {
-    return write_bytes(name, npy_bytes(npy_dictionary(descr, shape, fortran), samples));
+    return write(name, npy_bytes(npy_dictionary(descr, shape, fortran), samples));
   }
 };
 
@@ -139,9 +139,9 @@ TEST_F(Npy, RejectsOtherTypesByName) {
     expect_says(text, descr);
     expect_says(text, "f4");
   }
-  expect_says(read_error(write_bytes(
-                  "a.npy", npy_bytes("{'descr': [('z', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", ""))),
-              "structures");
+  expect_says(
+      read_error(write("a.npy", npy_bytes("{'descr': [('z', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", ""))),
+      "structures");
 }
 
 TEST_F(Npy, RejectsTruncatedFilesBeforeAllocation) {
@@ -150,10 +150,9 @@ TEST_F(Npy, RejectsTruncatedFilesBeforeAllocation) {
   expect_says(read_error(write_npy("a.npy", "<i2", "(1000000000, 1000000000)", samples)), "truncated");
   expect_says(read_error(write_npy("a.npy", "<i2", "(9000000000000000000, 9000000000000000000)", samples)),
               "extents are limited to");
-  expect_says(read_error(write_bytes("b.npy", "\x93NUMPY")), "truncated");
-  expect_says(read_error(write_bytes("b.npy", npy_bytes(npy_dictionary("<i2", "(2, 3)"), "").substr(0, 40))),
-              "truncated");
-  expect_says(read_error(write_bytes("b.npy", "hello, world, this is text")), "not a .npy");
+  expect_says(read_error(write("b.npy", "\x93NUMPY")), "truncated");
+  expect_says(read_error(write("b.npy", npy_bytes(npy_dictionary("<i2", "(2, 3)"), "").substr(0, 40))), "truncated");
+  expect_says(read_error(write("b.npy", "hello, world, this is text")), "not a .npy");
 }
 
 TEST_F(Npy, FindsTheOnlyRasterInAnArchive) {
@@ -204,17 +203,17 @@ TEST_F(Npy, ReadsAFortranArrayInAnArchive) {
 }
 
 TEST_F(Npy, RejectsADamagedArchive) {
-  expect_says(read_error(write_bytes("a.npz", "hello, world")), "not a .npz");
+  expect_says(read_error(write("a.npz", "hello, world")), "not a .npz");
   std::vector<double> noise(40000);
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<double>(i * i * 7919 % 65521);
   const std::string a = npy_bytes(npy_dictionary("<u2", "(200, 200)"), sample_bytes<std::uint16_t>(noise));
   const std::string file = write_zip("b.npz", {{"a.npy", a}});
   EXPECT_NO_THROW(read_raster(file, {}));
   std::string bytes = bytes_of(file);
-  write_bytes("cut.npz", bytes.substr(0, bytes.size() / 2));
+  write("cut.npz", bytes.substr(0, bytes.size() / 2));
   expect_says(read_error(path("cut.npz")), "truncated");
   bytes.replace(bytes.size() / 2, 2000, 2000, '\xff');
-  write_bytes("bad.npz", bytes);
+  write("bad.npz", bytes);
   expect_says(read_error(path("bad.npz")), path("bad.npz") + ": ");
 }
 

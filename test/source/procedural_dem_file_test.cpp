@@ -45,7 +45,7 @@ TEST_F(ProceduralDemFile, HasTheChosenCellSizeAndIsNorthUp) {
 }
 
 TEST_F(ProceduralDemFile, ReplacesAnOldFileAndReportsProgress) {
-  write_bytes("a.tif", "old");
+  write("a.tif", "old");
   double last = 0;
   write_procedural_dem(path("a.tif"), terrain(10, 600), [&](double share) {
     EXPECT_GE(share, last);

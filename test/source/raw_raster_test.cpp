@@ -36,7 +36,7 @@ TEST_F(RawRaster, ReadsAllTypesAndByteOrders) {
       {"3x2:f32le", sample_bytes<float>(kHeights)},         {"3x2:f32be", sample_bytes<float>(kHeights, true)},
       {"3x2:f64le", sample_bytes<double>(kHeights)},        {"3x2:f64be", sample_bytes<double>(kHeights, true)}};
   for (const auto& c : cases) {
-    const Raster raster = read_raster(write_bytes("a.raw", c.samples), as(c.format));
+    const Raster raster = read_raster(write("a.raw", c.samples), as(c.format));
     EXPECT_EQ(3, raster.cols) << c.format;
     EXPECT_EQ(2, raster.rows) << c.format;
     EXPECT_EQ(kHeights, doubles(raster)) << c.format;
@@ -46,22 +46,22 @@ TEST_F(RawRaster, ReadsAllTypesAndByteOrders) {
 
 TEST_F(RawRaster, KeepsSigns) {
   EXPECT_EQ((std::vector<double>{-1, -128}),
-            doubles(read_raster(write_bytes("a.r8", sample_bytes<std::int8_t>({-1, -128})), as("2x1:i8"))));
+            doubles(read_raster(write("a.r8", sample_bytes<std::int8_t>({-1, -128})), as("2x1:i8"))));
   EXPECT_EQ((std::vector<double>{-1, -32768}),
-            doubles(read_raster(write_bytes("a.r16", sample_bytes<std::int16_t>({-1, -32768})), as("2x1:i16le"))));
+            doubles(read_raster(write("a.r16", sample_bytes<std::int16_t>({-1, -32768})), as("2x1:i16le"))));
 }
 
 TEST_F(RawRaster, SkipsAHeaderAndReportsTrailingBytes) {
   const std::string samples = sample_bytes<std::int16_t>(kHeights);
-  EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.raw", "12345" + samples), as("3x2:i16le+5"))));
-  const Raster raster = read_raster(write_bytes("a.raw", "12345" + samples + "678"), as("3x2:i16le+5"));
+  EXPECT_EQ(kHeights, doubles(read_raster(write("a.raw", "12345" + samples), as("3x2:i16le+5"))));
+  const Raster raster = read_raster(write("a.raw", "12345" + samples + "678"), as("3x2:i16le+5"));
   EXPECT_EQ(kHeights, doubles(raster));
   EXPECT_TRUE(has_note(raster, "ignored 3 bytes after the samples"));
 }
 
 TEST_F(RawRaster, LengthMustMatchTheSamples) {
   const std::string samples = sample_bytes<std::int16_t>(kHeights);
-  const std::string file = write_bytes("a.raw", samples);
+  const std::string file = write("a.raw", samples);
   const std::string shorter = read_error(file, as("3x3:i16le"));
   expect_says(shorter, "12 bytes, but --raw 3x3:i16le needs 18");
   expect_says(shorter, "truncated");
@@ -75,17 +75,17 @@ TEST_F(RawRaster, LengthMustMatchTheSamples) {
 
 TEST_F(RawRaster, NamesMissingFiles) {
   expect_says(read_error(path("none.raw"), as("3x2:u8")), "does not exist");
-  expect_says(read_error(write_bytes("e.raw", ""), as("3x2:u8")), "0 bytes");
+  expect_says(read_error(write("e.raw", ""), as("3x2:u8")), "0 bytes");
   expect_says(read_error(folder_.string(), as("3x2:u8")), "is a directory");
 }
 
 TEST_F(RawRaster, IgnoresTheExtension) {
-  EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.npy", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
-  EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.exr", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
+  EXPECT_EQ(kHeights, doubles(read_raster(write("a.npy", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
+  EXPECT_EQ(kHeights, doubles(read_raster(write("a.exr", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
 }
 
 TEST_F(RawRaster, RejectsOptionsOfOtherFormats) {
-  const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kHeights));
+  const std::string file = write("a.raw", sample_bytes<std::int16_t>(kHeights));
   RasterOptions options = as("3x2:i16le");
   options.encoding = HeightEncoding::terrarium;
   expect_says(read_error(file, options), "--encoding");
@@ -101,7 +101,7 @@ TEST_F(RawRaster, RejectsOptionsOfOtherFormats) {
 }
 
 TEST_F(RawRaster, AppliesNodataWindowAndBounds) {
-  const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kHeights));
+  const std::string file = write("a.raw", sample_bytes<std::int16_t>(kHeights));
   RasterOptions options = as("3x2:i16le");
   options.nodata = 5;
   options.window = {1, 1, 2, 1};
@@ -115,10 +115,10 @@ TEST_F(RawRaster, AppliesNodataWindowAndBounds) {
 
 TEST_F(RawRaster, NanIsAHoleAndInfinityIsRejected) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  const Raster raster = read_raster(write_bytes("a.raw", sample_bytes<float>({1, nan})), as("2x1:f32le"));
+  const Raster raster = read_raster(write("a.raw", sample_bytes<float>({1, nan})), as("2x1:f32le"));
   EXPECT_TRUE(std::isnan(doubles(raster)[1]));
   EXPECT_TRUE(has_note(raster, "NaN"));
-  expect_says(read_error(write_bytes("b.raw", sample_bytes<double>({1, inf})), as("2x1:f64le")), "infinite");
+  expect_says(read_error(write("b.raw", sample_bytes<double>({1, inf})), as("2x1:f64le")), "infinite");
 }
 
 }  // namespace

@@ -131,8 +131,7 @@ TEST_F(ReadingPlan, ReadsBlocksOfEveryShape) {
 }
 
 TEST_F(ReadingPlan, ReducesArraysTilesAndEncodedHeights) {
-  const std::string array =
-      write_bytes("a.npy", npy_bytes(npy_dictionary("<f4", "(12, 20)"), sample_bytes<float>(slope())));
+  const std::string array = write("a.npy", npy_bytes(npy_dictionary("<f4", "(12, 20)"), sample_bytes<float>(slope())));
   EXPECT_EQ(averages(), doubles(read_raster(array, reduced())));
 
   const auto half = [&](const std::string& name, int first) {
@@ -211,7 +210,7 @@ TEST_F(ReadingPlan, SkipsMissingBlocksOfSparseFiles) {
 }
 
 TEST_F(ReadingPlan, RejectsTooManySamples) {
-  const std::string file = write_bytes(
+  const std::string file = write(
       "huge.vrt",
       "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"2147483647\"><VRTRasterBand dataType=\"Int16\" band=\"1\"/>"
       "</VRTDataset>");

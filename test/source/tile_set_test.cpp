@@ -111,8 +111,8 @@ TEST_F(TileSet, FolderStandsForItsRastersInNameOrder) {
   std::filesystem::create_directory(path("tiles"));
   tile("tiles/b.tif", 2, 0, {5, 6, 7, 8});
   tile("tiles/a.tif", 0, 0);
-  write_bytes("tiles/README.txt", "hello");
-  write_bytes("tiles/.hidden.tif", "hello");
+  write("tiles/README.txt", "hello");
+  write("tiles/.hidden.tif", "hello");
   std::filesystem::create_directory(path("tiles/sub"));
   const Raster raster = read_raster(path("tiles"), {});
   expect_samples(raster, {1, 2, 5, 6, 3, 4, 7, 8});
@@ -179,7 +179,7 @@ TEST_F(TileSet, SkipsSidecarFilesInAFolder) {
 TEST_F(TileSet, RejectsAFolderWithoutRasters) {
   std::filesystem::create_directory(path("none"));
   expect_says(read_error(path("none")), "folder without a raster");
-  write_bytes("none/README.txt", "hello");
+  write("none/README.txt", "hello");
   expect_says(read_error(path("none")), "folder without a raster");
   expect_refused({path("none"), tile("a.tif", 0, 0)}, path("none"), "folder without a raster");
   expect_says(error_of([] { read_tiles({}, {}); }), "no raster given");
@@ -336,9 +336,9 @@ TEST_F(TileSet, RejectsMismatchedTilesByName) {
   expect_refused({a, placed("h.tif", place(1e15, 10, 0, 4000000, -10))}, path("h.tif"), "too far");
   expect_refused({a, write_tiff("i.tif", GDT_Int16, 2, 2, {1, 2, 3, 4})}, path("i.tif"), "no georeference");
   expect_refused({a, path("none.tif")}, path("none.tif"), "does not exist");
-  expect_refused({a, write_bytes("j.tif", "")}, path("j.tif"), "0 bytes");
-  expect_refused({a, write_bytes("k.npy", "")}, path("k.npy"), "no georeference");
-  expect_refused({a, write_bytes("l.exr", "")}, path("l.exr"), "no georeference");
+  expect_refused({a, write("j.tif", "")}, path("j.tif"), "0 bytes");
+  expect_refused({a, write("k.npy", "")}, path("k.npy"), "no georeference");
+  expect_refused({a, write("l.exr", "")}, path("l.exr"), "no georeference");
   RasterOptions raw;
   raw.raw = parse_raw_format("2x2:u8");
   expect_refused({a, a}, a, "no georeference", raw);

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,25 +11,15 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/voxel/binvox.h"
+#include "scratch.h"
 
 namespace scarp {
 namespace {
 
 namespace fs = std::filesystem;
 
-class SceneFiles : public testing::Test {
+class SceneFiles : public testing::Test, protected test::Scratch {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / fmt::format("scarp-scene-{}", getpid());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& text) const {
-    const fs::path path = folder_ / name;
-    std::ofstream(path) << text;
-    return path.string();
-  }
   SceneFile read(const std::string& text) const { return read_scene(write("scene.json", text)); }
   // The message without the file name; empty if there is none.
   std::string error(const std::string& text) const {
@@ -44,8 +33,6 @@ class SceneFiles : public testing::Test {
     }
     return {};
   }
-
-  fs::path folder_;
 };
 
 const std::string kBall = R"({"shape": {"sphere": {"radius": 1}}})";
