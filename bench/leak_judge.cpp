@@ -209,7 +209,7 @@ LeakJudge::Real LeakJudge::risen(const Place& place, Real t, Real length) const 
   return f.b * length - f.a * length * length;
 }
 
-// Depth of the ray below the surface that it reaches monotonically from t on, in one cell.
+// Greatest depth below the surface that the ray reaches after t while descending monotonically within one cell.
 LeakJudge::Real LeakJudge::deepest(const Place& place, Real t) const {
   Real length = time_in_cell(place, t, false);
   bool upper = false;
@@ -240,7 +240,7 @@ LeakJudge::Real LeakJudge::allowance(int axis) const {
   return kRoundings * kUnit * (std::abs(axis == 0 ? ox_ : oy_) + (axis == 0 ? field_.cell_cols() : field_.cell_rows()));
 }
 
-// Within a quarter of the allowance, it counts as a vertical ray through a point of the ground.
+// Whether the ray is vertical, to a quarter of the allowance, and passes through a point of the ground.
 bool LeakJudge::stands_on_ground() const {
   if (on_surface_ || dz_ == 0) return false;
   const Real room = bound(0) + (high_ - low_) * 0x1p-20L;

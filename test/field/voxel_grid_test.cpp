@@ -174,8 +174,8 @@ TEST(VoxelGrid, StaysConsistentAfterAThrowingEdit) {
   EXPECT_THROW(grid.set(placed), Error);
   before.expect(grid);
 
-  // An edit of all voxels that fails midway: by an entry that does not fit while it fills, and by an exception while it
-  // clears.
+  // An edit of all voxels that fails midway: once while filling, because an entry does not fit, and once while
+  // clearing, because of an exception.
   const auto edit = [&](const VoxelGrid::Voxel& to, const std::function<VoxelGrid::Voxel()>& last) {
     int asked = 0;
     grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) { return ++asked == 20'000 ? last() : to; });

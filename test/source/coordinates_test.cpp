@@ -98,7 +98,7 @@ TEST_F(CoordinatesOfFiles, MapNodesAreFieldNodes) {
 }
 
 TEST_F(CoordinatesOfFiles, LonlatMatchesProj) {
-  // By Krueger's series to the fourth order of n (1912), accurate to some micrometres, for UTM zone 16N.
+  // By Krueger's series to the fourth order of n (1912), accurate to a few micrometres, for UTM zone 16N.
   const Georeference geo = at(kPlaces[1]);
   const CoordinateFrame map(geo, kCols, kRows, Coordinates::map), lonlat(geo, kCols, kRows, Coordinates::lonlat);
   std::vector<dvec3> point = {{725000, 4033000, 12}};

@@ -5,8 +5,8 @@
 // Guarantee: conservative, including rounding: it misses no crossing. A hit is a crossing, or a touch: a point where
 // the bounds of a segment of 2^-22 of the time, or 4 times the rounding of clearances, do not separate the ray from the
 // ground. A ray from the surface starts at the height computed there, and may be below the ground by 4 times the width
-// of the bounds of a point, until it is proven to be above: it needs no bound on the ground's slope, unlike the other
-// implementations.
+// of the bounds of a point, until it is proven to be above. Unlike the other implementations, this one needs no bound
+// on the ground's slope.
 //
 // Compiles as C++ and GLSL, including GLSL ES 3.0, which lacks `precise`. The including file must define
 // scarp_instruction(), see function_heights.glsl.h.

@@ -365,7 +365,7 @@ class FanWalk {
         }
         const FanStep e = step_over<triangles>(at, r, p, nodes, rises, doubt, rounding_);
         VF low = hn::Min(e.low1, e.low2);
-        // The cell of the origin has been cut as if it were bilinear: a quarter of its twist higher than triangles.
+        // The origin's cell was treated as bilinear, which may be a quarter of its twist above the triangles.
         if (triangles && k == 0) low = hn::Sub(low, hn::Set(df, 0.5f * relief.up_to(1)));
         const MF clear = hn::Gt(low, e.margin);
         const VF beyond = hn::Set(df, high_y + at.aside);
@@ -402,7 +402,7 @@ class FanWalk {
       set_line();
       prefetch_line(o, k, lanes.strip_least_m, lanes.strip_most_m);
       if (wide) {
-        // The nodes at the next line are known already, but for a lane's move to the side.
+        // The nodes at the next line are already loaded, unless a lane moves sideways.
         const MF moves = hn::Ge(p.q, hn::Set(df, 1));
         nodes.a0 = hn::IfThenElse(moves, nodes.b1, nodes.b0), nodes.a1 = hn::IfThenElse(moves, nodes.b2, nodes.b1);
         nodes.a2 = hn::IfThenElse(moves, b3, nodes.b2);
@@ -422,7 +422,7 @@ class FanWalk {
     }
   }
   static constexpr int kLaneBits = std::countr_zero(N);
-  // The blocks that are skipped: over smaller ones a step per line is as fast.
+  // Lowest level whose blocks are skipped; below it, stepping line by line is as fast.
   static constexpr int kLeastLevel = 3;
 
   // Rays that hit for certain, and those that floats do not decide.
@@ -440,8 +440,8 @@ class FanWalk {
     // The hit, or where its piece begins.
     const VF share = sights_ ? hn::IfThenElse(first, hn::Zero(df), e.u) : f.share;
     const VF T = hn::MulAdd(share, hn::Set(df, at.length), hn::Set(df, at.T0));
-    // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must see all of a ray, which may
-    // cross it slowly.
+    // Doubtful ones are clear up to T, stored as -1 - T. Beside the border the march must trace the whole ray, which
+    // may cross it slowly.
     const MF beside = hn::Or(hn::Lt(p.y, low_side), hn::Gt(p.y, high_side));
     const VF until = hn::Set(df, grid_.has_holes ? -kNoTime : -1 - at.T0);
     const VF doubtful = hn::IfThenElse(hn::Or(refused, beside), hn::Set(df, -kNoTime), until);
@@ -475,8 +475,8 @@ class FanWalk {
     return rows_ ? static_cast<std::size_t>(rows_[at]) * N + lane : at;
   }
 
-  // Rays behind those of some lanes, which have left the field or are above all ground: they miss if they inherit that.
-  // `until` below infinity: all these rays are above the ground up to there.
+  // Ends lanes whose rays have left the field or are above all ground; later rays that inherit this also miss. `until`
+  // below infinity: all these rays are above the ground up to there.
   HWY_NOINLINE void end_lanes(MF ends, VI j, VF m_ok, VF s_ok, WedgeRelief<Sample>& relief, std::int32_t k,
                               const StripLanes& lanes, float until = kNoTime) {
     alignas(64) std::int32_t rows[N];
@@ -519,7 +519,7 @@ class FanWalk {
       const auto within = [&](VF g, float in_cell, VI number, std::int32_t origin, int cells) HWY_ATTR {
         VF way = hn::ConvertTo(df, hn::Sub(number, hn::Set(di, origin)));
         if (octants_[0].wraps) {
-          // To the copy of the hit.
+          // Distance to the copy of the field that contains the hit.
           const VF all = hn::Set(df, static_cast<float>(cells));
           const VF off = hn::Sub(hn::MulAdd(g, t, hn::Set(df, in_cell - 0.5f)), way);
           way = hn::MulAdd(hn::Round(hn::Div(off, all)), all, way);
@@ -551,7 +551,7 @@ class FanWalk {
       }
     }
   }
-  // Sights of the strip. Times are rounded down by more than the rounding of T, m and the ways in double.
+  // Sights of the strip. Times are rounded down by more than the rounding of T, m and the distances computed in double.
   HWY_NOINLINE void answer_sights() {
     const VF zero = hn::Zero(df), one = hn::Set(df, 1), never = hn::Set(df, kNoTime), unknown = hn::Set(df, -kNoTime);
     alignas(64) float clear[N];
@@ -569,7 +569,7 @@ class FanWalk {
       for (int l = 0; l < width_; ++l) to[l] = {clear[l], static_cast<std::uint32_t>(cells[l])};
     }
   }
-  // Times of hits that the range excludes, or may exclude.
+  // Turns hits outside the range of the rays into misses, and doubtful ones into unknown times.
   HWY_NOINLINE VF limit(VF T, VF per_major) const {
     const VF never = hn::Set(df, kNoTime), zero = hn::Zero(df);
     const auto time = [](double t) { return static_cast<float>(std::clamp(t, -0x1p126, 0x1p126)); };

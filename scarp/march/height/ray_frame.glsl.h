@@ -65,7 +65,7 @@ struct ScarpRay {
   uint flags;          ///< kScarpOnSurface and so on
   // For the sampling marches (height_probe.glsl.h).
   float travelled;   ///< time from the start of the ray's range to this ray's start
-  float exit;        ///< when it leaves the field or its range ends; `end` may be before
+  float exit;        ///< when it leaves the field or its range ends; `end` may be earlier
   float per_height;  ///< time in which the ray travels the height of one sample unit
   float cell_time;   ///< time in which it travels the shorter side of a cell
 };
@@ -76,7 +76,7 @@ struct ScarpHit {
   ivec2 cell;      ///< column and row, counted from the field's first
   vec2 place;      ///< in the cell, 0..1
   float time;      ///< time + time_low is the ray's time there
-  float time_low;  ///< may be as large as `time`: it counts from the tile's start
+  float time_low;  ///< since the tile's start, so it may be as large as `time`
   uint steps;      ///< blocks, cells or points visited
   uint fetches;    ///< samples and entries of the pyramid read
 };

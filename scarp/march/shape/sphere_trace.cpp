@@ -141,7 +141,7 @@ class Trace {
     return emerge(t, hit);
   }
 
-  // From inside: moves t to where the ray is outside. Returns false if the ray ends before, with the answer in `hit`.
+  // From inside: moves t to where the ray is outside. Returns false if the ray ends first, with the answer in `hit`.
   bool emerge(double& t, Hit& hit) {
     for (;;) {
       hit = Hit{};

@@ -40,10 +40,10 @@ struct Findings {
   double least_beyond = 0, most_beyond = 0;
 };
 
-// Whether a float sample equals the nodata value within the precision of files: texts such as -3.402823e+38 differ from
-// the value by some units in the last place. The tolerance is that of GDAL's own test (4 epsilons, gdal_priv.h:
-// ARE_REAL_EQUAL); for marks beyond all heights it is half a unit of the sixth digit: texts have six digits by default
-// (printf).
+// Whether a float sample equals the nodata value within the precision of files: decimal text such as -3.402823e+38
+// differs from the value by a few units in the last place. The tolerance is that of GDAL's own test (4 epsilons,
+// gdal_priv.h: ARE_REAL_EQUAL); for marks beyond all heights it is half a unit of the sixth digit: printf writes six
+// digits by default.
 bool is_float_nodata(double sample, double nodata) {
   constexpr double kSixDigits = 0.5e-5;
   const double width = std::abs(nodata) > kBeyondHeights ? kSixDigits : 4 * double{FLT_EPSILON};

@@ -43,7 +43,7 @@ bool vox_loops(const VoxNode& node);
 /// A frame between two keyframes; both are the same if a keyframe is held.
 struct VoxMoment {
   std::size_t before = 0, after = 0;      ///< indices of the keyframes
-  std::int64_t passed = 0, distance = 1;  ///< frames since the earlier keyframe; frames between both, > 0
+  std::int64_t passed = 0, distance = 1;  ///< frames since the earlier keyframe; frames between the two, > 0
 };
 
 /// Finds the keyframes around a frame. `keyframes`: at least one, in any order; if several are equal, the last one

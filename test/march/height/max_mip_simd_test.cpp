@@ -479,7 +479,7 @@ TEST(MaxMipSimd, BeamsLoseNoHits) {
       }
     }
   }
-  // Otherwise there were no hits to lose.
+  // Otherwise there would have been no hits to lose.
   for (const auto& [name, rays] : in_beams) EXPECT_GT(rays, 0u) << name;
 }
 

@@ -93,9 +93,9 @@ TEST(MaxMip, ReportsATouchOfACrestAsAHit) {
 }
 
 TEST(MaxMip, FindsADipInsideASaddleCell) {
-  // Corners 0 and 4 crosswise: along the high diagonal the surface is a valley of height 4 - 8 u (1 - u), lowest 2;
-  // along the low diagonal a hill up to 2. A ray over the hill at 1.5 is above at both ends of the cell and below in
-  // between.
+  // Heights 0 and 4 at diagonally opposite corners: along the high diagonal the surface is a valley of height 4 - 8 u
+  // (1 - u), lowest 2; along the low diagonal a hill up to 2. A ray over the hill at 1.5 is above at both ends of the
+  // cell and below in between.
   const Terrain saddle{HeightField::own<float>({4, 0, 0, 4}, 2, 2)};
   const Hit hit = saddle.cast({0, 0, 1.5}, {1, 1, 0});
   ASSERT_TRUE(hit);

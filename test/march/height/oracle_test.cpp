@@ -309,8 +309,8 @@ class Judge {
              field_.height(p.x - dx, p.y + dy) && field_.height(p.x + dx, p.y + dy));
   }
 
-  // Side of the ray before t, once it exceeds rounding: 1 above, -1 below (then t is a way out of the ground and not a
-  // hit), 0 undecided, or not decided after `from`.
+  // Side of the ray before t, once it exceeds rounding: 1 above, -1 below (then the ray leaves the ground at t, which
+  // is not a hit), 0 undecided, or not decided after `from`.
   int side_before(double t, double from) const {
     for (double cells = 0x1p-20; cells < 1; cells *= 4) {
       const double before = t - cells * (t - just_before(t)) * 0x1p20;
@@ -339,8 +339,8 @@ class Judge {
                : 0;
   }
 
-  // Side of the surface on which the ray is at t; 0 if that is not visible, or if the rise of the surface within some
-  // cells could change it. Marches may distinguish a rise from rounding by the relief of the whole field.
+  // Side of the surface on which the ray is at t; 0 if that is within rounding, or if the rise of the surface within a
+  // few cells could change it. Marches may distinguish a rise from rounding by the relief of the whole field.
   int side(double t, double cells) const {
     const dvec3 p = ray_.at(t);
     const auto place = field_.place(p.x, p.y);

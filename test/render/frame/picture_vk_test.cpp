@@ -38,8 +38,8 @@ constexpr double kSideways = 0x1p-10;  // of a cell: the largest sideways error 
 
 bool same(const Hit& a, const Hit& b) { return a.status == b.status && (!a || (a.wall == b.wall && a.cell == b.cell)); }
 
-// delta of any ray over a field of one tile, in metres: neither the ray's height, nor its fall, nor a sample is farther
-// from the base of a frame than the relief; sideways, a ray crosses all cells along either axis.
+// delta of any ray over a field of one tile, in metres: the ray's height, its descent and all samples are
+// within the relief of the frame's base; sideways, a ray crosses all cells along either axis.
 double delta_of(const HeightField& field) {
   constexpr double kRoundings = 16, kUnit = 0x1p-24;
   const double relief = field.max_height() - field.min_height();
@@ -101,7 +101,8 @@ class Judged final : public SceneBackEnd {
     cpu_.occluded(rays, cpu);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(blocked[i] != 0, static_cast<bool>(hits[i])) << text(rays[i]);
-      // A sampling march stops near the surface, not on it, and such a ray then does not start on it.
+      // A sampling march stops near the surface, not on it, so a ray that continues from its hit does not start on the
+      // surface.
       if (march_.guarantee == Guarantee::exact) judge(rays[i], hits[i]);
       otherwise += (blocked[i] != 0) != (cpu[i] != 0);
     }
