@@ -29,7 +29,7 @@ class FunctionField final : public SceneField {
   std::string_view march() const override { return march_.name; }
   Sampling sampling() const override { return march_.sampling; }
   std::string caveat() const override {
-    if (march_.name != "lipschitz") return {};
+    if (march_.sampling != Sampling::lipschitz) return {};
     return lipschitz_caveat(settings_.lipschitz, function_.bound_everywhere(FunctionUse::march).slope);
   }
   std::optional<WorldBox> box() const override { return {}; }

@@ -60,7 +60,7 @@ class Heights final : public SceneField {
   std::string_view march() const override { return march_.name; }
   Sampling sampling() const override { return march_.sampling; }
   std::string caveat() const override {
-    if (march_.name != "lipschitz" || settings_.lipschitz.shrink == 0) return {};
+    if (march_.sampling != Sampling::lipschitz || settings_.lipschitz.shrink == 0) return {};
     return lipschitz_caveat(settings_.lipschitz, std::isnan(slope_) ? slope_bound(field_) : slope_);
   }
   std::optional<WorldBox> box() const override {
@@ -132,7 +132,7 @@ class Heights final : public SceneField {
   }
 
   std::optional<HeightTarget> fan_target() const override {
-    return march_.name == "max-mip" && pyramid_ ? std::optional(target()) : std::nullopt;
+    return march_.fans && pyramid_ ? std::optional(target()) : std::nullopt;
   }
   bool likes_batches() const override { return march_.simd; }
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {

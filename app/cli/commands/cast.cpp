@@ -29,8 +29,7 @@
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/height/exhaustive.h"
-#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/output/hit_table.h"
 #include "scarp/scene/scene.h"
@@ -78,19 +77,16 @@ struct CastOptions : InputOptions {
   std::vector<std::string> typed;  // the values of the options
 };
 
-using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
-
-// The march's function for all hits, null if they are not requested.
-AllHits all_hits_of(const CastOptions& options) {
+// The march that finds all hits, null if they are not requested.
+const HeightMarchEntry* all_hits_of(const CastOptions& options) {
   if (!options.all) return nullptr;
   if (!options.device.empty()) {
     throw Error(fmt::format("--all --device {}: devices return only the first hit of a ray (leave one of the two out)",
                             options.device));
   }
-  const std::string_view march = march_of(options, InputKind::terrain);
-  if (march == "max-mip") return all_hits_max_mip;
-  if (march == "exhaustive") return all_hits_exhaustive;
-  throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march));
+  const HeightMarchEntry& march = find_height_march(march_of(options, InputKind::terrain));
+  if (march.all_hits) return &march;
+  throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march.name));
 }
 
 // Only rasters have a georeference. z of rays and hits is that of the field, exaggerated in all coordinates.
@@ -177,10 +173,10 @@ class Caster {
  public:
   // `all` finds all hits and needs a scene of one height field; null: nearest hits only. `materials`: number of
   // materials of the scene file.
-  Caster(AllHits all, const Scene& scene, std::size_t materials, const CoordinateFrame& frame, const RayTable& table,
-         HitTable& out)
+  Caster(const HeightMarchEntry* all, const Scene& scene, std::size_t materials, const CoordinateFrame& frame,
+         const RayTable& table, HitTable& out)
       : scene_(scene), frame_(frame), table_(table), out_(out), all_(all), materials_(materials) {
-    if (all_ == all_hits_max_mip) pyramid_.emplace(*scene.only_heights());
+    if (all_ && all_->needs_pyramid) pyramid_.emplace(*scene.only_heights());
   }
 
   void blocked(std::size_t first, std::span<const Ray> rays) {
@@ -199,7 +195,7 @@ class Caster {
       timed([&] {
         parallel_for(static_cast<std::int64_t>(rays.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
           for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const HitStatus status = all_(target, rays[i], found[i]);
+            const HitStatus status = all_->all_hits(target, rays[i], found[i]);
             if (found[i].empty()) found[i].emplace_back().status = status;
           }
         });
@@ -280,7 +276,7 @@ class Caster {
   const CoordinateFrame& frame_;
   const RayTable& table_;
   HitTable& out_;
-  AllHits all_;
+  const HeightMarchEntry* all_;
   std::size_t materials_;
   std::optional<MaxPyramid> pyramid_;  // for all hits
   std::size_t hits_ = 0, below_ = 0;
@@ -337,7 +333,7 @@ WholeInput open_whole(const CastOptions& options, InputKind kind) {
   return {std::move(input), std::move(places), std::move(scene), std::move(notes)};
 }
 
-void run_table(const CastOptions& options, InputKind kind, AllHits all) {
+void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntry* all) {
   const RayTable table = read_rays(options.rays);
   const bool terrain = kind == InputKind::terrain && options.mesh.file.empty();
   HitTable out(options.output,
@@ -398,7 +394,7 @@ void run(CastOptions options, const Command& command) {
     throw WrongUsage("--rays FILE or --scanner FILE is required (see 'scarp cast --help')");
   const InputKind kind = kind_of_input(command, options);
   command.require_effect({kind, {}, march_of(options, kind)});
-  const AllHits all = all_hits_of(options);  // refuses before files are read
+  const HeightMarchEntry* const all = all_hits_of(options);  // refuses before files are read
   validate(options.march_settings);
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);

@@ -47,6 +47,7 @@ constexpr HeightMarchEntry max_mip() {
   entry.own_any_hit = true;
   entry.fans = true;
   entry.by_rules = march_max_mip_by_rules;
+  entry.all_hits = all_hits_max_mip;
   entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings&) {
     return occluded_max_mip(target, ray);
   };
@@ -76,6 +77,7 @@ constexpr HeightMarchEntry exhaustive() {
        .description = "tests every cell under the ray, in double; the reference for the others; slow"},
       false, false);
   entry.by_rules = march_exhaustive_by_rules;
+  entry.all_hits = all_hits_exhaustive;
   return entry;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/hit_rules.h"
@@ -26,11 +27,14 @@ using HeightMarchBatch = void (*)(const HeightTarget& target, std::span<const Ra
 using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays,
                                       std::span<std::uint8_t> blocked, const MarchSettings& settings);
 
+/// Replaces `hits` by all hits in the ray's range, in order of t. Returns `hit`, or why there is none.
+using HeightAllHits = HitStatus (*)(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
+
 using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                                    MarchStats* stats);
 
-/// A row of the table. Only `by_rules` may be null: a technique without its own any-hit or batch query gets one based
-/// on `cpu`.
+/// A row of the table. Only `by_rules` and `all_hits` may be null: a technique without its own any-hit or batch query
+/// gets one based on `cpu`.
 struct HeightMarchEntry : MarchEntry {
   bool needs_pyramid = false;               ///< HeightTarget::pyramid must be given
   bool needs_slope = false;                 ///< HeightTarget::slope must be given
@@ -45,6 +49,8 @@ struct HeightMarchEntry : MarchEntry {
   bool fans = false;  ///< batches of rays from one origin are answered by fan_batch.h where that is faster
   /// The closest of the hits that count; null: the march finds hits from above only, and takes no filter.
   HeightMarchByRules by_rules = nullptr;
+  /// All hits in order of t; null: the march finds the closest one only.
+  HeightAllHits all_hits = nullptr;
 };
 
 /// The oracle, `exhaustive`, comes first.

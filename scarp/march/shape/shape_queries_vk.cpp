@@ -138,7 +138,7 @@ struct DeviceShapeQueries::Impl {
 
 DeviceShapeQueries::DeviceShapeQueries(const Device& device, const ShapeMarchEntry& march,
                                        const MarchSettings& march_settings, const DeviceQuerySettings& settings) {
-  if (march.name != "sphere-trace") {
+  if (!march.gpu) {
     throw Error(
         fmt::format("march '{}': does not run on shapes on Vulkan devices (available: sphere-trace)", march.name));
   }
