@@ -7,8 +7,8 @@
 //
 // Several times as fast as cast() for each ray: rays of one eye share their way (march/height/max_mip_fan.h). A ray
 // hits here if it hits there. t, u and v are floats, with the tolerance of fans in doc/dev/numerics.md. Cameras and
-// scanners make their directions as they are needed; there is no array of rays. From eyes below the ground, rays are
-// traced in batches; answers are the same.
+// scanners generate directions on demand, without an array of rays. Rays from eyes below the ground are traced in
+// batches; answers are the same.
 #pragma once
 
 #include <cstddef>

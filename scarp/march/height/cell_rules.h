@@ -28,7 +28,7 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
 
  protected:
   using Base::from_outside_, Base::begun_, Base::slow_, Base::below_rim_;
-  using Base::grid_ray, Base::ground_, Base::x_, Base::y_, Base::dz_, Base::t_in_, Base::strict_, Base::triangles_;
+  using Base::grid_ray, Base::ground_, Base::x_, Base::y_, Base::t_in_, Base::strict_, Base::triangles_;
   using Base::lists, Base::bisects, Base::accepts, Base::lost, Base::rounding_of_clearance, Base::is_hit;
   using Base::solid_, Base::wanted_, Base::ray_, Base::col_, Base::row_, Base::side_, Base::through_, Base::cell_end_;
   using Base::stats, Base::ray_height, Base::quadratic, Base::plane, Base::south_east, Base::clearance, Base::rim;

@@ -16,6 +16,12 @@
 
 namespace scarp {
 
+/// The number of a cell, line or node in the first copy of a wrapped grid.
+inline int in_first_copy(int number, int cells) {
+  const int rest = number % cells;
+  return rest < 0 ? rest + cells : rest;
+}
+
 /// Compiled separately for wrapped grids, so that rays over other grids do not pay for it.
 template <bool Wraps>
 class GridAxis {
@@ -53,7 +59,7 @@ class GridAxis {
   double exit_time() const { return line_time(ahead ? cells : 0); }
   bool inside(int cell) const { return static_cast<unsigned>(cell) < static_cast<unsigned>(cells); }
   /// Converts a cell counted in this copy to a cell of the grid; outside, if the grid does not wrap.
-  int within(int cell) const { return Wraps ? (cell % cells + cells) % cells : cell; }
+  int within(int cell) const { return Wraps ? in_first_copy(cell, cells) : cell; }
   /// Number of a line among all lines of the plane.
   std::int64_t global_line(int line) const { return first() + line; }
 

@@ -61,9 +61,6 @@ bool pays(const HeightField& field, const Fan& fan, int columns, const dvec3& fi
   return fan.rows * per_row >= lines_of(field, fan, first, last);
 }
 
-std::ptrdiff_t place_of(const Fan& fan, int column, int row) {
-  return row * fan.row_stride + column / kFanStrip * fan.strip_stride + column % kFanStrip;
-}
 dvec3 direction_of(const Fan& fan, std::ptrdiff_t i) {
   return {static_cast<double>(fan.dx[i]), static_cast<double>(fan.dy[i]), static_cast<double>(fan.dz[i])};
 }
@@ -87,7 +84,7 @@ void put_normal(const FanHits& to, std::ptrdiff_t i, const dvec3& normal) {
 void put_normals(const HeightField& field, const Fan& fan, const FanHits& to, int column_begin, int column_end) {
   for (int row = 0; row < fan.rows; ++row) {
     for (int column = column_begin; column < column_end; ++column) {
-      const std::ptrdiff_t i = place_of(fan, column, row);
+      const std::ptrdiff_t i = max_mip::place_of(fan, column, row);
       const auto normal = [&] {
         return field.normal({to.col[i], to.row[i]}, static_cast<double>(to.u[i]), static_cast<double>(to.v[i]));
       };
@@ -185,11 +182,11 @@ void closest_hits_max_mip_fan(const HeightTarget& target, const Fan& fan, const 
   if (column_begin >= column_end || fan.rows <= 0) return;
   Batch batch(target, fan, hits);
   const bool walks = options.always || pays(*target.field, fan, column_end - column_begin,
-                                            direction_of(fan, place_of(fan, column_begin, 0)),
-                                            direction_of(fan, place_of(fan, column_end - 1, fan.rows - 1)));
+                                            direction_of(fan, max_mip::place_of(fan, column_begin, 0)),
+                                            direction_of(fan, max_mip::place_of(fan, column_end - 1, fan.rows - 1)));
   if (!walks || !max_mip::walks_fan(target, fan)) {
     for (int row = 0; row < fan.rows; ++row) {
-      for (int column = column_begin; column < column_end; ++column) batch.add(place_of(fan, column, row));
+      for (int column = column_begin; column < column_end; ++column) batch.add(max_mip::place_of(fan, column, row));
     }
     return batch.answer();
   }
@@ -228,7 +225,7 @@ void look_max_mip_fan(const HeightTarget& target, const Fan& fan, FanSight* sigh
     return max_mip::look_fan(target, fan, sights, column_begin, column_end, options, t_stats);
   for (int row = 0; row < fan.rows; ++row) {
     for (int column = column_begin; column < column_end; ++column)
-      sights[place_of(fan, column, row)] = {-std::numeric_limits<float>::infinity(), 0};
+      sights[max_mip::place_of(fan, column, row)] = {-std::numeric_limits<float>::infinity(), 0};
   }
 }
 

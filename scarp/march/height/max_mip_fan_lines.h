@@ -16,6 +16,7 @@
 #include "hwy/cache_control.h"
 #include "scarp/accel/relief_map.h"
 #include "scarp/field/height_field.h"
+#include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/max_mip_simd_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,12 +31,7 @@ HWY_INLINE std::uint64_t bits_of(MF mask) { return bits_of(hn::RebindMask(di, ma
 // Samples of a line that all lanes look up.
 constexpr int kWindow = 16;
 
-// The number of a cell, line or node in the first copy of a wrapped grid.
-inline std::int32_t in_copy(std::int32_t number, std::int32_t cells) {
-  const std::int32_t rest = number % cells;
-  return rest < 0 ? rest + cells : rest;
-}
-// For numbers below 2^24, which floats hold; others become some cell.
+// in_first_copy() for numbers below 2^24, which floats hold; others become some cell.
 HWY_INLINE VI in_copy(VI number, std::int32_t cells) {
   const VI all = hn::Set(di, cells), last = hn::Set(di, cells - 1), zero = hn::Zero(di);
   const VF copy = hn::Floor(hn::Mul(hn::ConvertTo(df, number), hn::Set(df, 1 / static_cast<float>(cells))));
@@ -68,14 +64,14 @@ struct Octant {
   std::int32_t last_line() const { return major_cells - line0; }
   // Line k and a node, by their numbers in the mirrored field. Beyond a field without wrap they are those of its
   // border.
-  std::int32_t field_line(std::int32_t k) const { return wraps ? in_copy(line0 + k, major_cells) : line0 + k; }
+  std::int32_t field_line(std::int32_t k) const { return wraps ? in_first_copy(line0 + k, major_cells) : line0 + k; }
   const Sample* line(std::int32_t k) const {
     const std::int32_t at =
-        wraps ? in_copy(line0 + k - back_major, major_cells) : std::clamp(line0 + k, 0, major_cells);
+        wraps ? in_first_copy(line0 + k - back_major, major_cells) : std::clamp(line0 + k, 0, major_cells);
     return corner + at * step_major;
   }
   std::ptrdiff_t node(std::int32_t i) const {
-    return (wraps ? in_copy(i - back_minor, minor_cells) : std::clamp(i, 0, minor_cells)) * step_minor;
+    return (wraps ? in_first_copy(i - back_minor, minor_cells) : std::clamp(i, 0, minor_cells)) * step_minor;
   }
   float T_at(std::int32_t k) const { return static_cast<float>(std::max(k - fx, 0.0)); }
 };
@@ -144,7 +140,7 @@ HWY_INLINE void load_window(const Octant<Sample>& o, std::int32_t k, std::int32_
   if (o.holes) [[unlikely]]
     return load_odd_window(o, k, b, window);
   std::int32_t first = o.node0 + b, count = o.minor_cells + 1;
-  if (o.wraps) first = in_copy(first - o.back_minor, o.minor_cells), count = o.minor_cells;
+  if (o.wraps) first = in_first_copy(first - o.back_minor, o.minor_cells), count = o.minor_cells;
   const Sample* line = o.line(k);
   if (first >= 0 && first + kWindow <= count) {
     const Sample* from = line + first * o.step_minor;
@@ -276,7 +272,7 @@ class WedgeRelief {
   template <class Add>
   void add_copies(double from, double to, const Add& add) const {
     const auto low = static_cast<std::int32_t>(from), high = static_cast<std::int32_t>(to);
-    std::int32_t cell = in_copy(low, o_.minor_cells), left = std::min(high - low + 1, o_.minor_cells);
+    std::int32_t cell = in_first_copy(low, o_.minor_cells), left = std::min(high - low + 1, o_.minor_cells);
     while (left > 0) {
       add((o_.back_minor ? o_.minor_cells - 1 - cell : cell) >> kLevel);
       const std::int32_t cells = cells_left(cell, o_.back_minor, o_.minor_cells);

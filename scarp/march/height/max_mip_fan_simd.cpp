@@ -93,20 +93,16 @@ class FanWalk {
   }
 
  private:
-  std::ptrdiff_t place(int row, int column) const {
-    return row * fan_.row_stride + column / 16 * fan_.strip_stride + column % 16;
-  }
-
   void strip(int column, int width) {
     ++stats_.strips;
     stats_.rays += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(fan_.rows);
     const bool falls = slope_at(0, column + width / 2) > slope_at(fan_.rows - 1, column + width / 2);
     const int first = falls ? fan_.rows - 1 : 0;
-    begin_ = place(first, column);
+    begin_ = max_mip::place_of(fan_, column, first);
     step_ = falls ? -fan_.row_stride : fan_.row_stride;
     width_ = width;
     // Whole vectors must not cross from a strip of 16 columns into memory of another.
-    if (width == static_cast<int>(N) && column % 16 + width <= 16) {
+    if (width == static_cast<int>(N) && column % kFanStrip + width <= kFanStrip) {
       rays_ = {fan_.dx + begin_, fan_.dy + begin_, fan_.dz + begin_, step_};
     } else {
       copy_rays();
@@ -116,7 +112,7 @@ class FanWalk {
   }
 
   float slope_at(int row, int column) const {
-    const std::ptrdiff_t i = place(row, column);
+    const std::ptrdiff_t i = max_mip::place_of(fan_, column, row);
     return fan_.dz[i] / std::hypot(fan_.dx[i], fan_.dy[i]);
   }
 

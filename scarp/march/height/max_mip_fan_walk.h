@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/max_mip_fan.h"
 
 namespace scarp::max_mip {
@@ -28,15 +29,25 @@ bool walks_fan(const HeightTarget& target, const Fan& fan);
 /// Whether a cell or a neighbour of it is so. Neighbours over a seam are those in the next copy.
 template <class Is>
 bool any_cell_beside(const HeightField& field, const Cell& at, const Is& is) {
-  const int cols = field.cell_cols(), rows = field.cell_rows();
-  const auto exists = [&](int number, int cells) { return field.wraps() || (number >= 0 && number < cells); };
-  const auto cell = [](int number, int cells) { return (number % cells + cells) % cells; };
+  // The number of a cell in the field; negative: there is none.
+  const auto within = [&](int number, int cells) {
+    if (number >= 0 && number < cells) return number;
+    return field.wraps() ? in_first_copy(number, cells) : -1;
+  };
   for (int r = at.row - 1; r <= at.row + 1; ++r) {
+    const int row = within(r, field.cell_rows());
+    if (row < 0) continue;
     for (int c = at.col - 1; c <= at.col + 1; ++c) {
-      if (exists(r, rows) && exists(c, cols) && is(Cell{cell(c, cols), cell(r, rows)})) return true;
+      const int col = within(c, field.cell_cols());
+      if (col >= 0 && is(Cell{col, row})) return true;
     }
   }
   return false;
+}
+
+/// The place of a ray in the arrays of a fan.
+inline std::ptrdiff_t place_of(const Fan& fan, int column, int row) {
+  return row * fan.row_stride + column / kFanStrip * fan.strip_stride + column % kFanStrip;
 }
 
 /// Answers the rays of columns [begin, end) but for those that it appends to `rest`.

@@ -9,8 +9,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "scarp/march/height/block_rules.h"

@@ -20,11 +20,11 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
 /// Receives a pixel's index (rows from the top), its ray, its hit, and its steps (0 without `count`).
 using TakeMiddle = std::function<void(std::size_t, const Ray&, const Hit&, std::uint32_t)>;
 
-/// Sets the hits and steps of a round's rays; called on any thread.
+/// Sets the hits of a round's rays; called on any thread.
 using TraceMiddles = std::function<void(RayRound&)>;
 
 /// Calls `take` for each pixel of a picture of the camera, on any thread. `count`: whether to count steps. If not
-/// empty, `trace` traces the rays instead of the scene.
+/// empty, `trace` traces the rays instead of the scene, without counting.
 void look_through_middles(const Scene& scene, const Camera& camera, ImageSize size, bool count,
                           const Progress& progress, const TakeMiddle& take, const TraceMiddles& trace = {});
 

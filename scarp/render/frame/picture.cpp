@@ -181,11 +181,8 @@ std::vector<double> heights_seen(const Scene& scene, const Camera& camera, const
   if (stepped) {
     trace = [&stepped](RayRound& round) {
       round.hits.clear();
-      round.steps.clear();
       for (const Ray& ray : round.rays) {
-        const StepMarch::Answer answer = stepped->march(ray, nullptr);
-        round.hits.push_back(answer.hit);
-        round.steps.push_back(answer.steps);
+        round.hits.push_back(stepped->march(ray, nullptr).hit);
       }
     };
   }
