@@ -79,10 +79,10 @@ class Follower {
 
   // Records an answer that the shader may give, and the answer of the rule in double if it is the first one.
   void may(int status, double t, double off) { answers_.allowed.push_back({status, t, off}); }
-  void does(int status, double t) {
+  void does(int status, double t, double off = 0) {
     if (decided_) return;
     decided_ = true;
-    answers_.exact = {status, t, 0};
+    answers_.exact = {status, t, off};
   }
   // Whether the march is over before its next point: out of range, or out of steps.
   bool ends(int step, int max_steps, double t, double off) {
@@ -94,13 +94,13 @@ class Follower {
       return true;
     }
     if (step < max_steps) return false;
-    does(kExhausted, t);
+    does(kExhausted, t, off);
     may(kExhausted, t, off);
     return true;
   }
   // Records `status` where `value`, off by at most `off_value`, is below 0. Returns whether it surely is.
   bool stops(double value, double off_value, int status, double t, double off) {
-    if (value < 0) does(status, t);
+    if (value < 0) does(status, t, off);
     if (value < off_value) may(status, t, off);
     return value < -off_value;
   }
@@ -228,12 +228,12 @@ EasyAnswers Follower::fixed_step() {
         hit_off = std::max(off, off_before) + (span + off + off_before) * (both / (fall - 2 * both) + 4 * kUnit) +
                   2 * kUnit * (t + off);
       const double met = fall > 0 ? t_before + span * std::clamp(h_before / fall, 0.0, 1.0) : t;
-      if (h <= 0 && is_above) does(kHit, met);
+      if (h <= 0 && is_above) does(kHit, met, hit_off);
       may(kHit, met, hit_off);
       if (h < -point.off && h_before > h_off_before) return answers_;
     }
     if (i == 0) {
-      if (h == 0) does(kHit, t);
+      if (h == 0) does(kHit, t, off);
       if (std::abs(h) <= point.off) may(kHit, t, off);
       begins_below = h < 0;
       may_begin_below = h < point.off;
@@ -251,7 +251,7 @@ EasyAnswers Follower::fixed_step() {
     t_before = t, off_before = off;
     h_before = h, h_off_before = point.off;
   }
-  does(kExhausted, t);
+  does(kExhausted, t, off);
   may(kExhausted, t, off);
   return answers_;
 }
@@ -271,7 +271,7 @@ std::string EasyAnswers::objection(int status, double t) const {
 
 bool may_hit_at(std::string_view march, const MarchSettings& settings, const HeightFunction& function, const Ray& ray,
                 double t) {
-  return march == "fixed-step" || Follower(settings, function, ray).may_hit_at(march, t);
+  return Follower(settings, function, ray).may_hit_at(march, t);
 }
 
 EasyAnswers easy_answers(std::string_view march, const MarchSettings& settings, const HeightFunction& function,

@@ -36,7 +36,7 @@ struct EasyAnswers {
 EasyAnswers easy_answers(std::string_view march, const MarchSettings& settings, const HeightFunction& function,
                          const Ray& ray);
 
-/// Whether the shader may hit at t by its own rule, whatever points came before. fixed-step: always, as its points are
+/// Whether the shader may hit at t by its own rule, whatever points came before. Not for fixed-step, whose points are
 /// known beforehand.
 bool may_hit_at(std::string_view march, const MarchSettings& settings, const HeightFunction& function, const Ray& ray,
                 double t);
