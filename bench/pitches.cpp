@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
@@ -32,6 +33,7 @@ struct PitchesOptions {
   int width = 640, height = 480;  // pixels; the width is rounded down to a multiple of 32
   int step = 10;                  // degrees
   int repeats = 3;                // timed passes of each; the median counts
+  double wrapped = 0;             // range of the rays in widths of the field, which wraps; 0: no wrap, no limit
 };
 
 using Json = nlohmann::ordered_json;
@@ -47,7 +49,8 @@ struct View {
 constexpr View kViews[] = {{"high", 0.3, 0}, {"above", 0.05, 0}, {"above, roll", 0.05, 0.3}, {"near", -100, 0}};
 
 // The rays of a picture: columns of tiles, in each all rows, in each 32 pixels.
-std::vector<Ray> camera_rays(const HeightField& field, const View& view, double pitch, int width, int height) {
+std::vector<Ray> camera_rays(const HeightField& field, const View& view, double pitch, int width, int height,
+                             double t_max) {
   dvec3 eye(0.4 * field.width(), 0.35 * field.depth(), 0);
   eye.z = view.over > 0 ? field.max_height() + view.over * field.width()
                         : field.height(eye.x, eye.y).value_or(field.max_height()) - view.over;
@@ -62,6 +65,7 @@ std::vector<Ray> camera_rays(const HeightField& field, const View& view, double 
       for (int x = x0; x < x0 + kSide; ++x) {
         Ray ray;
         ray.origin = eye;
+        ray.t_max = t_max;
         ray.direction =
             normalize(forward + pixel * (x + 0.5 - 0.5 * width) * right + pixel * (0.5 * height - y - 0.5) * up);
         rays.push_back(ray);
@@ -100,7 +104,7 @@ void by_fan(const HeightTarget& target, std::span<const Ray> rays, int height, b
       dx[i] = static_cast<float>(d.x), dy[i] = static_cast<float>(d.y), dz[i] = static_cast<float>(d.z);
     }
     Fan fan;
-    fan.origin = rays[first].origin;
+    fan.origin = rays[first].origin, fan.t_max = rays[first].t_max;
     fan.dx = dx.data(), fan.dy = dy.data(), fan.dz = dz.data();
     fan.columns = kSide, fan.rows = height, fan.row_stride = kSide;
     look_max_mip_fan(target, fan, sights.data(), 0, kSide, options);
@@ -112,17 +116,27 @@ void by_fan(const HeightTarget& target, std::span<const Ray> rays, int height, b
   }
 }
 
+// The same samples, repeated.
+HeightField periodic(const HeightField& field) {
+  HeightFieldSettings settings = field.settings();
+  settings.wrap = Wrap::periodic;
+  return field.visit(
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
+}
+
 void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
   const BenchField ground = load_field(options.field);
-  const MaxPyramid pyramid(ground.field);
-  const HeightTarget target{&ground.field, &pyramid};
+  const HeightField field = options.wrapped > 0 ? periodic(ground.field) : HeightField(ground.field);
+  const double t_max = options.wrapped > 0 ? options.wrapped * field.width() : std::numeric_limits<double>::infinity();
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
   const int width = options.width / kSide * kSide, height = options.height;
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"view", "down", "batch Mrays/s", "fan", "choice", "choice / better",
                                                "batch of rows", "one call", "fan's unknown %", "choice's %"}};
   for (const View& view : kViews) {
     for (int down = 0; down <= 90; down += options.step) {
-      const std::vector<Ray> rays = camera_rays(ground.field, view, down * kPi / 180, width, height);
+      const std::vector<Ray> rays = camera_rays(field, view, down * kPi / 180, width, height, t_max);
       std::vector<Hit> truth(rays.size()), hits(rays.size());
       std::vector<Ray> in_rows(rays.size());
       for_each_in_rows(width, height, [&](std::size_t i, std::size_t place) { in_rows[place] = rays[i]; });
@@ -177,6 +191,10 @@ void add_pitches(cli::Program& program) {
       {.names = "--width", .help = "columns, down to a multiple of 32", .unit = "pixels", .range = {32, 1 << 13}});
   command.add(&o.height, {.names = "--height", .help = "rows", .unit = "pixels", .range = {1, 1 << 13}});
   add_repeats_option(command, o.repeats, "timed passes of each");
+  command.add(&o.wrapped, {.names = "--wrapped",
+                           .help = "range of the rays in widths of the field, which repeats",
+                           .range = {0, 1000},
+                           .note = "0: no wrap"});
   command.add(&o.step, {.names = "--step", .help = "step of the pitch", .unit = "degrees", .range = {1, 90}});
 }
 
