@@ -24,4 +24,14 @@ const Entry& find_entry(std::span<const Entry> table, std::string_view name) {
   throw Error(fmt::format("march '{}': unknown (available: {})", name, names));
 }
 
+/// "the march NAME records no steps (use ...)", with the marches of the table that do.
+template <class Entry>
+std::string records_nothing(std::span<const Entry> table, std::string_view name) {
+  std::string names;
+  for (const Entry& entry : table) {
+    if (entry.traced) names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
+  }
+  return fmt::format("the march {} records no steps (use {})", name, names);
+}
+
 }  // namespace scarp

@@ -53,6 +53,11 @@ Hit SceneField::accepted_hit(const Ray& ray, const Hit* from, const HitRules& ru
                   kind(), march()));
 }
 
+std::string SceneField::no_trace() const {
+  return fmt::format("the march {} of a {} records no steps", march(), kind());
+}
+Hit SceneField::traced_hit(const Ray&, MarchStats*, MarchTrace&) const { throw Error(no_trace()); }
+
 std::string SceneField::no_contacts() const {
   return fmt::format("scene: contacts support height fields, tiles and voxels, not a {} (exclude it by its mask)",
                      kind());

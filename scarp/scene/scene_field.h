@@ -31,6 +31,7 @@
 
 namespace scarp {
 
+struct MarchTrace;   // base/march_trace.h
 class VoxelObjects;  // voxel_objects.h
 
 /// The surface at a hit, in the field's space.
@@ -108,6 +109,12 @@ class SceneField {
   virtual void prefetch_surface(const Hit&) const {}
   /// FieldSurface::material.
   virtual int material(const Ray& ray, const Hit& hit) const { return surface(ray, hit).material; }
+
+  /// Returns why the march records nothing; empty if it records its steps.
+  virtual std::string no_trace() const;
+  /// Returns closest_hit(ray, nullptr, stats); `trace` receives the steps of the march. Throws Error if no_trace()
+  /// returns a reason.
+  virtual Hit traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const;
 
   /// Returns why the field has no contacts, overlaps and closest points; empty if it has.
   virtual std::string no_contacts() const;

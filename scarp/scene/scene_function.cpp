@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/march/find_entry.h"
 #include "scarp/march/function/lipschitz_local_rules.h"
 #include "scarp/march/sampling/shrink_factor.h"
 #include "scarp/scene/function_shadow.h"
@@ -37,6 +38,13 @@ class FunctionField final : public SceneField {
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return march_.cpu(function_, from ? started(ray, from) : ray, settings_, stats, FunctionUse::march);
+  }
+  std::string no_trace() const override {
+    return march_.traced ? "" : records_nothing(function_marches(), march_.name);
+  }
+  Hit traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const override {
+    return march_.traced ? march_.traced(function_, ray, settings_, stats, trace)
+                         : SceneField::traced_hit(ray, stats, trace);
   }
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
     if (!rules.accept || !march_.filtered) return SceneField::accepted_hit(ray, from, rules, stats);

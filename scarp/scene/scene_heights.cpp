@@ -11,6 +11,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/find_entry.h"
 #include "scarp/march/height/closest_point.h"
 #include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
@@ -80,6 +81,11 @@ class Heights final : public SceneField {
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return march_.cpu(target(), from ? started(ray, from) : ray, settings_, stats);
+  }
+  std::string no_trace() const override { return march_.traced ? "" : records_nothing(height_marches(), march_.name); }
+  Hit traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const override {
+    return march_.traced ? march_.traced(target(), ray, settings_, stats, trace)
+                         : SceneField::traced_hit(ray, stats, trace);
   }
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
     if (!march_.by_rules) {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/base/error.h"
+#include "scarp/march/find_entry.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/voxel/voxel_objects.h"
 
@@ -39,6 +41,14 @@ class VoxelField final : public SceneField {
   }
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
     return objects_.closest_hit(ray, from, rules.accept, stats);
+  }
+  std::string no_trace() const override {
+    if (objects_.rounding()) return "rounded voxels record no steps (leave out --rounded)";
+    return objects_.records() ? "" : records_nothing(voxel_marches(), march_);
+  }
+  Hit traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const override {
+    if (const std::string why = no_trace(); !why.empty()) throw Error(why);
+    return objects_.traced_hit(ray, stats, trace);
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     if (!from) return objects_.occluded(ray);

@@ -3,6 +3,8 @@
 // settings.function.reach. `stats` is overwritten unless null.
 #pragma once
 
+#include "scarp/base/march_trace.h"
+#include "scarp/base/ray.h"
 #include "scarp/field/height_function.h"
 #include "scarp/march/march_settings.h"
 
@@ -27,5 +29,15 @@ Hit march_relaxed(const HeightFunction& function, const Ray& ray, const MarchSet
 /// settings.lipschitz.
 Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
+
+/// The same with FunctionUse::march, recorded: `trace` is overwritten.
+Hit traced_naive(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                 MarchTrace& trace);
+Hit traced_fixed_step(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                      MarchTrace& trace);
+Hit traced_relaxed(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                   MarchTrace& trace);
+Hit traced_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                     MarchTrace& trace);
 
 }  // namespace scarp

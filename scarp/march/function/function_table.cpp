@@ -14,10 +14,11 @@ namespace scarp {
 namespace {
 
 // A row whose batch query traces one ray after another.
-template <FunctionMarch march>
+template <FunctionMarch march, FunctionMarchTraced traced = nullptr>
 constexpr FunctionMarchEntry function_march(const MarchEntry& common) {
   FunctionMarchEntry entry{common};
   entry.cpu = march;
+  entry.traced = traced;
   entry.batch = [](const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
                    const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -44,10 +45,10 @@ constexpr FunctionMarchEntry lipschitz_local() {
 }
 
 constexpr std::array kFunctionTable = {
-    function_march<march_naive>(kNaiveEntry),
-    function_march<march_fixed_step>(kFixedStepEntry),
-    function_march<march_relaxed>(kRelaxedEntry),
-    function_march<march_lipschitz>(kLipschitzEntry),
+    function_march<march_naive, traced_naive>(kNaiveEntry),
+    function_march<march_fixed_step, traced_fixed_step>(kFixedStepEntry),
+    function_march<march_relaxed, traced_relaxed>(kRelaxedEntry),
+    function_march<march_lipschitz, traced_lipschitz>(kLipschitzEntry),
     lipschitz_local(),
 };
 

@@ -14,6 +14,8 @@
 
 namespace scarp {
 
+struct MarchTrace;  // base/march_trace.h
+
 /// Returns the closest hit of a ray. Overwrites `stats` unless null.
 using FunctionMarch = Hit (*)(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
                               MarchStats* stats, FunctionUse use);
@@ -27,12 +29,18 @@ using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<co
 using FunctionMarchFiltered = Hit (*)(const HeightFunction& function, const HeightFunction& below, const Ray& ray,
                                       const HitFilter& accept, const MarchSettings& settings, MarchStats* stats);
 
-/// A row of the table. Only `filtered` may be null: a technique without its own batch query gets one based on `cpu`.
+/// The closest hit, for FunctionUse::march; `trace` receives the steps of the march. Overwrites `stats` unless null.
+using FunctionMarchTraced = Hit (*)(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
+                                    MarchStats* stats, MarchTrace& trace);
+
+/// A row of the table. Only `filtered` and `traced` may be null: a technique without its own batch query gets one based
+/// on `cpu`.
 struct FunctionMarchEntry : MarchEntry {
   FunctionMarch cpu = nullptr;         ///< scalar C++
   FunctionMarchBatch batch = nullptr;  ///< in vectors if `simd`
   /// Null if the march cannot continue behind a rejected hit.
   FunctionMarchFiltered filtered = nullptr;
+  FunctionMarchTraced traced = nullptr;  ///< null if the march records nothing
 };
 
 std::span<const FunctionMarchEntry> function_marches();

@@ -28,6 +28,15 @@ class BlockRules : public RimRules<T, Holes, Wraps, ask> {
         levels_(target.pyramid->levels().data()),
         top_(target.pyramid->top_level()) {}
 
+  const Wanted& wanted() const { return this->wanted_; }
+  std::uint32_t cell_tests() const { return this->stats.cell_tests; }
+  /// Maximum of a block of level 1 or more, in metres.
+  double maximum_of(const Block& block) const {
+    const MaxPyramid::Level& at = levels_[block.level - 1];
+    return ground_.metres(
+        ground_.height(ground_.maximum(at.begin + static_cast<std::ptrdiff_t>(block.row) * at.cols + block.col)));
+  }
+
  protected:
   using Base::ray_height, Base::rim, Base::lost, Base::rounding_of_clearance, Base::grid_ray, Base::test_cell;
   using Base::row_, Base::side_, Base::through_, Base::begun_, Base::slow_, Base::below_rim_;

@@ -3,6 +3,7 @@
 // [t_min, t_max] and inside the field; `stats` is overwritten unless null.
 #pragma once
 
+#include "scarp/base/march_trace.h"
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/march_settings.h"
 
@@ -27,5 +28,15 @@ Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSetting
 /// when both are missing.
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr);
+
+/// The same, recorded: `trace` is overwritten.
+Hit traced_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                 MarchTrace& trace);
+Hit traced_fixed_step(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                      MarchTrace& trace);
+Hit traced_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                   MarchTrace& trace);
+Hit traced_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                     MarchTrace& trace);
 
 }  // namespace scarp

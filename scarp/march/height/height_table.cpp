@@ -15,12 +15,13 @@ namespace scarp {
 namespace {
 
 // A row whose any-hit and batch queries call the closest-hit query ray by ray.
-template <HeightMarch march>
+template <HeightMarch march, HeightMarchTraced traced = nullptr>
 constexpr HeightMarchEntry height_march(const MarchEntry& common, bool needs_pyramid, bool needs_slope) {
   HeightMarchEntry entry{common};
   entry.needs_pyramid = needs_pyramid;
   entry.needs_slope = needs_slope;
   entry.cpu = march;
+  entry.traced = traced;
   entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings& settings) {
     return march(target, ray, settings, nullptr).status == HitStatus::hit;
   };
@@ -37,7 +38,7 @@ constexpr HeightMarchEntry height_march(const MarchEntry& common, bool needs_pyr
 }
 
 constexpr HeightMarchEntry max_mip() {
-  HeightMarchEntry entry = height_march<march_max_mip>(
+  HeightMarchEntry entry = height_march<march_max_mip, traced_max_mip>(
       {.name = "max-mip",
        .guarantee = Guarantee::exact,
        .simd = true,
@@ -84,7 +85,7 @@ constexpr HeightMarchEntry exhaustive() {
 constexpr std::array kHeightTable = {
     exhaustive(),
     max_mip(),
-    height_march<march_max_mip_bisect>(
+    height_march<march_max_mip_bisect, traced_max_mip_bisect>(
         {.name = "max-mip-bisect",
          .guarantee = Guarantee::approximate,
          .parameters = "16 halvings",
@@ -92,10 +93,10 @@ constexpr std::array kHeightTable = {
              "the same walk with the paper's binary search in the cell; misses rays that only dip into a cell"},
         true, false),
     max_mip_easy(),
-    height_march<march_naive>(kNaiveEntry, false, false),
-    height_march<march_fixed_step>(kFixedStepEntry, false, false),
-    height_march<march_relaxed>(kRelaxedEntry, false, false),
-    height_march<march_lipschitz>(kLipschitzEntry, true, true),
+    height_march<march_naive, traced_naive>(kNaiveEntry, false, false),
+    height_march<march_fixed_step, traced_fixed_step>(kFixedStepEntry, false, false),
+    height_march<march_relaxed, traced_relaxed>(kRelaxedEntry, false, false),
+    height_march<march_lipschitz, traced_lipschitz>(kLipschitzEntry, true, true),
 };
 
 }  // namespace

@@ -14,6 +14,8 @@
 
 namespace scarp {
 
+struct MarchTrace;  // base/march_trace.h
+
 /// Returns the closest hit of a ray in world space. Overwrites `stats` unless null.
 using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings,
                             MarchStats* stats);
@@ -33,8 +35,12 @@ using HeightAllHits = HitStatus (*)(const HeightTarget& target, const Ray& ray, 
 using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, const HitRules& rules,
                                    MarchStats* stats);
 
-/// A row of the table. Only `by_rules` and `all_hits` may be null: a technique without its own any-hit or batch query
-/// gets one based on `cpu`.
+/// The closest hit; `trace` receives the steps of the march. Overwrites `stats` unless null.
+using HeightMarchTraced = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings,
+                                  MarchStats* stats, MarchTrace& trace);
+
+/// A row of the table. Only `by_rules`, `all_hits` and `traced` may be null: a technique without its own any-hit or
+/// batch query gets one based on `cpu`.
 struct HeightMarchEntry : MarchEntry {
   bool needs_pyramid = false;               ///< HeightTarget::pyramid must be given
   bool needs_slope = false;                 ///< HeightTarget::slope must be given
@@ -51,6 +57,7 @@ struct HeightMarchEntry : MarchEntry {
   HeightMarchByRules by_rules = nullptr;
   /// All hits in order of t; null: the march finds the closest one only.
   HeightAllHits all_hits = nullptr;
+  HeightMarchTraced traced = nullptr;  ///< null if the march records nothing
 };
 
 /// The oracle, `exhaustive`, comes first.

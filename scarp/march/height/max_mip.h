@@ -26,6 +26,8 @@
 
 namespace scarp {
 
+struct MarchTrace;  // base/march_trace.h
+
 /// Closest hit; conventions as in ray.h. Requires the field's pyramid.
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr);
@@ -41,6 +43,13 @@ Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const Hit
 /// within a cell and emerge again; t has an error of up to the interval / 2^halvings.
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                          MarchStats* stats = nullptr);
+
+/// march_max_mip() and march_max_mip_bisect(), recorded: `trace` receives the blocks and cells of the walk. It stays
+/// empty for a ray along a grid line of a field with holes, which is tested cell by cell.
+Hit traced_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                   MarchTrace& trace);
+Hit traced_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                          MarchTrace& trace);
 
 /// Any hit: march_max_mip(...).status == hit, without computing t. A ray that was above at the entry of a block without
 /// holes, and falls below the block's minimum, is occluded without further traversal. Over ground without holes and

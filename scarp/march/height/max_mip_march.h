@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "scarp/base/march_trace.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/max_mip_walk.h"
@@ -63,6 +64,7 @@ Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, Marc
     constexpr Ask with_height = ask == Ask::any ? Ask::closest : ask;
     hit = march<with_height>(target, scaled_down(ray, exponent), usual, stats);
     hit.t = std::ldexp(hit.t, -exponent);
+    if (wanted.trace) wanted.trace->scale_times(exponent);
     if (wanted.all) {
       for (Hit& one : *wanted.all) one.t = std::ldexp(one.t, -exponent);
     }

@@ -25,6 +25,19 @@ Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const March
   return march<Ask::as_wanted>(target, ray, {.bisects = true, .halvings = settings.bisect.halvings}, stats);
 }
 
+Hit traced_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats,
+                   MarchTrace& trace) {
+  trace.steps.clear();
+  return march<Ask::as_wanted>(target, ray, {.trace = &trace}, stats);
+}
+
+Hit traced_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                          MarchTrace& trace) {
+  trace.steps.clear();
+  return march<Ask::as_wanted>(target, ray, {.bisects = true, .halvings = settings.bisect.halvings, .trace = &trace},
+                               stats);
+}
+
 HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
   hits.clear();
   return march<Ask::as_wanted>(target, ray, {.all = &hits}, nullptr).status;

@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "scarp/march/height/block_rules.h"
+#include "scarp/march/height/traced_visitor.h"
 
 // Internal linkage lets the compiler inline what is used once: otherwise the state spills to memory, and rays take 10 %
 // longer. For the same reason the common path through a cell is inlined, and the rare ones are not.
@@ -60,6 +62,9 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
 
  private:
   using Axis = typename Base::Axis;
+  // Queries that may have a trace record.
+  using Visitor =
+      std::conditional_t<ask == Ask::as_wanted, TracedVisitor<Base, typename Base::Visitor>, typename Base::Visitor>;
   using Base::bound_rounding, Base::grid_ray, Base::answer, Base::test_triangles, Base::falls_from_start;
   using Base::ray_height, Base::quadratic, Base::surface, Base::clearance, Base::rim, Base::is_hit;
   using Base::through_, Base::cell_end_, Base::from_outside_, Base::slow_, Base::below_rim_, Base::top_;
@@ -146,6 +151,7 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
     const double tx = x_.line_time(col_ + x_.ahead), ty = y_.line_time(row_ + y_.ahead);
     const double t_line = std::min(tx, ty);
     ++stats.cell_tests;
+    note_cell(t_line, true);
     cell_end_ = t_line;
     side_ = Side::above;
     if (!x_.moves() && !y_.moves()) {
@@ -179,6 +185,7 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
   // Straight up or down: one cell, one height, wherever the range ends.
   void vertical() {
     ++stats.steps;
+    note_cell(t_end_, !Holes || !ground_.is_hole(col_, row_));
     if (Holes && ground_.is_hole(col_, row_)) {
       follow_rim(t_in_, std::numeric_limits<double>::infinity(), {col_ - 1, col_ + 1, row_ - 1, row_ + 1});
       return;
@@ -194,13 +201,20 @@ class Walk : public BlockRules<T, Holes, Wraps, ask> {
     }
   }
 
+  // Records the current cell, outside the walk over blocks.
+  void note_cell(double t_out, bool tested) {
+    if constexpr (ask == Ask::as_wanted) {
+      if (wanted_.trace) record_cell(*wanted_.trace, col_, row_, t_in_, t_out, tested);
+    }
+  }
+
   // Traverses one copy of the grid; returns true if the ray has left for the next.
   [[gnu::always_inline]] bool walk() {
     // Copies that the compiler knows to be constant.
     const Axis x = x_, y = y_;
     BlockStart start{level_, col_, row_, t_in_};
     const bool left =
-        walk_blocks(x, y, top_, t_end_, ray_.t_max, start, after_x_, stats, typename Base::Visitor(*this));
+        walk_blocks(x, y, top_, t_end_, ray_.t_max, start, after_x_, stats, Visitor(static_cast<Base&>(*this)));
     if (left) level_ = start.level, col_ = start.col, row_ = start.row, t_in_ = start.t_in;
     return left;
   }

@@ -8,6 +8,10 @@
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/hit_rules.h"
 
+namespace scarp {
+struct MarchTrace;
+}
+
 namespace scarp::max_mip {
 
 /// The query: the closest hit, any hit, or as Wanted specifies: all hits, the closest one that a filter accepts, or the
@@ -22,6 +26,7 @@ struct Wanted {
   std::vector<Hit>* all = nullptr;    ///< as_wanted: receives all hits, unless null
   bool from_below = false;            ///< as_wanted: hits from below, over the inverted ground
   const HitFilter* accept = nullptr;  ///< as_wanted: null: the first hit is accepted
+  MarchTrace* trace = nullptr;        ///< as_wanted: receives the blocks and cells of the walk, unless null
 };
 
 // Look-ahead parameters of any hit, from a search over the rays of scarp-bench (doc/dev/decisions/march.md).

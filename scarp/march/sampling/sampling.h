@@ -85,6 +85,7 @@ Hit refined_hit(const Probe& probe, const SamplingSettings& settings, Refinement
                 const SamplePoint& last, const typename Probe::Sample& sample, double limit, const Stops& stops,
                 MarchStats& stats) {
   if (!before.known || how == Refinement::none) return probe.hit(last.t, sample);
+  if constexpr (requires { probe.refines(); }) probe.refines();
   double from = before.t, to = last.t;
   if (how == Refinement::bisect) {
     for (int i = 0; i < settings.halvings; ++i) {

@@ -53,7 +53,7 @@ auto brick_by_brick(const VoxelTarget& target, const QuantisedRay& ray) {
   const int octant = (step[0] < 0 ? 1 : 0) | (step[1] < 0 ? 2 : 0) | (step[2] < 0 ? 4 : 0);
   // Grids with sectors only start at the brick.
   const std::size_t levels = target.bricks->levels().size(), descents = levels > 1 ? levels : 0;
-  return [&target, &ahead = kAhead[octant], descents, entered = descents](VoxelWalk& walk, const ivec3& at,
+  return [&target, &ahead = kAhead[octant], descents, entered = descents](auto& walk, const ivec3& at,
                                                                           bool& solid) mutable {
     const ivec3 voxel = at;
     const int side = empty_side(target, ahead, voxel, entered);
@@ -72,6 +72,10 @@ auto brick_by_brick(const VoxelTarget& target, const QuantisedRay& ray) {
 
 VoxelHit march_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats) {
   return first_voxel(target, ray, stats, brick_by_brick(target, ray));
+}
+
+VoxelHit traced_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, MarchTrace& trace) {
+  return traced_voxel(target, ray, stats, trace, brick_by_brick(target, ray));
 }
 
 bool occluded_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray) {

@@ -20,4 +20,7 @@ namespace scarp {
 VoxelHit march_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats = nullptr);
 bool occluded_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray);
 
+/// As march_voxel_bricks(), recorded: adds to `trace`.
+VoxelHit traced_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, MarchTrace& trace);
+
 }  // namespace scarp

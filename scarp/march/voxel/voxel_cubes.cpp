@@ -8,7 +8,7 @@ namespace scarp {
 namespace {
 
 auto cube_by_cube(const VoxelTarget& target) {
-  return [&cubes = *target.cubes](VoxelWalk& walk, const ivec3& voxel, bool& solid) {
+  return [&cubes = *target.cubes](auto& walk, const ivec3& voxel, bool& solid) {
     const int distance = cubes.distance(voxel);
     solid = distance == 0;
     if (solid) return false;
@@ -20,6 +20,10 @@ auto cube_by_cube(const VoxelTarget& target) {
 
 VoxelHit march_voxel_cubes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats) {
   return first_voxel(target, ray, stats, cube_by_cube(target));
+}
+
+VoxelHit traced_voxel_cubes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, MarchTrace& trace) {
+  return traced_voxel(target, ray, stats, trace, cube_by_cube(target));
 }
 
 bool occluded_voxel_cubes(const VoxelTarget& target, const QuantisedRay& ray) {

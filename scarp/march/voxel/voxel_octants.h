@@ -19,4 +19,7 @@ namespace scarp {
 VoxelHit march_voxel_octants(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats = nullptr);
 bool occluded_voxel_octants(const VoxelTarget& target, const QuantisedRay& ray);
 
+/// As march_voxel_octants(), recorded: adds to `trace`.
+VoxelHit traced_voxel_octants(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, MarchTrace& trace);
+
 }  // namespace scarp

@@ -7,7 +7,7 @@ namespace scarp {
 namespace {
 
 auto plane_by_plane(const VoxelTarget& target) {
-  return [&grid = *target.grid](VoxelWalk& walk, const ivec3& voxel, bool& solid) {
+  return [&grid = *target.grid](auto& walk, const ivec3& voxel, bool& solid) {
     solid = grid.solid(voxel);
     return !solid && walk.step();
   };
@@ -17,6 +17,10 @@ auto plane_by_plane(const VoxelTarget& target) {
 
 VoxelHit march_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats) {
   return first_voxel(target, ray, stats, plane_by_plane(target));
+}
+
+VoxelHit traced_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, MarchTrace& trace) {
+  return traced_voxel(target, ray, stats, trace, plane_by_plane(target));
 }
 
 VoxelHit march_voxel_planes_accepted(const VoxelTarget& target, const QuantisedRay& ray, const VoxelFilter& accept,

@@ -22,4 +22,7 @@ VoxelHit march_voxel_planes_accepted(const VoxelTarget& target, const QuantisedR
                                      MarchStats* stats = nullptr);
 bool occluded_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray);
 
+/// As march_voxel_planes(), recorded: adds to `trace`.
+VoxelHit traced_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, MarchTrace& trace);
+
 }  // namespace scarp

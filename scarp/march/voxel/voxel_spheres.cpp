@@ -9,7 +9,7 @@ namespace scarp {
 namespace {
 
 auto sphere_by_sphere(const VoxelTarget& target, const QuantisedRay& ray) {
-  return [&spheres = *target.spheres, travel = travel_per_voxel(ray.direction)](VoxelWalk& walk, const ivec3& voxel,
+  return [&spheres = *target.spheres, travel = travel_per_voxel(ray.direction)](auto& walk, const ivec3& voxel,
                                                                                 bool& solid) {
     const int distance = spheres.distance(voxel);
     solid = distance == EmptySpheres::kSolid;
@@ -21,6 +21,11 @@ auto sphere_by_sphere(const VoxelTarget& target, const QuantisedRay& ray) {
 
 VoxelHit march_voxel_spheres(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats) {
   return first_voxel(target, ray, stats, sphere_by_sphere(target, ray));
+}
+
+VoxelHit traced_voxel_spheres(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats,
+                              MarchTrace& trace) {
+  return traced_voxel(target, ray, stats, trace, sphere_by_sphere(target, ray));
 }
 
 bool occluded_voxel_spheres(const VoxelTarget& target, const QuantisedRay& ray) {

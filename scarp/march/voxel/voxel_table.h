@@ -13,12 +13,17 @@ namespace scarp {
 /// The member of VoxelTarget that a voxel march requires besides the grid.
 enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
 
+/// As VoxelMarch; `trace` receives the steps of the march, after what it contains.
+using VoxelMarchTraced = VoxelHit (*)(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats,
+                                      MarchTrace& trace);
+
 /// A row. `cpu` and `occluded` are not null: a technique without its own any-hit query gets one based on `cpu`.
 struct VoxelMarchEntry : MarchEntry {
   VoxelAccelerator accelerator = VoxelAccelerator::none;
   VoxelMarch cpu = nullptr;  ///< scalar C++
   VoxelOcclusion occluded = nullptr;
   VoxelPacketMarch packet = nullptr;  ///< many rays at once in vectors; given if `simd`
+  VoxelMarchTraced traced = nullptr;  ///< null if the march records nothing
 };
 
 /// The oracle, `voxel-exhaustive`, comes first.

@@ -14,6 +14,7 @@ class EmptySpheres;
 class EmptyCubes;
 class OctantCubes;
 class BrickMasks;
+struct MarchTrace;   // base/march_trace.h
 struct VoxelPacket;  // voxel_packet.h
 struct VoxelStand;
 

@@ -93,6 +93,8 @@ class VoxelWalk {
     return hit;
   }
   bool in_range() const { return t() <= ray_.t_max; }
+  /// Time at which the ray enters the current voxel.
+  double t() const { return axis_ < 0 ? ray_.t : ray_.t_at(axis_, next_[axis_] - kVoxelPlaces); }
 
  private:
   // Axis of the smallest distance. If speed is 0 the distance is not, and comes last.
@@ -110,7 +112,6 @@ class VoxelWalk {
     axis_ = axis;
   }
   bool in_box() const { return voxel_[axis_] >= box_.low[axis_] && voxel_[axis_] < box_.high[axis_]; }
-  double t() const { return axis_ < 0 ? ray_.t : ray_.t_at(axis_, next_[axis_] - kVoxelPlaces); }
 
   // a / speed, rounded down, for 0 <= a < 2^53: by a product, corrected.
   static std::int64_t quotient(std::int64_t a, std::int64_t speed, double slowness) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/base/march_trace.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/rounded_voxels.h"
 #include "scarp/march/voxel/voxel_planes.h"
@@ -39,6 +40,15 @@ Hit hit_on(std::uint32_t part, const VoxelHit& found) {
   Hit hit;
   hit.status = HitStatus::hit, hit.face = found.face, hit.t = found.t;
   hit.voxel = found.voxel, hit.part = part;
+  return hit;
+}
+
+// The march in one grid, recorded.
+VoxelHit traced_in(const VoxelMarchEntry& march, const VoxelTarget& target, const QuantisedRay& ray,
+                   std::uint32_t object, MarchStats& stats, MarchTrace& trace) {
+  const std::size_t first = trace.steps.size();
+  const VoxelHit hit = march.traced(target, ray, &stats, trace);
+  for (std::size_t i = first; i < trace.steps.size(); ++i) trace.steps[i].object = object;
   return hit;
 }
 
@@ -144,7 +154,8 @@ bool VoxelObjects::begins_into(const Ray& ray, const Hit* from) const {
   return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
 }
 
-Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const {
+Hit VoxelObjects::follow(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats,
+                         MarchTrace* trace) const {
   if (stats) *stats = {};
   Hit best;
   if (in_tree_.empty()) return best;
@@ -155,7 +166,8 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* 
       hit.t = std::ldexp(hit.t, -exponent);
       return (*accept)(hit);
     };
-    best = closest_hit(scaled_down(ray, exponent), from, accept ? &usual : nullptr, stats);
+    best = follow(scaled_down(ray, exponent), from, accept ? &usual : nullptr, stats, trace);
+    if (trace) trace->scale_times(exponent);
     if (best) best.t = std::ldexp(best.t, -exponent);
     return best;
   }
@@ -180,7 +192,9 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* 
       QuantisedRay quantised;
       if (!query.quantise_at(index, t_max, from, quantised)) return t_max;
       const VoxelTarget& target = targets_[object.model];
-      hit = models_[object.model]->march().cpu(target, quantised, stats ? &steps : nullptr);
+      const VoxelMarchEntry& march = models_[object.model]->march();
+      hit = trace ? traced_in(march, target, quantised, index, steps, *trace)
+                  : march.cpu(target, quantised, stats ? &steps : nullptr);
       if (accept && hit && !counts(hit)) hit = march_voxel_planes_accepted(target, quantised, counts, &steps);
     }
     if (stats) {
@@ -194,6 +208,15 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* 
     return t_max;
   });
   return best;
+}
+
+Hit VoxelObjects::traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const {
+  trace.steps.clear();
+  return follow(ray, nullptr, nullptr, stats, &trace);
+}
+
+bool VoxelObjects::records() const {
+  return std::all_of(models_.begin(), models_.end(), [](const auto& model) { return model->march().traced; });
 }
 
 bool VoxelObjects::occluded(const Ray& ray, const Hit* from) const {

@@ -54,7 +54,14 @@ class VoxelObjects {
     return closest_hit(ray, from, nullptr, stats);
   }
   /// The same, restricted to voxels that the filter accepts; null: all count.
-  Hit closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const;
+  Hit closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const {
+    return follow(ray, from, accept, stats, nullptr);
+  }
+  /// closest_hit(ray, stats) without rounding; `trace` receives the steps in each grid. Their objects need not be in
+  /// the order of t. Requires records().
+  Hit traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const;
+  /// Whether the marches of all models record their steps.
+  bool records() const;
   /// Whether anything blocks the ray.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
   /// The same for a ray that starts on the face of the hit `from`, as closest_hit().
@@ -153,6 +160,7 @@ class VoxelObjects {
   class PacketQuery;
 
   std::vector<VoxelPlace> places() const;
+  Hit follow(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats, MarchTrace* trace) const;
   bool begins_into(const Ray& ray, const Hit* from) const;
   bool occluded(const Ray& ray, const Hit* from) const;
   template <class Together, class Alone>
