@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/cast_samples.h"
 #include "app/cli/commands/scan.h"
 #include "app/cli/options/device_option.h"
 #include "app/cli/options/field_options.h"
@@ -32,6 +33,7 @@
 #include "scarp/march/height/height_table.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/output/hit_table.h"
+#include "scarp/output/trace_table.h"
 #include "scarp/scene/scene.h"
 #include "scarp/scene/voxel_entry.h"
 #include "scarp/source/raster/coordinates.h"
@@ -70,7 +72,7 @@ turns, range, noise, mounting, time_offsets, azimuth_offsets (doc/user/scanners.
 column, channel, azimuth, elevation, range, x,y,z, object. LAS is version 1.4, point format 6.)";
 
 struct CastOptions : InputOptions {
-  std::string rays, output, coordinates;
+  std::string rays, output, coordinates, samples;
   ScanOptions scan;
   bool any = false, all = false;
   int threads = 0;
@@ -341,6 +343,8 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
                : terrain   ? TableKind::hits
                            : TableKind::scene_hits,
                table.carried);
+  std::optional<TraceTable> samples;
+  if (!options.samples.empty()) samples.emplace(options.samples);
   WholeInput whole = open_whole(options, kind);
   std::vector<std::string>& notes = whole.notes;
   const Places& places = whole.places;
@@ -349,6 +353,7 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
   if (std::string note = check(table, rays, whole.scene); !note.empty()) notes.push_back(std::move(note));
   stop_if_interrupted();
 
+  if (samples) require_samples(whole.scene);
   const SceneOnDevice there = scene_on_device(options.device, whole.scene);
   const Scene& scene = there.scene;
   const std::string& device = there.device;
@@ -365,6 +370,7 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
     if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
   }
   out.commit();
+  if (samples) write_samples(*samples, scene, rays, frame);
   // Last: on failure only one line is printed.
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
@@ -397,6 +403,12 @@ void run(CastOptions options, const Command& command) {
   const HeightMarchEntry* const all = all_hits_of(options);  // refuses before files are read
   validate(options.march_settings);
   keep_inputs(options.output, options.typed);
+  if (!options.samples.empty()) {
+    std::vector<std::string> others = options.typed;
+    if (const auto own = std::find(others.begin(), others.end(), options.samples); own != others.end())
+      others.erase(own);
+    keep_inputs(options.samples, others);
+  }
   const ThreadLimit limit(options.threads);
   // The reader of the table may close the pipe, as `head` does: the program then ends silently, as others do.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
@@ -440,6 +452,14 @@ void add_cast(Program& program) {
                        .common = true,
                        .inputs = {kTerrain, kFirstHit, kFirstHit},
                        .excludes = {"--any", "--mesh", "--scanner"}});
+  command.add(&o.samples, {.names = "--samples",
+                           .value = "FILE",
+                           .help = "table of the steps of each ray's march: .csv",
+                           .files = "csv",
+                           .fallback = "none",
+                           .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree",
+                                      "marches of scenes have several objects"},
+                           .excludes = {"--mesh", "--scanner", "--device", "--rounded"}});
   add_march_option(command, o.march);
   add_device_option(command, o.device);
   add_threads_option(command, o.threads);
@@ -450,7 +470,7 @@ void add_cast(Program& program) {
   add_vox_rounding_options(command, o.vox_look);
   add_function_options(command, o.function, {}, o.march, o.march_settings);
   add_raster_options(command, o.raster);
-  command.footer(kTables);
+  command.footer(fmt::format("{}\n\n{}", kTables, kSampleColumns));
   command.example("scarp cast dem.tif --rays rays.csv -o hits.csv");
   command.example("scarp cast dem.tif --rays rays.npy --coords local --any -o blocked.npy");
   command.example("scarp cast city.vox --rays rays.csv");

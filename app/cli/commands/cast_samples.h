@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// `scarp cast --samples`: the steps of each ray's march as a table.
+#pragma once
+
+#include <span>
+
+#include "scarp/base/ray.h"
+#include "scarp/output/trace_table.h"
+#include "scarp/scene/scene.h"
+#include "scarp/source/raster/coordinates.h"
+
+namespace scarp::cli {
+
+/// Below the options in the help, which has to fit on a screen.
+inline constexpr const char* kSampleColumns =
+    "Samples (--samples): a row for each step of a march and for its result; columns: doc/user/cast.md";
+
+/// Throws Error unless the scene is one field whose march records its steps.
+void require_samples(const Scene& scene);
+
+/// Traces the rays again and writes their steps, in the coordinates of `frame`.
+void write_samples(TraceTable& table, const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame);
+
+}  // namespace scarp::cli

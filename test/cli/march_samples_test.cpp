@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// `scarp cast --samples`: the steps of marches as tables.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli/csv_rows.h"
+#include "cli/program.h"
+#include "cli/refused.h"
+
+namespace scarp {
+namespace {
+
+using test::number;
+using test::Row;
+using test::rows_of;
+using test::run;
+using test::text_of;
+using Names = std::vector<std::string>;
+
+class MarchSamples : public testing::Test {
+ protected:
+  static constexpr int kCols = 33, kRows = 25;
+  static constexpr double kCell = 10;
+
+  static double sample(int col, int row) { return 40 + 30 * std::sin(0.4 * col) * std::cos(0.3 * row); }
+  // Bilinear, at metres from the south-west sample.
+  static double ground(double x, double y) {
+    const double col = x / kCell, row = kRows - 1 - y / kCell;
+    const int c = std::clamp(static_cast<int>(col), 0, kCols - 2), r = std::clamp(static_cast<int>(row), 0, kRows - 2);
+    const double u = col - c, v = row - r;
+    const double north = sample(c, r) + u * (sample(c + 1, r) - sample(c, r));
+    const double south = sample(c, r + 1) + u * (sample(c + 1, r + 1) - sample(c, r + 1));
+    return north + v * (south - north);
+  }
+
+  // An ESRI ASCII grid with node (0, 24) at map (1000, 2000).
+  std::string hills() const {
+    std::string text =
+        fmt::format("ncols {}\nnrows {}\nxllcenter 1000\nyllcenter 2000\ncellsize {}\n", kCols, kRows, kCell);
+    for (int row = 0; row < kRows; ++row) {
+      for (int col = 0; col < kCols; ++col) text += fmt::format("{} ", sample(col, row));
+      text += "\n";
+    }
+    return scratch_.write("hills.asc", text);
+  }
+  std::string rays() const {
+    return scratch_.write("rays.csv",
+                          "x,y,z,dx,dy,dz\n5,12,150,1,0.7,-0.4\n300,200,120,-2,-1,-0.6\n10,10,200,1,1,0.5\n");
+  }
+  // 16 x 16 x 16 voxels with a wall at x = 12.
+  std::string wall() const {
+    std::string bytes(16 * 16 * 16, '\0');
+    for (int z = 0; z < 16; ++z) {
+      for (int y = 0; y < 16; ++y) bytes[static_cast<std::size_t>((z * 16 + y) * 16 + 12)] = '\1';
+    }
+    bytes[0] = '\1';
+    return scratch_.write("wall.raw", bytes);
+  }
+  std::string path(const std::string& name) const { return scratch_.path(name); }
+
+  std::vector<Row> samples(const std::string& march) const {
+    const auto result = run({"cast", hills(), "--rays", rays(), "--coords", "local", "--march", march, "--samples",
+                             path("s.csv"), "-o", path("hits.csv")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return rows_of(text_of(path("s.csv")));
+  }
+
+  test::Scratch scratch_;
+};
+
+TEST_F(MarchSamples, SamplesLieOnTheirRaysAboveTheGround) {
+  const std::vector<std::array<double, 6>> typed{
+      {5, 12, 150, 1, 0.7, -0.4}, {300, 200, 120, -2, -1, -0.6}, {10, 10, 200, 1, 1, 0.5}};
+  for (const char* march : {"naive", "relaxed", "fixed-step", "lipschitz", "max-mip"}) {
+    const std::vector<Row> rows = samples(march);
+    const std::vector<Row> hits = rows_of(text_of(path("hits.csv")));
+    std::map<int, int> count;
+    int balls = 0;
+    for (const Row& row : rows) {
+      const int ray = static_cast<int>(number(row, "ray"));
+      ASSERT_TRUE(ray >= 0 && ray < 3);
+      EXPECT_EQ(number(row, "index"), count[ray]++) << march;
+      if (row.at("t").empty()) continue;
+      const auto& r = typed[static_cast<std::size_t>(ray)];
+      const double t = number(row, "t"), x = r[0] + t * r[3], y = r[1] + t * r[4], z = r[2] + t * r[5];
+      EXPECT_NEAR(number(row, "x"), x, 1e-9) << march;
+      EXPECT_NEAR(number(row, "y"), y, 1e-9) << march;
+      EXPECT_NEAR(number(row, "z"), z, 1e-9) << march;
+      if (row.at("kind") == "sample") {
+        EXPECT_NEAR(number(row, "clearance"), z - ground(x, y), 1e-3) << march << " t=" << t;  // float32 samples
+      }
+      balls += !row.at("free").empty();
+      if (row.at("kind") == "passed-block") {
+        EXPECT_GE(number(row, "maximum"), ground(x, y) - 1e-3) << march;
+      }
+    }
+    EXPECT_EQ(balls > 0, std::string(march) == "lipschitz");
+    // The last row of each ray is its result.
+    ASSERT_EQ(hits.size(), 3u);
+    for (std::size_t ray = 0; ray < 3; ++ray) {
+      const auto last = std::find_if(rows.rbegin(), rows.rend(),
+                                     [&](const Row& row) { return number(row, "ray") == static_cast<double>(ray); });
+      ASSERT_NE(last, rows.rend());
+      EXPECT_EQ(last->at("kind"), hits[ray].at("status")) << march;
+      EXPECT_EQ(last->at("t"), hits[ray].at("t")) << march;
+    }
+    EXPECT_GT(rows.size(), 6u) << march;
+  }
+}
+
+TEST_F(MarchSamples, FixedStepsAreEquallyLong) {
+  const std::vector<Row> rows = samples("fixed-step");
+  const double step = number(rows.at(1), "t") - number(rows.at(0), "t");
+  for (std::size_t i = 2; rows.at(i).at("kind") == "sample" && number(rows[i], "ray") == 0 && i < 20; ++i)
+    EXPECT_NEAR(number(rows[i], "t") - number(rows[i - 1], "t"), step, 1e-12);
+}
+
+TEST_F(MarchSamples, PlacesAreInTheCoordinatesOfRays) {
+  const std::string table = scratch_.write("map.csv", "x,y,z,dx,dy,dz\n1005,2012,150,1,0.7,-0.4\n");
+  ASSERT_EQ(run({"cast", hills(), "--rays", table, "--samples", path("s.csv"), "-o", path("h.csv")}).status, 0);
+  const std::vector<Row> rows = rows_of(text_of(path("s.csv")));
+  for (const Row& row : rows) EXPECT_NEAR(number(row, "x"), 1005 + number(row, "t"), 1e-9);
+}
+
+TEST_F(MarchSamples, VoxelMarchesRecordWhatTheySkip) {
+  const std::string table = scratch_.write("v.csv", "x,y,z,dx,dy,dz\n1.5,8.5,8.5,1,0,0\n");
+  std::map<std::string, std::size_t> counts;
+  for (const std::string march : {"planes", "spheres", "cubes", "cubes-jump", "octants", "bricks"}) {
+    const auto result = run({"cast", wall(), "--volume", "16x16x16:u8", "--solid-from", "1", "--rays", table, "--march",
+                             "voxel-" + march, "--samples", path("s.csv"), "-o", path("h.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::vector<Row> rows = rows_of(text_of(path("s.csv")));
+    ASSERT_GE(rows.size(), 2u) << march;
+    const Row &solid = rows[rows.size() - 2], &last = rows.back(), hit = rows_of(text_of(path("h.csv"))).at(0);
+    EXPECT_EQ(solid.at("kind"), "solid") << march;
+    for (const char* column : {"voxel_x", "voxel_y", "voxel_z", "t"})
+      EXPECT_EQ(solid.at(column), hit.at(column)) << march;
+    EXPECT_EQ(last.at("kind"), "hit");
+    for (std::size_t i = 0; i + 2 < rows.size(); ++i) {
+      EXPECT_EQ(rows[i].at("t_out"), rows[i + 1].at("t")) << march;
+      EXPECT_LT(number(rows[i], "voxel_x"), 12) << march;
+      // An empty cube ends in front of the wall.
+      if (rows[i].at("kind") == "cube") {
+        EXPECT_LE(number(rows[i], "low_x") + number(rows[i], "size"), 12) << march;
+      }
+    }
+    counts[march] = rows.size();
+  }
+  EXPECT_EQ(counts["planes"], 11u + 2u);
+  EXPECT_LT(counts["cubes"], counts["planes"]);
+  EXPECT_LE(counts["octants"], counts["cubes"]);
+}
+
+TEST_F(MarchSamples, ReportsBadInputInOneLineWithoutOutput) {
+  const Names cast{"cast", hills(), "--rays", rays(), "--coords", "local", "-o", path("h.csv"), "--samples"};
+  const auto refused = [&](Names arguments, const Names& more, const std::string& fragment) {
+    const Names before = scratch_.files();
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    test::expect_refused(run(arguments), fragment);
+    EXPECT_EQ(scratch_.files(), before) << fragment;
+  };
+  refused(cast, {path("s.npy")}, "end the name in .csv");
+  refused(cast, {path("none/s.csv")}, "none");
+  refused(cast, {path("hills.asc")}, "hills.asc");
+  refused(cast, {path("rays.csv")}, "is the input");
+  refused(cast, {path("s.csv"), "--march", "exhaustive"}, "the march exhaustive records no steps (use max-mip");
+  refused({"cast", "--function", "ridges", "--rays", rays(), "--samples", path("s.csv")}, {},
+          "the march lipschitz-local records no steps (use naive");
+}
+
+}  // namespace
+}  // namespace scarp
