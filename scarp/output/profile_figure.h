@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws a terrain profile with a line of sight, as SVG or PNG. Requires a build with Cairo (SCARP_CAIRO).
+// Draws a terrain profile with a line of sight, as SVG, PDF or PNG. Requires a build with Cairo (SCARP_CAIRO).
 #pragma once
 
 #include <string>
@@ -27,8 +27,8 @@ struct ProfileFigure {
   int width = 1200, height = 480;  ///< pixels
 };
 
-/// Writes SVG or PNG, depending on the extension of `path`, to the temporary file of `file`, and commits it. Throws
-/// Error naming `path` if writing fails (disk full), or for another extension.
+/// Writes SVG, PDF or PNG, depending on the extension of `path`, to the temporary file of `file`, and commits it.
+/// Throws Error naming `path` if writing fails (disk full), or for another extension.
 void write_profile_figure(ReplaceFile& file, const std::string& path, const ProfileFigure& figure);
 
 }  // namespace scarp

@@ -361,7 +361,42 @@ TEST_F(MapsCli, ProfileWritesATableOrAFigure) {
   EXPECT_EQ(ground_at(path("h.png"), 0.5), 0);
   EXPECT_GT(ground_at(path("h.png"), 0.7), 0);
 #endif
-  expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
+  expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg, .pdf or .png");
+}
+
+TEST_F(MapsCli, ProfileDrawsTheStepsOfMarches) {
+  const Names line = on_dem("profile") + Names{"--from", "500105,5000105,40", "--to", "500285,5000105"};
+#ifdef SCARP_CAIRO
+  const auto result =
+      run(line + Names{"--march", "naive,relaxed,lipschitz,fixed-step,max-mip,max-mip-bisect", "-o", path("m.svg")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(lines(result.out), 6) << result.out;
+  EXPECT_NE(result.out.find("max-mip: "), std::string::npos) << result.out;
+  EXPECT_NE(text_of(path("m.svg")).find("<svg"), std::string::npos);
+  // The ray of --ray is that of --from and --to.
+  const auto typed = run(on_dem("profile") + Names{"--heights", "sea", "--from", "500105,5000105,90", "--to",
+                                                   "500285,5000105,60", "--march", "max-mip", "-o", path("t.pdf")});
+  ASSERT_EQ(typed.status, 0) << typed.err;
+  const auto ray =
+      run(on_dem("profile") + Names{"--ray", "500105,5000105,90,180,0,-30", "--march", "max-mip", "-o", path("r.png")});
+  ASSERT_EQ(ray.status, 0) << ray.err;
+  EXPECT_EQ(text_of(path("t.pdf")).substr(0, 4), "%PDF");
+  EXPECT_EQ(typed.out.substr(path("t.pdf").size()), ray.out.substr(path("r.png").size()));
+  // A setting of a march that is drawn.
+  const Names step{"--fixed-step", "3", "-o", path("s.png"), "--march"};
+  EXPECT_EQ(run(line + step + Names{"max-mip,fixed-step"}).status, 0);
+  expect_refused(line + step + Names{"max-mip,naive"}, "--fixed-step needs --march fixed-step");
+  expect_refused(on_dem("profile") + Names{"--ray", "0,0,90,-1,0,0", "--march", "naive", "-o", path("x.svg")},
+                 "does not pass over");
+  expect_refused(
+      on_dem("profile") + Names{"--ray", "500105,5000105,90,0,0,-1", "--march", "naive", "-o", path("x.svg")},
+      "not vertical");
+  expect_refused(line + Names{"--march", "naive,max-mip", "--size", "300x200", "-o", path("x.svg")}, "do not fit");
+#endif
+  expect_refused(line + Names{"--march", "exhaustive", "-o", path("x.svg")}, "--march 'exhaustive': expected max-mip");
+  expect_refused(line + Names{"--march", "naive", "-o", path("x.csv")}, "has no effect without a .svg");
+  expect_refused(line + Names{"--shrink", "0.5"}, "--shrink needs --march lipschitz");
+  expect_refused(on_dem("profile") + Names{"--to", "500285,5000105"}, "--from X,Y[,H] is required");
 }
 
 // Green where the observer sees the ground, grey elsewhere, height colours outside the map.

@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/profile_march.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/shared_options.h"
@@ -34,9 +36,22 @@ constexpr const char* kColumns = R"(CSV, a row for each end and each crossing wi
   visible   1 if the observer sees the ground there, else 0)";
 
 struct ProfileOptions : MapOptions {
-  std::string from, to, size = "1200x480";
+  std::string from, to, size;
   SightHeights heights;
+  ProfileMarchOptions march;
 };
+
+constexpr int kWidth = 1200, kHeight = 480;  // of figures
+
+// Width and height of --size; without it a height of `height`.
+std::array<int, 2> size_of(const ProfileOptions& options, int height) {
+  if (options.size.empty()) return {kWidth, height};
+  const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, 200 to 8192 each");
+  for (const double n : size)
+    if (!(n >= 200 && n <= 8192 && n == std::floor(n)))
+      throw Error(fmt::format("--size '{}': expected WIDTHxHEIGHT in pixels, 200 to 8192 each", options.size));
+  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
+}
 
 std::string csv_of(const MapInput& input, const std::vector<ProfilePoint>& points) {
   std::string out = "distance,x,y,ground,drop,sight,visible\n";
@@ -52,12 +67,8 @@ std::string csv_of(const MapInput& input, const std::vector<ProfilePoint>& point
 void draw(const MapInput& input, const ProfileOptions& options, const SightLine& line,
           const std::vector<ProfilePoint>& points, const LineOfSight& sight) {
   ProfileFigure figure;
-  const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, 200 to 8192 each");
-  for (const double n : size)
-    if (!(n >= 200 && n <= 8192 && n == std::floor(n)))
-      throw Error(fmt::format("--size '{}': expected WIDTHxHEIGHT in pixels, 200 to 8192 each", options.size));
-  figure.width = static_cast<int>(size[0]);
-  figure.height = static_cast<int>(size[1]);
+  const auto [width, height] = size_of(options, kHeight);
+  figure.width = width, figure.height = height;
   for (const ProfilePoint& p : points)
     figure.points.push_back({p.distance, p.ground, p.sight, p.visible, p.after_hole});
   const dvec2 from = input.place_of(line.from().col, line.from().row),
@@ -75,32 +86,70 @@ void draw(const MapInput& input, const ProfileOptions& options, const SightLine&
 }
 #endif
 
+// The typed line, and the field with the lengths of its cells at its start.
+struct ProfileLine {
+  SightEnds ends;
+  HeightField field;
+};
+
+ProfileLine line_of(MapInput& input, const PlaceTable& table, const SightHeights& heights) {
+  const SightEnds ends = sight_ends(input, table, 0, heights);
+  const auto& [from, to] = ends;
+  const HeightFieldSettings& cells = input.field().settings();
+  return {ends, input.field_at(from.col, from.row,
+                               std::hypot((to.col - from.col) * cells.cell_x, (to.row - from.row) * cells.cell_y))};
+}
+
+void run_marches(const ProfileOptions& options, const PlaceTable& table) {
+  const auto [width, height] = size_of(options, 0);
+  MapInput input(options);
+  keep_inputs(options.output, input.files());
+  std::vector<std::string> lines;
+  if (options.march.ray.empty()) {
+    const ProfileLine ends = line_of(input, table, options.heights);
+    const SightLine line(ends.field, ends.ends.from, ends.ends.to, {.coefficient = 0});
+    const std::string title = fmt::format("ray from {} to {}: {:.6g} m to {:.6g} m above sea", options.from, options.to,
+                                          line.eye(), line.target());
+    lines = draw_marches(options.march, ray_along(line), title, width, height, options.output);
+  } else {
+    lines = draw_marches(options.march, typed_ray(input, options.march.ray), "ray " + options.march.ray, width, height,
+                         options.output);
+  }
+  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& line : lines) fmt::print("{}: {}\n", options.output, line);
+}
+
 void run(ProfileOptions options, const Command& command) {
   if (options.output == "-") options.output.clear();
-  command.require_effect({});
-  const std::string extension = extension_of(options.output);
-  if (!options.output.empty() && extension != ".csv" && extension != ".svg" && extension != ".png")
-    throw Error(fmt::format("output '{}': expected .csv, .svg or .png", options.output));
+  check_marches(command, options.march);
+  if (!options.output.empty() && extension_of(options.output) != ".csv" && !is_figure(options.output))
+    throw Error(fmt::format("output '{}': expected .csv, .svg, .pdf or .png", options.output));
 #ifndef SCARP_CAIRO
-  if (extension == ".svg" || extension == ".png")
+  if (is_figure(options.output))
     throw Error(fmt::format("output '{}': this build draws no figures (SCARP_CAIRO=OFF)", options.output));
 #endif
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
-  SightPlaces places;
-  places.from = {options.from};
-  places.to = {options.to};
-  const PlaceTable table = sight_places(places);
+  PlaceTable table;
+  if (options.march.ray.empty()) {
+    for (const char* name : {"--from", "--to"})
+      if (!command.given(name))
+        throw WrongUsage(fmt::format("{} X,Y[,H] is required (see 'scarp profile --help')", name));
+    SightPlaces places;
+    places.from = {options.from};
+    places.to = {options.to};
+    table = sight_places(places);
+  }
+  if (!options.march.names.empty()) return run_marches(options, table);
   MapInput input(options);
   keep_inputs(options.output, input.files());
-  const auto [from, to] = sight_ends(input, table, 0, options.heights);
-  const HeightFieldSettings& cells = input.field().settings();
-  const HeightField field = input.field_at(
-      from.col, from.row, std::hypot((to.col - from.col) * cells.cell_x, (to.row - from.row) * cells.cell_y));
+  const ProfileLine ends = line_of(input, table, options.heights);
+  const HeightField& field = ends.field;
+  const auto& [from, to] = ends.ends;
   const SightLine line(field, from, to, input.curvature());
   const std::vector<ProfilePoint> points = profile(line);
   const LineOfSight sight = line_of_sight(field, from, to, input.curvature());
-  if (extension == ".svg" || extension == ".png") {
+  if (is_figure(options.output)) {
 #ifdef SCARP_CAIRO
     draw(input, options, line, points, sight);
 #endif
@@ -121,20 +170,22 @@ void add_profile(Program& program) {
   Command& command = program.add("profile", "Write or draw the heights along a line, with its line of sight");
   const auto options = std::make_shared<ProfileOptions>();
   ProfileOptions& o = *options;
-  command.add(&o.from, {.names = "--from", .value = "X,Y[,H]", .help = "observer", .common = true, .required = true});
-  command.add(&o.to, {.names = "--to", .value = "X,Y[,H]", .help = "target", .common = true, .required = true});
-  add_output_option(command, o.output, "result: .csv, .svg or .png; -: CSV to standard output", "csv svg png", false);
+  command.add(&o.from, {.names = "--from", .value = "X,Y[,H]", .help = "observer, start of the ray", .common = true});
+  command.add(&o.to, {.names = "--to", .value = "X,Y[,H]", .help = "target", .common = true});
+  add_output_option(command, o.output, "result: .csv, .svg, .pdf or .png; -: CSV to standard output", "csv svg pdf png",
+                    false);
   command.add(&o.size, {.names = "--size",
                         .value = "WxH",
                         .help = "size of the figure in pixels",
+                        .fallback = "1200x480; marches: as high as their panels",
                         .common = true,
-                        .rules = {needs("a .svg or .png output", [&o] {
-                          return extension_of(o.output) == ".svg" || extension_of(o.output) == ".png";
-                        })}});
+                        .rules = {needs("a .svg, .pdf or .png output", [&o] { return is_figure(o.output); })}});
+  add_profile_march_options(command, o.march, o.output);
   add_sight_heights(command, o.heights);
   add_curvature_option(command, o.curvature);
   add_map_options(command, o);
   command.footer(kColumns);
+  command.example("scarp profile dem.tif --from 692000,5143000,400 --to 692900,5143500 --march max-mip -o ray.svg");
   command.example("scarp profile dem.tif --from 692000,5143000 --to 698500,5149000,10 -o profile.svg");
   command.runs([options, &command] {
     options->typed = command.typed_values();

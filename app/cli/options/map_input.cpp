@@ -114,6 +114,8 @@ dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_vi
   return {points[0].x / georeference_.cell_x_m, field_.rows() - 1 - points[0].y / georeference_.cell_y_m};
 }
 
+dvec3 MapInput::direction_of(const dvec3& typed) const { return frame_->direction_to_local(typed); }
+
 void MapInput::refuse_outside(const TablePlace& place, std::string_view what, double beyond) const {
   const dvec2 low = place_of(-beyond, field_.rows() - 1 + beyond), high = place_of(field_.cols() - 1 + beyond, -beyond);
   throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--coords)",

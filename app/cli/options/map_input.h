@@ -61,6 +61,8 @@ class MapInput {
   dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// The same for a place that may be outside.
   dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// A direction in the coordinates of --coords, its height in metres, in metres of the local frame.
+  dvec3 direction_of(const dvec3& typed) const;
   /// The sample nearest to a place, as grid_of(). Places up to half a cell beyond the border are valid.
   Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// Converts a position in columns and rows to map coordinates, degrees or metres, as --coords specifies.
