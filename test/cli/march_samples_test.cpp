@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// `scarp cast --samples`: the steps of marches as tables.
+// `scarp cast --samples` and `section --ray`: the steps of marches as tables and figures.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/csv_rows.h"
@@ -156,6 +158,45 @@ TEST_F(MarchSamples, VoxelMarchesRecordWhatTheySkip) {
   EXPECT_EQ(counts["planes"], 11u + 2u);
   EXPECT_LT(counts["cubes"], counts["planes"]);
   EXPECT_LE(counts["octants"], counts["cubes"]);
+}
+
+TEST_F(MarchSamples, SectionDrawsVisitedVoxelsAndEmptyBodies) {
+  const Names section{"section", wall(), "--volume", "16x16x16:u8", "--solid-from", "1", "-o", path("s.svg")};
+  const auto draw = [&](const Names& more) {
+    Names arguments = section;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const auto count = [&](const std::string& part) {
+    const std::string text = text_of(path("s.svg"));
+    int found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  const std::string ray = "--ray=-2,8.5,8.5,1,0.25,0";
+  const auto spheres = draw({ray, "--march", "voxel-planes,voxel-spheres"});
+  ASSERT_EQ(spheres.status, 0) << spheres.err;
+  EXPECT_NE(spheres.out.find("s.svg: voxel-planes: 17 steps, hits voxel 12,11,8"), std::string::npos) << spheres.out;
+  EXPECT_NE(spheres.out.find("s.svg: voxel-spheres: "), std::string::npos) << spheres.out;
+  EXPECT_EQ(count("<svg"), 1 + 2);
+  EXPECT_EQ(count("hits voxel 12,11,8"), 2);
+  // The default march; the layer is perpendicular to an axis along which the ray does not travel.
+  const auto cubes = draw({"--ray=-2,8.5,8.5,1,0,0.25"});
+  ASSERT_EQ(cubes.status, 0) << cubes.err;
+  EXPECT_NE(cubes.out.find("voxel-cubes: "), std::string::npos) << cubes.out;
+  std::filesystem::remove(path("s.svg"));
+  const std::vector<std::pair<Names, std::string>> bad{
+      {{"--ray=-2,8.5,8.5,1,0.25,0.1"}, "leaves its layer"},
+      {{ray, "--axis", "y"}, "leaves its layer"},
+      {{"--ray=1,2,3,0,0,0"}, "the direction is zero"},
+      {{"--ray=1,2,3"}, "--ray '1,2,3': expected X,Y,Z,DX,DY,DZ"},
+      {{"--ray=-2,8.5,99,1,0.25,0"}, "layer 99 along z is beside the model"},
+      {{"--ray=-2,99,8.5,1,0.25,0"}, "does not pass through the model"},
+      {{ray, "--march", "voxel-exhaustive"}, "--march 'voxel-exhaustive': expected voxel-planes"},
+      {{"--march", "voxel-cubes"}, "--march has no effect without --ray"},
+      {{ray, "--at", "3"}, "--at"},
+      {{ray, "--radii", "cubes"}, "--ray"}};
+  for (const auto& [arguments, fragment] : bad) test::expect_refused(draw(arguments), fragment);
 }
 
 TEST_F(MarchSamples, ReportsBadInputInOneLineWithoutOutput) {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 // `scarp section`: draws one layer of a voxel model with the radius of the empty sphere or cube around each voxel, as
-// in figure 5 of C. Leak, "Raymarching voxel rendering".
+// in figure 5 of C. Leak, "Raymarching voxel rendering"; or the steps of marches along a ray in the layer.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/voxel_section_ray.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/vox_input.h"
@@ -23,13 +25,15 @@ namespace scarp::cli {
 namespace {
 
 struct SectionOptions {
-  std::string input, output, radii = "spheres", axis = "z";
+  std::string input, output, radii = "spheres", axis, ray;
+  std::vector<std::string> marches{"voxel-cubes"};
   int at = -1, model = 0, margin = 4;
   VoxOptions vox;
 };
 
 constexpr int kCell = 20;  // of the picture, in its units
 constexpr int kMostCells = 256;
+constexpr const char* kAxes[] = {"x", "y", "z"};
 
 // Radii as colours: white for 0, deeper with every voxel, up to the largest of the layer.
 std::string shade(int radius, int largest) {
@@ -109,6 +113,23 @@ void write_text(const std::string& path, const std::string& text) {
   place.commit();
 }
 
+int axis_of(const SectionOptions& options) { return options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2; }
+
+void draw_ray(const SectionOptions& options, const VoxelModel& model, const std::vector<std::string>& notes) {
+  const SectionRay ray = typed_section_ray(options.ray, options.axis);
+  const int layers = model.grid().size()[ray.axis];
+  if (ray.at < -options.margin || ray.at >= layers + options.margin) {
+    throw Error(fmt::format("--ray: layer {} along {} is beside the model, whose layers are 0 to {}", ray.at,
+                            kAxes[ray.axis], layers - 1));
+  }
+  require_size(options.input, model.grid().size() + 2 * options.margin, ray.axis);
+  const SectionDrawing drawing =
+      draw_section([&] { return with_margin(model.grid(), options.margin); }, options.margin, ray, options.marches);
+  write_text(options.output, drawing.svg);
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& line : drawing.lines) fmt::print("{}: {}\n", options.output, line);
+}
+
 void run(const SectionOptions& options) {
   if (extension_of(options.output) != ".svg")
     throw Error(fmt::format("output '{}': sections are written as SVG (name it *.svg)", options.output));
@@ -120,11 +141,12 @@ void run(const SectionOptions& options) {
   if (options.model >= static_cast<int>(models.size()))
     throw Error(fmt::format("--model {}: there are {}, counted from 0", options.model, models.size()));
   const VoxelModel& model = *models[static_cast<std::size_t>(options.model)];
-  const int axis = options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2;
+  if (!options.ray.empty()) return draw_ray(options, model, input.notes);
+  const int axis = axis_of(options);
   const int side = model.grid().size()[axis], at = options.at < 0 ? side / 2 : options.at;
   if (at >= side) {
     throw Error(fmt::format("--at {}: the box around the model's voxels has layers 0 to {} along {}", at, side - 1,
-                            options.axis));
+                            kAxes[axis]));
   }
   require_size(options.input, model.grid().size() + 2 * options.margin, axis);
   const VoxelGrid grid = with_margin(model.grid(), options.margin);
@@ -139,13 +161,14 @@ void run(const SectionOptions& options) {
   write_text(options.output, svg);
   for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
   fmt::print("{}: model {}, layer {} of {} along {}, radii of {}\n", options.output, options.model, at, side,
-             options.axis, options.radii);
+             kAxes[axis], options.radii);
 }
 
 }  // namespace
 
 void add_section(Program& program) {
-  Command& command = program.add("section", "Draw one layer of a voxel model with its empty spheres or cubes as SVG");
+  Command& command =
+      program.add("section", "Draw one layer of a voxel model with its empty spheres or cubes, or a ray, as SVG");
   const auto options = std::make_shared<SectionOptions>();
   SectionOptions& o = *options;
   command.add(&o.input, {.names = "IN",
@@ -157,12 +180,27 @@ void add_section(Program& program) {
                          .value = "KIND",
                          .help = "largest empty bodies around each empty voxel",
                          .choices = {"spheres", "cubes"},
-                         .closed = true});
+                         .closed = true,
+                         .excludes = {"--ray"}});
+  command.add(&o.ray, {.names = "--ray",
+                       .value = "X,Y,Z,DX,DY,DZ",
+                       .help = "ray in a layer, with the steps of --march, in the voxels of --at",
+                       .note = "one of DX, DY and DZ is 0",
+                       .fallback = "none: radii",
+                       .excludes = {"--at"}});
+  command.add(List<std::string>{&o.marches},
+              {.names = "--march",
+               .value = "NAME[,NAME]",
+               .help = "marches whose visited voxels and empty bodies are drawn, each in a panel",
+               .choices = section_marches(),
+               .closed = true,
+               .rules = {needs("--ray X,Y,Z,DX,DY,DZ", [&o] { return !o.ray.empty(); })}});
   command.add(&o.axis, {.names = "--axis",
                         .value = "AXIS",
                         .help = "axis perpendicular to the layer",
                         .choices = {"x", "y", "z"},
-                        .closed = true});
+                        .closed = true,
+                        .fallback = "z; of rays: along which they do not travel"});
   command.add(&o.at, {.names = "--at",
                       .help = "index of the layer in the box around the voxels",
                       .range = {0, VoxelGrid::kMaxModelSide - 1},
@@ -173,6 +211,7 @@ void add_section(Program& program) {
       {.names = "--margin", .help = "width of the empty border around the model, in voxels", .range = {0, 100}});
   add_vox_options(command, o.vox);
   command.example("scarp section model.vox -o section.svg --axis y");
+  command.example("scarp section model.vox --ray=-3,0.5,4.5,1,0.3,0 --march voxel-spheres,voxel-cubes -o ray.svg");
   command.runs([options, &command] {
     command.require_effect({.kind = InputKind::voxels});
     keep_inputs(options->output, command.typed_values());
