@@ -27,7 +27,7 @@ constexpr double kLeastDots = 0.8;     // pixels between dots of samples
 constexpr double kCellWidth = 5;       // pixels, of cells along the ray
 constexpr double kLeastGap = 5;        // pixels between shells
 
-constexpr PlotColour kRay{0.15, 0.15, 0.15}, kBeyond{0.15, 0.15, 0.15, 0.45}, kSurface{0.45, 0.38, 0.28},
+constexpr PlotColour kRayLine{0.15, 0.15, 0.15}, kBeyondHit{0.15, 0.15, 0.15, 0.45}, kSurface{0.45, 0.38, 0.28},
     kSample{0.00, 0.27, 0.55}, kBar{0.00, 0.45, 0.70, 0.55}, kStep{0.00, 0.45, 0.70, 0.95}, kRefined{0.80, 0.47, 0.65},
     kShell{0.34, 0.55, 0.75, 0.6}, kBall{0.00, 0.45, 0.70, 0.10}, kBallEdge{0.00, 0.45, 0.70, 0.85},
     kCone{0.35, 0.35, 0.35, 0.8}, kPassed{0.34, 0.71, 0.91, 0.22}, kPassedEdge{0.10, 0.45, 0.70, 0.9},
@@ -340,12 +340,12 @@ class MarchDrawing {
   void ray(const MarchPanel& panel) const {
     const double begin = begin_time(), t_end = end_time(), t = panel.hit ? panel.hit.t : t_end;
     segment(x(begin), y(begin), x(t), y(t));
-    stroke(kRay, 1.4);
+    stroke(kRayLine, 1.4);
     if (!panel.hit) return;
     constexpr std::array kDashes{2.0, 4.0};
     cairo_set_dash(cr_, kDashes.data(), 2, 0);
     segment(x(t), y(t), x(t_end), y(t_end));
-    stroke(kBeyond, 1.2);
+    stroke(kBeyondHit, 1.2);
     cairo_set_dash(cr_, nullptr, 0, 0);
   }
 
