@@ -3,6 +3,8 @@
 #         -P easy_shaders.cmake
 cmake_minimum_required(VERSION 3.25)
 
+include(${CMAKE_CURRENT_LIST_DIR}/shader_compiles.cmake)
+
 set(texts naive relaxed lipschitz fixed_step)
 set(WORK ${WORK}/easy_shaders)
 foreach(name IN LISTS texts)
@@ -12,13 +14,7 @@ endforeach()
 # check(NAME TEXT GOOD [OPTION...]): compiles a fragment shader, or the stage that the options name.
 function(check name text good)
   file(WRITE ${WORK}/${name}.frag "${text}")
-  execute_process(COMMAND ${VALIDATOR} ${ARGN} ${WORK}/${name}.frag WORKING_DIRECTORY ${WORK}
-                  RESULT_VARIABLE failed OUTPUT_VARIABLE said)
-  if(good AND failed)
-    message(FATAL_ERROR "${name} does not compile:\n${said}")
-  elseif(NOT good AND NOT failed)
-    message(FATAL_ERROR "the check is broken: it accepts ${name}")
-  endif()
+  shader_compiles(${name} ${good} ${ARGN} ${WORK}/${name}.frag)
 endfunction()
 
 # Each march alone, called with the numbers that its comment names.

@@ -2,16 +2,13 @@
 #   cmake -D ROOT=<checkout> -D WORK=<folder> -D VALIDATOR=<glslangValidator> -D FLAT=<folder of max_mip.glsl, ...> -P glsl_es.cmake
 cmake_minimum_required(VERSION 3.25)
 
+include(${CMAKE_CURRENT_LIST_DIR}/shader_compiles.cmake)
+
 # check(FILE GOOD): compiles a fragment shader with everything that it includes.
 function(check file good)
   execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${ROOT} -D FILES=${file} -D OUT=${WORK}/flat.frag
                           -P ${ROOT}/cmake/FlattenGlsl.cmake COMMAND_ERROR_IS_FATAL ANY)
-  execute_process(COMMAND ${VALIDATOR} -S frag ${WORK}/flat.frag RESULT_VARIABLE failed OUTPUT_VARIABLE said)
-  if(good AND failed)
-    message(FATAL_ERROR "${file} is not GLSL ES 3.0:\n${said}")
-  elseif(NOT good AND NOT failed)
-    message(FATAL_ERROR "the check is broken: it takes what GLSL ES 3.0 does not have")
-  endif()
+  shader_compiles(${file} ${good} -S frag ${WORK}/flat.frag)
 endfunction()
 
 check(${ROOT}/test/march/height/textures_es.frag TRUE)
