@@ -48,9 +48,10 @@ SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, flo
   return ray;
 }
 
-/// A ray from anywhere: `origin` in columns, rows and sample units from sample (0, 0). It is clipped to the border
-/// (unless the field wraps round) and to the highest sample; `travelled` is the time up to there, in the unit of `end`.
-/// Returns false if the ray does not reach the field; the ray is then undefined. An upright ray needs an end.
+/// A ray from anywhere: `origin` in columns, rows and sample units from sample (0, 0). It is clipped as by `cast`: to
+/// the border, unless the field wraps round; an upright ray without an end also to the range of the samples.
+/// `travelled` is the time up to there, in the unit of `end`. Returns false if the ray does not reach the field; the
+/// ray is then undefined.
 SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, float end, SCARP_OUT(ScarpRay) ray) {
   ray = scarp_ray(ivec2(0, 0), vec2(0.0f, 0.0f), origin.z, direction, end, 0u);
   float border = -kScarpNever;  // where the ray enters the field
@@ -77,10 +78,11 @@ SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, floa
     if (border >= 0.0f) ray.flags |= kScarpFromOutside;
   }
   float begin = max(border, 0.0f);
-  if (origin.z + ray.direction.z * begin > field.highest) {
-    if (!(ray.direction.z < 0.0f)) return false;
-    begin = max(begin, (field.highest - origin.z) / ray.direction.z);
-    ray.flags |= kScarpAbove;
+  if ((ray.flags & kScarpUpright) != 0u && !(exit < kScarpNever)) {
+    float top = (field.highest - origin.z) / ray.direction.z;
+    float bottom = (field.lowest - origin.z) / ray.direction.z;
+    begin = max(begin, min(top, bottom));
+    exit = max(top, bottom);
   }
   if (!(begin <= exit)) return false;
   vec2 at = vec2(origin.x + ray.direction.x * begin, origin.y + ray.direction.y * begin);
@@ -92,8 +94,6 @@ SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, floa
   if (wraps) corner = vec2(corner.x - floor(corner.x / size.x) * size.x, corner.y - floor(corner.y / size.y) * size.y);
   ray.cell = ivec2(min(int(corner.x), field.cells.x - 1), min(int(corner.y), field.cells.y - 1));
   ray.z = origin.z + ray.direction.z * begin;
-  // Rounding could place it slightly below the highest sample, which it is above by definition.
-  if ((ray.flags & kScarpAbove) != 0u) ray.z = max(ray.z, field.highest);
   ray.travelled = begin;
   ray.exit = exit - begin;
   ray.end = end - begin;

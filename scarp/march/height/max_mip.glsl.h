@@ -261,15 +261,31 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
   return true;
 }
 
-/// Starts a traversal. For a ray from the surface, computes its height. Returns false if there is nothing to traverse;
-/// `hit` is then the answer. `field.top_level` must be at least 1.
-SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCARP_INOUT(ScarpWalk) walk,
-                               SCARP_INOUT(ScarpHit) hit) {
+/// The start of a traversal.
+struct ScarpStart {
+  float s;     ///< the ray's time
+  ivec2 cell;  ///< in a copy of the field
+  ivec2 lap;   ///< where that copy starts
+};
+
+/// Where the ray starts.
+SCARP_FN ScarpStart scarp_own_start(ScarpRay ray) {
+  ScarpStart start;
+  start.s = 0.0f;
+  start.cell = ray.cell;
+  start.lap = ivec2(0, 0);
+  return start;
+}
+
+/// Starts the traversal of a ray that the caller has clipped: at `start`, which may be later than the ray's own start
+/// if the ray has kScarpAbove.
+SCARP_FN bool scarp_begin_walk_at(ScarpField field, ScarpStart start, SCARP_INOUT(ScarpRay) ray,
+                                  SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   bool strict = (ray.flags & kScarpOnSurface) != 0u;
   int top = min(field.top_level, kScarpTileLevel);
   walk.level = 0;
-  walk.col = ray.cell.x;
-  walk.row = ray.cell.y;
+  walk.col = start.cell.x;
+  walk.row = start.cell.y;
   walk.t_in = 0.0f;
   walk.side = (ray.flags & kScarpAbove) != 0u ? kScarpAboveGround : kScarpUnknown;
   walk.through = kScarpPoint;
@@ -284,7 +300,7 @@ SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCAR
     ray.z_low = scarp_surface(field, above_node, ray.place.x, ray.place.y);
     hit.fetches += 4u;
   }
-  walk.frame = scarp_frame(field, ray, ray.cell, ivec2(0, 0), 0.0f);
+  walk.frame = scarp_frame(field, ray, start.cell, start.lap, start.s);
   if (!strict && (ray.flags & kScarpUpright) != 0u) {
     scarp_upright(field, ray, walk, hit);
     return false;
@@ -296,6 +312,65 @@ SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCAR
     walk.row >>= walk.level;
   }
   return true;
+}
+
+/// Moves the start of a traversal along an axis to the ray's coordinate `at`, in columns or rows from the field's
+/// first. Returns false if that is not over the field, or too far.
+SCARP_FN bool scarp_start_at(ScarpTwoFloat at, int cells, bool wraps, SCARP_OUT(int) cell, SCARP_OUT(int) lap) {
+  float low = wraps ? -float(kScarpFarthestCell) : 0.0f;
+  float high = wraps ? float(kScarpFarthestCell) : float(cells);
+  cell = 0;
+  lap = 0;
+  if ((at.high - low) + at.low < 0.0f || (at.high - high) + at.low > 0.0f) return false;
+  float whole = floor(at.high);
+  cell = int(whole) + int(floor((at.high - whole) + at.low));
+  if (wraps) {
+    lap = int(floor(float(cell) / float(cells))) * cells;
+    // The quotient is rounded.
+    if (cell < lap) lap -= cells;
+    if (cell >= lap + cells) lap += cells;
+    cell -= lap;
+  }
+  // The last line belongs to the last cell.
+  cell = min(cell, cells - 1);
+  return true;
+}
+
+/// Moves the start of a ray from above down to the highest sample. Returns false if it does not get there over the
+/// field; `hit` is then the answer.
+SCARP_FN bool scarp_descend(ScarpField field, ScarpRay ray, SCARP_INOUT(ScarpStart) start, SCARP_INOUT(ScarpHit) hit) {
+  if (!(ray.direction.z < 0.0f)) return false;
+  // The difference, the quotient and the product have an error of 7 units, on devices whose quotients have one of 5:
+  // 16 units earlier, the ray is still above.
+  float s = (((field.highest - ray.z) - ray.z_low) / ray.direction.z) * (1.0f - 16.0f * kScarpUnit);
+  if (!(s <= ray.end)) return false;
+  bool wraps = (field.flags & kScarpWraps) != 0u;
+  ScarpTwoFloat x =
+      scarp_two_line(float(ray.cell.x), ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x, s);
+  ScarpTwoFloat y =
+      scarp_two_line(float(ray.cell.y), ray.place.y, ray.place_low.y, ray.direction.y, ray.direction_low.y, s);
+  start.s = s;
+  bool there = scarp_start_at(x, field.cells.x, wraps, start.cell.x, start.lap.x);
+  there = scarp_start_at(y, field.cells.y, wraps, start.cell.y, start.lap.y) && there;
+  if (!there && wraps) {
+    hit.status = kScarpExhausted;
+    hit.time = s;
+    hit.time_low = 0.0f;
+  }
+  return there;
+}
+
+/// Starts a traversal, that of a ray from above where it descends to the highest sample. For a ray from the surface,
+/// computes its height. Returns false if there is nothing to traverse; `hit` is then the answer. `field.top_level` must
+/// be at least 1.
+SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCARP_INOUT(ScarpWalk) walk,
+                               SCARP_INOUT(ScarpHit) hit) {
+  ScarpStart start = scarp_own_start(ray);
+  if (ray.z > field.highest && (ray.flags & (kScarpOnSurface | kScarpAbove | kScarpUpright)) == 0u) {
+    if (!scarp_descend(field, ray, start, hit)) return false;
+    ray.flags |= kScarpAbove;
+  }
+  return scarp_begin_walk_at(field, start, ray, walk, hit);
 }
 
 // Look-ahead parameters of any hit, from a search over the rays of scarp-bench gpu (doc/dev/decisions/march.md).

@@ -19,7 +19,8 @@ void main() {
   ScarpWalk walk;
   bool done = false;
   if (batch.resume != kBatchResume) {
-    done = !scarp_begin_walk(field, ray, walk, hit);
+    // The host clips rays to the highest sample.
+    done = !scarp_begin_walk_at(field, scarp_own_start(ray), ray, walk, hit);
   } else {
     hit = BatchWalks(batch.states).of[i].hit;
     walk = BatchWalks(batch.states).of[i].walk;

@@ -9,11 +9,13 @@
 #include "cases.h"
 #include "march/glsl_host.h"
 #include "march/height/rounding_judge.h"
+#include "march/height/sampled_twin.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
 #include "march/sampling_rules.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/float_ray.glsl.h"
 #include "scarp/march/height/height_marches_lean.glsl.h"
 #include "scarp/march/height/height_table.h"
 #include "scarp/march/sampling/device_sampling.h"
@@ -116,6 +118,30 @@ TEST_P(SinglePrecisionSampling, FollowsItsStepRuleOnLongRays) {
 INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
                          testing::Values("naive", "relaxed", "lipschitz", "fixed-step", "fixed-step, plain"),
                          [](const auto& of) { return test_name(of.param); });
+
+// Rays that a shader makes are those of `cast`: the marches look at the same points.
+TEST(SinglePrecisionSampling, RaysOfShadersStartAsRaysOfCast) {
+  constexpr int kRays = 3000;
+  const HeightField field = Twins::hills();
+  const MaxPyramid pyramid(field);
+  const double slope = slope_bound(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  const glsl::ScarpField ground = device_field(field, &pyramid);
+  for (const std::string_view march : Twins::kMarches) {
+    Twins twins({&field, &pyramid, slope});
+    const glsl::ScarpSampling settings = device_sampling(find_height_march(march).sampling, {}, slope, 0, 1);
+    for (int i = 0; i < kRays; ++i) {
+      const ShaderRay made = Twins::ray(field, i, kRays);
+      glsl::ScarpRay ray;
+      glsl::ScarpHit hit = glsl::scarp_no_hit();
+      if (glsl::scarp_ray_from(ground, made.origin, made.direction, made.end, ray))
+        hit = glsl::scarp_sampled(ground, ray, settings);
+      twins.judge(march, made, hit.status, double{ray.travelled} + double{hit.time});
+    }
+    twins.conclude();
+  }
+}
 
 // In a stretch that starts anywhere on a ray, points are where numerics.md says.
 TEST(SinglePrecisionSampling, RestartsMidRay) {

@@ -10,10 +10,13 @@
 
 #include "march/height/es_context.h"
 #include "march/height/rounding_judge.h"
+#include "march/height/sampled_twin.h"
 #include "march/height/shader_ray.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
+#include "scarp/accel/slope_bound.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/sampling/shrink_factor.h"
 
 namespace scarp::test {
 namespace {
@@ -52,11 +55,42 @@ void main() {
   begin = vec4(marches ? 1.0 : 0.0, marches ? ray.travelled : 0.0, 0.0, 0.0);
 }
 )";
+// The other marches, as doc/library/glsl.md calls them.
+const std::string kSampledMain = R"(
+uniform highp sampler2D origins, directions;  // w of the second: the ray's end
+uniform ivec2 cells, samples;
+uniform int march;
+uniform float lowest, highest, shrink;
+layout(location = 0) out vec4 told;
+layout(location = 1) out vec4 unused_1;
+layout(location = 2) out vec4 unused_2;
+void main() {
+  ScarpField field = ScarpField(cells, samples, 1, 0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, lowest, highest);
+  ScarpSampling settings = scarp_naive(0.7, 1.0 / 512.0, 0.001, 1024);
+  if (march == 1) settings = scarp_relaxed(0.4, 0.0015, 300);
+  if (march == 2) settings = scarp_lipschitz(shrink, 0.0005, 1024);
+  if (march == 3) settings = scarp_fixed_step(0.5, kScarpRefineSecant, 16384);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 direction = texelFetch(directions, at, 0);
+  ScarpRay ray;
+  ScarpHit hit = scarp_no_hit();
+  if (scarp_ray_from(field, texelFetch(origins, at, 0).xyz, direction.xyz, direction.w, ray))
+    hit = scarp_sampled(field, ray, settings);
+  told = vec4(float(hit.status), hit.time + hit.time_low, ray.travelled, 0.0);
+  unused_1 = vec4(0.0);
+  unused_2 = vec4(0.0);
+}
+)";
+
 class TexturesAsEs : public EsTest {
  protected:
   void SetUp() override {
     if (!context_.why_not.empty()) GTEST_SKIP() << context_.why_not;
-    use(kHead + installed_text("textures.glsl") + installed_text("max_mip.glsl") + kMain);
+    use_text("max_mip.glsl", kMain);
+  }
+
+  void use_text(const char* march, const std::string& main) {
+    use(kHead + installed_text("textures.glsl") + installed_text(march) + main);
     glUniform1i(at("scarp_heights"), 0);
     glUniform1i(at("scarp_bounds"), 1);
     glUniform1i(at("origins"), 2);
@@ -127,6 +161,41 @@ TEST_F(TexturesAsEs, MaxMipMatchesTheSurface) {
     }
   }
   EXPECT_GT(hits, 1000);
+}
+
+// The pasted text of the sampling marches gives the answers of `cast`.
+TEST_F(TexturesAsEs, SamplingMarchesAnswerAsCast) {
+  use_text("height_marches.glsl", kSampledMain);
+  const HeightField field = Twins::hills();
+  const MaxPyramid pyramid(field);
+  const double slope = slope_bound(field);
+  set_field(field, pyramid);
+  glUniform1f(at("shrink"), static_cast<float>(largest_proven_shrink(slope)));
+  constexpr int kBatches = 4, kRays = kBatches * static_cast<int>(kPixels);
+  for (std::size_t march = 0; march < Twins::kMarches.size(); ++march) {
+    glUniform1i(at("march"), static_cast<GLint>(march));
+    Twins twins({&field, &pyramid, slope});
+    for (int first = 0; first < kRays; first += static_cast<int>(kPixels)) {
+      TextureLevel origins{kWidth, kHeight, {}}, directions{kWidth, kHeight, {}};
+      std::vector<ShaderRay> rays;
+      for (int i = first; i < first + static_cast<int>(kPixels); ++i) {
+        rays.push_back(Twins::ray(field, i, kRays));
+        const auto& [origin, direction, speed, end, ray] = rays.back();
+        origins.texels.insert(origins.texels.end(), {origin.x, origin.y, origin.z, 0});
+        directions.texels.insert(directions.texels.end(), {direction.x, direction.y, direction.z, end});
+      }
+      fill(2, GL_RGBA32F, GL_RGBA, {origins});
+      fill(3, GL_RGBA32F, GL_RGBA, {directions});
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+      const std::vector<float> told = pixels_of(GL_COLOR_ATTACHMENT0);
+      ASSERT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        twins.judge(Twins::kMarches[march], rays[i], static_cast<int>(told[4 * i]),
+                    double{told[4 * i + 1]} + double{told[4 * i + 2]});
+      }
+    }
+    twins.conclude();
+  }
 }
 
 }  // namespace
