@@ -23,6 +23,7 @@ struct SimtGround::Impl {
   const HeightField& field;
   const MaxPyramid& pyramid;
   glsl::ScarpField shader_field;
+  glsl::ScarpLeanCodes codes;
   const float* samples = nullptr;
   std::ptrdiff_t row_stride = 0;
   glsl::uint quad_cols, quad_rows, quad_stride;
@@ -136,7 +137,10 @@ Ray clipped(const HeightField& field, Ray ray) {
 }  // namespace
 
 SimtGround::Impl::Impl(const HeightField& field_, const MaxPyramid& pyramid_)
-    : field(field_), pyramid(pyramid_), shader_field(device_field(field, &pyramid)) {
+    : field(field_),
+      pyramid(pyramid_),
+      shader_field(device_field(field, &pyramid)),
+      codes(device_codes(field, pyramid)) {
   if (field.sample_type() != SampleType::float32 || shader_field.flags != 0 || shader_field.top_level == 0)
     throw Error("simt: counts bilinear fields of float32 samples without holes, walls and wrap");
   field.visit([&](const auto& grid) {
@@ -158,7 +162,7 @@ glsl::uint SimtGround::Impl::cell_code(int col, int row) const {
   const float* const north = samples + row * row_stride + col;
   const float* const south = north + row_stride;
   return glsl::scarp_code_above(std::max({north[0], north[1], south[0], south[1]}), shader_field.code_base,
-                                shader_field.code_base_low, shader_field.code_per_step);
+                                shader_field.code_base_low, codes.per_step);
 }
 
 // As max_quads.comp does.
@@ -194,7 +198,7 @@ SimtAnswer trace_max_mip(const SimtGround& on, const Ray& ray, bool any, SimtTra
   const Hosted hosted(on, trace);
   glsl::ScarpHit hit;
   glsl::ScarpLean at = glsl::scarp_lean_begin();
-  while (!glsl::scarp_lean_on(field, prepared.ray, any, at, hit)) {
+  while (!glsl::scarp_lean_on(field, on.impl().codes, prepared.ray, any, at, hit)) {
   }
   SCARP_COUNT(answer);
   const bool second = hit.status == glsl::kScarpDoubtful;

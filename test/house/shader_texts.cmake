@@ -1,4 +1,5 @@
-# The installed shader texts describe every function, and state the unit of every number that a march takes:
+# The installed shader texts describe every function, state the unit of every number that a march takes, and read every
+# member of the field that a host fills in:
 #   cmake -D ROOT=<checkout> -D TEXTS=<a,b,...> -P shader_texts.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -51,13 +52,28 @@ endif()
 
 set(breaches "")
 set(functions 0)
+set(all "")
 string(REPLACE "," ";" TEXTS "${TEXTS}")
 foreach(text IN LISTS TEXTS)
   check(${ROOT}/${text} ${text} breaches functions)
+  file(READ ${ROOT}/${text} content)
+  string(APPEND all "${content}")
+endforeach()
+string(REGEX MATCH "struct ScarpField {[^}]*}" field "${all}")
+string(REGEX MATCHALL "\n  [a-z0-9]+ [a-z_]+" members "${field}")
+foreach(member IN LISTS members)
+  string(REGEX REPLACE ".* " "" member "${member}")
+  if(NOT all MATCHES "field\\.${member}[^a-z_]")
+    list(APPEND breaches "ScarpField::${member} is not read")
+  endif()
 endforeach()
 if(breaches)
   list(JOIN breaches "\n  " said)
   message(FATAL_ERROR "of ${functions} functions:\n  ${said}")
+endif()
+list(LENGTH members count)
+if(count LESS 5)
+  message(FATAL_ERROR "the check is broken: ScarpField has ${count} members")
 endif()
 if(functions LESS 150)
   message(FATAL_ERROR "only ${functions} functions: is TEXTS all of them?")

@@ -193,11 +193,13 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
     result.code_base = base.high;
     result.code_base_low = base.low;
     result.code_step = static_cast<float>(pyramid->code().step);
-    result.code_per_step = static_cast<float>(pyramid->code().per_step);
-    result.code_over = pyramid->code().code_over(field.max_sample());
-    result.spread = glsl::kGroundSpread * static_cast<float>(pyramid->cell_relief() * pyramid->code().step);
   }
   return result;
+}
+
+glsl::ScarpLeanCodes device_codes(const HeightField& field, const MaxPyramid& pyramid) {
+  return {static_cast<float>(pyramid.code().per_step), pyramid.code().code_over(field.max_sample()),
+          glsl::kGroundSpread * static_cast<float>(pyramid.cell_relief() * pyramid.code().step)};
 }
 
 DeviceRay device_ray(const HeightField& field, const Ray& ray, double seam) {

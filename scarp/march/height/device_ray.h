@@ -9,6 +9,7 @@
 #pragma once
 
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/height/lean_place.glsl.h"
 #include "scarp/march/height/ray_frame.glsl.h"
 
 namespace scarp {
@@ -16,6 +17,8 @@ namespace scarp {
 /// Returns the field in the form of shaders; top_level and codes are 0 without a pyramid. The field must have cells and
 /// valid samples.
 glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyramid);
+/// Returns the field's numbers for the lean pass of max-mip.
+glsl::ScarpLeanCodes device_codes(const HeightField& field, const MaxPyramid& pyramid);
 
 /// A ray prepared for a single-precision march.
 struct DeviceRay {

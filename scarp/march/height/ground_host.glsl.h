@@ -40,9 +40,6 @@ ScarpField open_ground(Address address) {
   field.code_base = ground.is.code_base;
   field.code_base_low = ground.is.code_base_low;
   field.code_step = ground.is.code_step;
-  field.code_per_step = ground.is.code_per_step;
-  field.code_over = ground.is.code_over;
-  field.spread = ground.is.spread;
   field.lowest = ground.is.min_sample;
   field.highest = ground.is.max_sample;
   return field;

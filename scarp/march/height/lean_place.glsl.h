@@ -13,6 +13,13 @@
 
 SCARP_GLSL_BEGIN
 
+/// Numbers of a field for the lean pass of max-mip, beside ScarpField; from GroundBuffers.
+struct ScarpLeanCodes {
+  float per_step;  ///< 1 / ScarpField::code_step
+  float over;      ///< a code above the highest sample
+  float spread;    ///< kGroundSpread (ground_buffers.glsl.h) times the largest height difference within a cell
+};
+
 /// Bits of a frame's time, except over fields that wrap: the high 16. Times are below 2^17, so the remainder is less
 /// than 2.
 const uint kScarpFrameBits = 0xffffff00u;

@@ -14,11 +14,13 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpField field = batch_field(batch_ray(i));
+  Ground ground = Ground(batch.ground);
+  ScarpLeanCodes codes = ScarpLeanCodes(ground.is.code_per_step, ground.is.code_over, ground.is.spread);
   ScarpLean at = scarp_lean_begin();
   for (;;) {
     ScarpHit hit;
     // The ray is read again for each frame, to free registers for the walk.
-    if (!scarp_lean_on(field, batch_ray(i), batch_any, at, hit)) continue;
+    if (!scarp_lean_on(field, codes, batch_ray(i), batch_any, at, hit)) continue;
     // Written inside the loop: lavapipe (Mesa 22.3) gives a lane that has left the loop the later results of others.
     batch_answer(i, hit);
     if (hit.status == kScarpDoubtful) batch_mark();

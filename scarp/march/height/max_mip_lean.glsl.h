@@ -154,9 +154,9 @@ struct ScarpLeanCell {
   ScarpPiece piece;  ///< in which the clearance falls
 };
 
-/// The cell (col, row) of the grid, from time `begin` to `end`.
-SCARP_FN ScarpLeanCell scarp_lean_cell(ScarpField field, ScarpLeanFrame frame, vec3 direction, int col, int row,
-                                       float begin, float end, bool strict) {
+/// The cell (col, row) of the grid, from time `begin` to `end`; `spread` is ScarpLeanCodes::spread.
+SCARP_FN ScarpLeanCell scarp_lean_cell(ScarpField field, float spread, ScarpLeanFrame frame, vec3 direction, int col,
+                                       int row, float begin, float end, bool strict) {
   bool triangles = (field.flags & kScarpTriangles) != 0u;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   vec2 north;
@@ -183,7 +183,7 @@ SCARP_FN ScarpLeanCell scarp_lean_cell(ScarpField field, ScarpLeanFrame frame, v
   float z0 = frame.z + frame.dz * begin;
   float z1 = frame.z + frame.dz * end;
   float size = abs(frame.z) + abs(frame.dz * end) + max(max(abs(h.h00), abs(h.h10)), max(abs(h.h01), abs(h.h11)));
-  found.margin = 16.0f * kScarpUnit * (size + frame.start_relief) + (field.spread + field.spread * end);
+  found.margin = 16.0f * kScarpUnit * (size + frame.start_relief) + (spread + spread * end);
   bool fresh = begin <= kScarpFreshTime;
   found.limit = fresh ? 0.0f : found.margin;
   if (fresh && strict) {
@@ -241,7 +241,7 @@ SCARP_FN ScarpLeanCell scarp_lean_cell(ScarpField field, ScarpLeanFrame frame, v
 
 /// Follows the ray through one frame. Returns true if `hit` is the answer; its status may be kScarpDoubtful. Otherwise
 /// call again. With `any`, only the status is defined. `field.top_level` must be at least 1.
-SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOUT(ScarpLean) at,
+SCARP_FN bool scarp_lean_on(ScarpField field, ScarpLeanCodes codes, ScarpRay ray, bool any, SCARP_INOUT(ScarpLean) at,
                             SCARP_OUT(ScarpHit) hit) {
   SCARP_COUNT(frame);
   bool strict = (field.flags & kScarpStarts) != 0u && (ray.flags & kScarpOnSurface) != 0u;
@@ -250,10 +250,10 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   vec3 direction = ray.direction;
   ScarpLeanFrame frame = scarp_lean_frame(field, ray, at.s0, strict);
   // Heights in codes, less the margin m(t) = rounding + spread (1 + t).
-  float code_spread = field.spread * field.code_per_step;
-  float code_z = ((frame.base - field.code_base) + (frame.z - field.code_base_low)) * field.code_per_step -
+  float code_spread = codes.spread * codes.per_step;
+  float code_z = ((frame.base - field.code_base) + (frame.z - field.code_base_low)) * codes.per_step -
                  (kScarpCodeRounding + code_spread);
-  float code_dz = frame.dz * field.code_per_step - code_spread;
+  float code_dz = frame.dz * codes.per_step - code_spread;
   float origin_x = frame.ox * frame.per_x;
   float origin_y = frame.oy * frame.per_y;
   // Up to the border, the ray's end, and where it rises above all ground.
@@ -261,7 +261,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   float border_y = scarp_lean_line(float(frame.last_y + 1 - frame.begin_y), frame.per_y, origin_y);
   float border = min(border_x, border_y);
   float end = frame.end;
-  if (code_dz > 0.0f) end = min(end, (field.code_over - code_z) / code_dz);
+  if (code_dz > 0.0f) end = min(end, (codes.over - code_z) / code_dz);
   float last = min(end, border);
 
   bool back_x = frame.mirror_x != 0;
@@ -347,7 +347,8 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
       int cell_y = ty_middle < leave ? middle_y : y;
       hit_col = cell_x ^ frame.mirror_x;
       hit_row = cell_y ^ frame.mirror_y;
-      ScarpLeanCell cell = scarp_lean_cell(field, frame, direction, hit_col, hit_row, next, leave, strict);
+      ScarpLeanCell cell =
+          scarp_lean_cell(field, codes.spread, frame, direction, hit_col, hit_row, next, leave, strict);
       at.fetches += 4u;
       bool clear = cell.least > cell.limit || (strict && cell.least == cell.limit);
       bool under = !above && !(cell.above > cell.margin);

@@ -36,9 +36,6 @@ struct ScarpField {
   float code_base;      ///< height of a pyramid entry: code_base + code_base_low + code_step * code
   float code_base_low;  ///< remainder of the base
   float code_step;      ///< height of one code
-  float code_per_step;  ///< 1 / code_step
-  float code_over;      ///< higher than the highest sample
-  float spread;         ///< kGroundSpread (ground_buffers.glsl.h) times the largest height difference within a cell
   float lowest;         ///< sample
   float highest;        ///< sample
 };

@@ -32,11 +32,12 @@ std::size_t lean_rays = 0, doubtful_rays = 0;
 
 // Both passes of a device.
 glsl::ScarpHit march_lean(const glsl::ScarpField& ground, const glsl::ScarpRay& ray, bool any) {
+  const glsl::ScarpLeanCodes codes = device_codes(*glsl::host_field, *glsl::host_pyramid);
   glsl::ScarpField field = ground;
   field.flags |= glsl::kScarpStarts;
   glsl::ScarpHit hit = glsl::scarp_no_hit();
   glsl::ScarpLean at = glsl::scarp_lean_begin();
-  while (!glsl::scarp_lean_on(field, ray, any, at, hit)) {
+  while (!glsl::scarp_lean_on(field, codes, ray, any, at, hit)) {
   }
   ++lean_rays;
   if (hit.status != glsl::kScarpDoubtful) return hit;

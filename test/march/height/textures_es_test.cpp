@@ -37,9 +37,7 @@ layout(location = 0) out vec4 told;
 layout(location = 1) out vec4 place;
 layout(location = 2) out vec4 begin;
 void main() {
-  // The lean pass, which reads the three zeros, is not for textures.
-  ScarpField field = ScarpField(cells, samples, top_level, flags, code_base, code_base_low, code_step, 0.0, 0.0, 0.0,
-                                lowest, highest);
+  ScarpField field = ScarpField(cells, samples, top_level, flags, code_base, code_base_low, code_step, lowest, highest);
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 direction = texelFetch(directions, at, 0);
   ScarpRay ray;
@@ -65,7 +63,7 @@ layout(location = 0) out vec4 told;
 layout(location = 1) out vec4 unused_1;
 layout(location = 2) out vec4 unused_2;
 void main() {
-  ScarpField field = ScarpField(cells, samples, 1, 0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, lowest, highest);
+  ScarpField field = ScarpField(cells, samples, 1, 0u, 0.0, 0.0, 0.0, lowest, highest);
   ScarpSampling settings = scarp_naive(0.7, 1.0 / 512.0, 0.001, 1024);
   if (march == 1) settings = scarp_relaxed(0.4, 0.0015, 300);
   if (march == 2) settings = scarp_lipschitz(shrink, 0.0005, 1024);
