@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/program.h"
@@ -95,6 +96,8 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
       {{"--path", scratch.path("empty.csv"), "--turntable"}, "--turntable cannot be combined with --path"},
       {{"--frames", "3"}, "--frames has no effect without --path FILE or --turntable"},
       {{"--depth-range", "1,100"}, "name the output *.exr"},
+      {{"--depth-range", "auto"}, "name the output *.exr"},
+      {{"--depth-range", "near"}, "NEAR,FAR in metres, for example 1,50000, or auto"},
   };
   for (const Case& one : cases) {
     std::vector<std::string> arguments{"render", dem, "-o", out};
@@ -284,6 +287,56 @@ TEST(Composite, ShowsTheNearerPixel) {
   EXPECT_NE(result.err.find("4 x 4 pixels"), std::string::npos) << result.err;
   const auto missing = test::run({"composite", scratch.path("a.png"), ours, "-o", scratch.path("x.png")});
   EXPECT_NE(missing.err.find("a.png': does not exist (name an EXR picture)"), std::string::npos) << missing.err;
+}
+
+// A surface beyond the planes has the depth of the plane, and none has that of the sky.
+TEST(Composite, DepthsBeyondThePlanesStayInFrontOfTheSky) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), out = scratch.path("depth.exr");
+  // The planes that the note on a picture names last; empty if there is none.
+  const auto render = [&](const std::string& range, bool reversed) -> std::string {
+    std::vector<std::string> arguments{"render",   dem,           "-o",   out, "--eye",  "40,-90,120", "--target",
+                                       "40,40,40", "--no-plinth", "--aa", "1", "--size", "40x30",      "--depth-range",
+                                       range};
+    if (reversed) arguments.emplace_back("--depth-reversed");
+    const auto result = test::run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::size_t at = result.err.rfind("--depth-range ");
+    if (at == std::string::npos) return "";
+    return result.err.substr(at + 14, result.err.find_first_of(" \n", at + 14) - at - 14);
+  };
+  for (const bool reversed : {false, true}) {
+    const std::string fitting = render("auto", reversed);
+    const std::size_t comma = fitting.find(',');
+    ASSERT_NE(comma, std::string::npos) << fitting;
+    const std::string middle = fmt::format("{}", (std::stod(fitting) + std::stod(fitting.substr(comma + 1))) / 2);
+    EXPECT_EQ(render("1," + middle, reversed), fitting);
+    EXPECT_EQ(render(middle + ",10000", reversed), fitting);
+    for (const std::string& range : {"1," + middle, middle + ",10000", std::string("auto")}) {
+      render(range, reversed);
+      const std::vector<float> z = read_exr_channel(out, "Z").values, depth = read_exr_channel(out, "depth").values;
+      std::vector<std::pair<float, float>> surfaces;
+      for (std::size_t i = 0; i < z.size(); ++i) {
+        if (std::isinf(z[i])) {
+          EXPECT_EQ(depth[i], reversed ? 0 : 1);
+        } else {
+          EXPECT_TRUE(reversed ? depth[i] > 0 && depth[i] <= 1 : depth[i] >= 0 && depth[i] < 1) << range << depth[i];
+          surfaces.emplace_back(z[i], reversed ? -depth[i] : depth[i]);
+        }
+      }
+      EXPECT_GT(surfaces.size(), 20U);
+      EXPECT_LT(surfaces.size(), z.size());
+      // The nearer surface is in front; without planes in the way, strictly.
+      std::sort(surfaces.begin(), surfaces.end());
+      for (std::size_t i = 1; i < surfaces.size(); ++i) {
+        EXPECT_LE(surfaces[i - 1].second, surfaces[i].second);
+        if (range == "auto" && surfaces[i].first - surfaces[i - 1].first > 0.01f) {
+          EXPECT_LT(surfaces[i - 1].second, surfaces[i].second);
+        }
+      }
+    }
+    EXPECT_EQ(render(fitting, reversed), "");
+  }
 }
 
 // The sky is behind everything: a plate is visible in front of it, and another renderer's sky hides nothing.

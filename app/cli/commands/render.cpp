@@ -24,9 +24,11 @@ void check_output(const RenderOptions& options) {
   const PictureFormat& format = picture_format_of(options.output);
   const PictureSettings picture = resolve(options.picture, {});
   check_frames(options.frames, options.output);
-  if (const auto range = depth_range_of(options.depth); range && !format.layers) {
+  if ((options.depth.range || options.depth.fitted) && !format.layers) {
     throw Error("--depth-range needs an EXR picture, of which it is a channel (name the output *.exr)");
   }
+  if (options.depth.fitted && options.frames.several())
+    throw Error("--depth-range auto: frames share their planes (name NEAR,FAR)");
   check_figure(options.figure, picture, format);
   if (format.layers && picture.look != Look::shaded) {
     throw Error(

@@ -21,7 +21,7 @@ ExrMatrix matrix(const char* name, const glm::dmat4& m) {
 }  // namespace
 
 void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
-                  const std::optional<DepthRange>& range) {
+                  const std::vector<float>& device_depths) {
   const auto axis = [](const char* name, const std::vector<vec3>& layer, int i, ExrStorage storage) {
     return ExrChannel{name, &layer.data()->x + i, 3, storage};
   };
@@ -37,11 +37,7 @@ void write_layers(ReplaceFile& file, const std::string& path, const PictureLayer
                       axis("P.Y", layers.position, 1, ExrStorage::full),
                       axis("P.Z", layers.position, 2, ExrStorage::full),
                       {"steps", layers.steps.data()}};
-  std::vector<float> device;
-  if (range) {
-    for (const float z : layers.depth) device.push_back(static_cast<float>(device_depth(z, *range)));
-    picture.channels.push_back({"depth", device.data()});
-  }
+  if (!device_depths.empty()) picture.channels.push_back({"depth", device_depths.data()});
   picture.matrices = {matrix("worldToCamera", camera.camera_from_world()),
                       matrix("worldToNDC", camera.ndc_from_world())};
   write_exr(file, path, picture);
@@ -49,8 +45,7 @@ void write_layers(ReplaceFile& file, const std::string& path, const PictureLayer
 
 #else
 
-void write_layers(ReplaceFile&, const std::string&, const PictureLayers&, const Camera&,
-                  const std::optional<DepthRange>&) {}
+void write_layers(ReplaceFile&, const std::string&, const PictureLayers&, const Camera&, const std::vector<float>&) {}
 
 #endif
 

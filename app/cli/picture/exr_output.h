@@ -2,20 +2,20 @@
 // Writes layered pictures to OpenEXR files, with the channel names that compositing programs expect.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "scarp/base/replace_file.h"
-#include "scarp/render/camera/depth.h"
+#include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/layers.h"
 
 namespace scarp::cli {
 
 /// R, G, B (half), Z, N.X, N.Y, N.Z, P.X, P.Y, P.Z (float) and steps (uint), worldToCamera and worldToNDC in the
 /// header. Does nothing without OpenEXR: picture_format_of() rejects such outputs. Writes to the temporary file of
-/// `file` and commits it; throws Error as write_exr() does. With `range` also writes `depth` (float), the depth buffer
-/// value for these planes.
+/// `file` and commits it; throws Error as write_exr() does. Unless `device_depths` is empty, also writes `depth`
+/// (float).
 void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
-                  const std::optional<DepthRange>& range);
+                  const std::vector<float>& device_depths);
 
 }  // namespace scarp::cli

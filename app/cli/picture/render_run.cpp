@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/cli/options/kept_inputs.h"
+#include "app/cli/picture/depth_layer.h"
 #include "app/cli/picture/exr_output.h"
 #include "app/cli/picture/figure.h"
 #include "app/cli/picture/findings.h"
@@ -85,7 +86,9 @@ class Render {
     if (format().layers) {
       const PictureLayers layers = render_layers(prepared_.scene(), camera, settings, progress);
       look_if_blank(name, settings, camera, has_one_colour(layers));
-      write_layers(file, name, layers, camera, depth_range_of(options().depth));
+      const DepthLayer depth = depth_layer(layers.depth, options().depth);
+      if (depth_note_.empty()) depth_note_ = depth.note;
+      write_layers(file, name, layers, camera, depth.values);
       written_ = {layers.width, layers.height};
       return {};
     }
@@ -124,6 +127,7 @@ class Render {
       fmt::print(stderr, "note: {}\n", note);
     if (format().map && !prepared_.input().raster.georeference.present)
       fmt::print(stderr, "note: the input has no georeference, nor has {}\n", options().output);
+    if (!depth_note_.empty()) fmt::print(stderr, "note: {}\n", depth_note_);
     if (prepared_.raised() > 0) {
       fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
                  options().frames.several() ? "up to " : "", metres_text(prepared_.raised()));
@@ -157,6 +161,7 @@ class Render {
   PreparedScene prepared_;
   WrittenSize written_;
   BlankPictures blank_;
+  std::string depth_note_;  // of the first picture that has one
 };
 
 }  // namespace
