@@ -58,12 +58,6 @@ constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
 // The classes of the article's comparison: the map, one any-hit ray per point, and the picture.
 bool is_compared(RayClass ray_class) { return ray_class == RayClass::chunk || ray_class == RayClass::primary; }
 
-// Whether at most kNearlyRight of the hits are lost or off by more than a cell, and at most as many of the misses are
-// hits.
-bool has_positions(const Judgement& judged) {
-  return judged.miss_rate + judged.late_rate + judged.early_rate <= kNearlyRight && judged.false_rate <= kNearlyRight;
-}
-
 bool is_cpu(const Device& device) { return device.description().kind == DeviceKind::cpu; }
 
 // The number of blocks of rays, spread evenly, that fits the time limit.
@@ -282,8 +276,9 @@ class Comparison {
       contenders.push_back(contender_with(march, coarsened_naive(*settings, attempt)));
       contenders.back().mode = mode;
     };
-    add("naive-position", naive_, has_positions);
-    add("naive-position-clipped", clipped_naive_, has_positions);
+    const auto in_position = [](const Judgement& judged) { return has_positions(judged, kNearlyRight); };
+    add("naive-position", naive_, in_position);
+    add("naive-position-clipped", clipped_naive_, in_position);
     if (!set.any_hit) return;
     const auto nearly_right = [](const Judgement& judged) { return judged.wrong_rate <= kNearlyRight; };
     add("naive-missed", naive_, [&](const Judgement& judged) { return judged.miss_rate < limit; });

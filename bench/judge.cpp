@@ -20,6 +20,10 @@ double share(std::int64_t part, std::int64_t whole) {
 
 }  // namespace
 
+bool has_positions(const Judgement& judged, double limit) {
+  return judged.miss_rate + judged.late_rate + judged.early_rate <= limit && judged.false_rate <= limit;
+}
+
 Judge::Judge(const HeightTarget& target, const RaySet& set, std::int64_t sample_size, std::uint64_t seed) : set_(set) {
   // Takes one ray from each of `count` equally long pieces of the set.
   const std::int64_t count = std::min(sample_size, set.size());

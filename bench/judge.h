@@ -30,6 +30,10 @@ struct Judgement {
   double cell_tests = 0;  ///< mean cells intersected per ray
 };
 
+/// Whether an engine has the positions of the hits: at most `limit` of the judge's hits are lost or off by more than
+/// kNear, and at most as many of its misses are hits.
+bool has_positions(const Judgement& judged, double limit);
+
 class Judge {
  public:
   /// Runs the judge, on all threads.

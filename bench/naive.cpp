@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench naive`: the comparison of the max-mip article, 55.066 ms without and 9.074 ms with the pyramid, made
-// fair: naive marching is first tuned to be correct at the least cost (naive_search.h), then timed.
+// fair: naive marching is first tuned to have the positions of the hits at the least cost (naive_search.h), then timed.
+// Weaker criteria are measured beside it.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -24,10 +25,13 @@ namespace {
 // `naive`: the comparison of the max-mip article, with naive marching fine enough to be correct.
 struct NaiveOptions {
   TraceOptions trace;
-  double miss_limit = 0.001;  // fraction of the judge's hits that naive may miss
+  double miss_limit = 0.001;  // fraction of the judge's hits that naive may miss or have elsewhere
 };
 
 using Json = nlohmann::ordered_json;
+
+// The mode in which naive has the positions of the hits.
+constexpr const char* kPosition = "naive-position";
 
 struct Contender {
   Engine engine;
@@ -46,12 +50,13 @@ Contender naive_with(const ScarpGround& scarp, const Judge& judge, const char* m
 
 std::optional<Contender> cheapest(const ScarpGround& scarp, const Judge& judge, const char* mode,
                                   const std::function<bool(const Judgement&)>& good) {
-  const auto settings = cheapest_naive([&](const NaiveSettings& tried) {
+  const auto attempt = [&](const NaiveSettings& tried) {
     const Judgement judged = naive_with(scarp, judge, mode, tried).judged;
     return NaiveTrial{good(judged), judged.steps};
-  });
+  };
+  const auto settings = cheapest_naive(attempt);
   if (!settings) return {};
-  return naive_with(scarp, judge, mode, *settings);
+  return naive_with(scarp, judge, mode, coarsened_naive(*settings, attempt));
 }
 
 class Comparison {
@@ -65,6 +70,8 @@ class Comparison {
     for (const RaySet& set :
          make_rays(ground, {RayClass::primary, RayClass::shadow, RayClass::chunk, RayClass::grazing}, trace.rays,
                    trace.ray_seed)) {
+      // The search takes minutes, and the table comes last.
+      fmt::print(stderr, "exaggeration {}, class {}\n", exaggeration, name_of(set.ray_class));
       const Judge judge(scarp.target(), set, trace.judged, trace.ray_seed);
       std::vector<Contender> contenders{{scarp.engine(find_height_march("max-mip")), std::nullopt, {}},
                                         {scarp.vectors("max-mip-simd"), std::nullopt, {}}};
@@ -73,14 +80,16 @@ class Comparison {
       const auto add = [&](std::optional<Contender> contender) {
         if (contender) contenders.push_back(std::move(*contender));
       };
-      add(cheapest(scarp, judge, "naive-fair", [&](const Judgement& j) { return j.miss_rate < limit; }));
+      // The comparison: ground that was stepped over counts as a hole, even if something is hit behind it, and so does
+      // a hit in the air.
+      add(cheapest(scarp, judge, kPosition, [&](const Judgement& j) { return has_positions(j, limit); }));
+      add(cheapest(scarp, judge, "naive-missed", [&](const Judgement& j) { return j.miss_rate < limit; }));
       if (set.any_hit) {
         // A false shadow is as wrong as a missing one.
-        add(cheapest(scarp, judge, "naive-right",
+        add(cheapest(scarp, judge, "naive-missed-false",
                      [&](const Judgement& j) { return j.miss_rate + j.false_rate < limit; }));
       }
-      // Ground that was stepped over counts as a hole, even if something is hit behind it.
-      add(cheapest(scarp, judge, "naive-no-holes",
+      add(cheapest(scarp, judge, "naive-missed-late",
                    [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
       for (const int threads : trace.threads) measure_all(ground, exaggeration, set, contenders, threads);
     }
@@ -104,9 +113,23 @@ class Comparison {
                        fmt::format("{:.2f}", row["busy"].get<double>())});
     }
     print_table(lines, 2);
+    print_comparison();
   }
 
  private:
+  void print_comparison() const {
+    std::vector<std::vector<std::string>> lines{{"class", "exagg.", "thr", "max-mip is", "in vectors"}};
+    for (const Json& row : rows_) {
+      if (row["mode"] != kPosition) continue;
+      lines.push_back({row["class"], short_number(row["exaggeration"]), short_number(row["threads"]),
+                       fmt::format("{:.2f} x", row["max_mip_ratio"].get<double>()),
+                       fmt::format("{:.2f} x", row["max_mip_simd_ratio"].get<double>())});
+    }
+    fmt::print("naive with at most {} % of its hits lost or more than a cell off ({}):\n", 100 * options_.miss_limit,
+               kPosition);
+    print_table(lines, 1);
+  }
+
   void measure_all(const BenchField& ground, double exaggeration, const RaySet& set,
                    const std::vector<Contender>& contenders, int threads) {
     std::vector<Engine> engines;
@@ -169,11 +192,12 @@ void run_naive(const NaiveOptions& options, const ReportOptions& report) {
 
 void add_naive(cli::Program& program) {
   auto [command, o] = add_command<NaiveOptions>(
-      program, "naive", "The max-mip article's comparison, naive as fine as it takes", run_naive);
+      program, "naive", "The max-mip article's comparison, at equal error of position", run_naive);
   o.trace.exaggerations = {1, 4, 16};
   add_size_option(command, o.trace.field.size);
-  command.add(&o.miss_limit,
-              {.names = "--miss-limit", .help = "share of the hits that naive may miss", .range = {0, 1}});
+  command.add(
+      &o.miss_limit,
+      {.names = "--miss-limit", .help = "share of the hits that naive may miss, or have elsewhere", .range = {0, 1}});
   add_trace_options(command, o.trace);
 }
 

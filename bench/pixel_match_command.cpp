@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -49,9 +50,12 @@ class Matches {
 #endif
   }
 
-  void match(const std::string& set, int thousands, const NamedFrame& view) {
+  // `place`: "3 of 38", this picture among all.
+  void match(const std::string& place, const std::string& set, int thousands, const NamedFrame& view) {
     const VoxelGrid grid = voxel_object(set);
     const std::vector<VoxelPlace> places = object_places(thousands);
+    // A picture takes up to a minute, and the table comes last.
+    fmt::print(stderr, "picture {}: {}, {} objects, camera {}\n", place, set, places.size(), view.name);
     const RasterPicture quads = rasterise(grid, places, view.frame, kPixelMargin);
     draw(grid, places, view.frame);
     for (const std::string& name : options_.marches) {
@@ -161,11 +165,15 @@ class Matches {
 void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report) {
   Matches matches(options);
   const std::vector<NamedFrame> frames = pixel_match_frames(options.width, options.height);
+  const std::size_t others = options.cameras == "all" ? frames.size() - 1 : 0;
+  const std::size_t all = options.sets.size() * (options.thousands.size() + others);
+  std::size_t done = 0;
+  const auto match = [&](const std::string& set, int thousands, const NamedFrame& view) {
+    matches.match(fmt::format("{} of {}", ++done, all), set, thousands, view);
+  };
   for (const std::string& set : options.sets) {
-    for (const int n : options.thousands) matches.match(set, n, frames[0]);
-    if (options.cameras == "all") {
-      for (std::size_t i = 1; i < frames.size(); ++i) matches.match(set, kOtherThousands, frames[i]);
-    }
+    for (const int n : options.thousands) match(set, n, frames[0]);
+    for (std::size_t i = 0; i < others; ++i) match(set, kOtherThousands, frames[i + 1]);
   }
   matches.report(report);
 }
