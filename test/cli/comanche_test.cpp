@@ -209,6 +209,33 @@ TEST(Overlay, IsPlacedByItsGeoreference) {
   }
 }
 
+// Four columns and two rows of pixels over 80 x 80 samples: red in the west, blue in the east.
+TEST(Overlay, IsStretchedFromBorderToBorder) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), plain = scratch.path("plain.png"), placed = scratch.path("placed.png"),
+                    out = scratch.path("out.png");
+  std::vector<std::uint8_t> halves(3 * 4 * 2);
+  for (std::size_t i = 0; i < 8; ++i) halves[3 * i + (i % 4 < 2 ? 0 : 2)] = 255;
+  for (const std::string& name : {plain, placed}) write_png(name, {halves.data(), 4, 2});
+  scratch.write("placed.pgw", "1\n0\n0\n-1\n500000.5\n4000079.5\n");  // a corner of 4 x 2 m
+  for (const std::string& image : {plain, placed}) {
+    const auto result = test::run({"render", dem, "-o", out, "--top", "--size", "80x80", "--haze", "0", "--no-plinth",
+                                   "--unlit", "--overlay", image, "--overlay-fit"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const test::Rgb picture = test::read_png(out);
+    for (int y = 2; y < 78; y += 5) {
+      for (const int x : {1, 15, 27, 52, 65, 78}) {
+        EXPECT_EQ(picture.pixel(x, y)[0], x < 40 ? 255 : 0) << image << ": " << x << ", " << y;
+        EXPECT_EQ(picture.pixel(x, y)[2], x < 40 ? 0 : 255) << image << ": " << x << ", " << y;
+      }
+    }
+  }
+  const auto alone = test::run({"render", dem, "-o", out, "--overlay-fit"});
+  EXPECT_NE(alone.err.find("--overlay-fit has no effect without --overlay FILE"), std::string::npos) << alone.err;
+  const auto without = test::run({"render", dem, "-o", out, "--overlay", plain});
+  EXPECT_NE(without.err.find("stretch it over the raster with --overlay-fit"), std::string::npos) << without.err;
+}
+
 // The mirror image of the red half is next to it, across the border.
 TEST(Overlay, IsMirroredWithTheGround) {
   const test::Scratch scratch;

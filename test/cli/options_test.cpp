@@ -334,6 +334,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
       {{"--contours", "7"}, lit},
       {{"--steps-range", "0,900"}, {"steps"}},
       {{"--overlay", path("overlay.asc")}, lit, {}, false},
+      {{"--overlay-fit"}, lit, {"--overlay", path("overlay.asc")}, false},
       {{"--water", "30"}, lit},
       {{"--water-colour", "ff0000"}, lit, lake},
       {{"--turbidity", "3"}, lit, lake},

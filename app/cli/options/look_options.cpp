@@ -139,10 +139,15 @@ void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& f
   ground(&files.overlay,
          {.names = "--overlay",
           .value = "FILE",
-          .help = "image projected onto everything from above: placed by its georeference if the terrain has one too, "
-                  "else stretched over the scene (functions: over --extent)",
+          .help = "image draped over everything: on georeferenced terrain by its own georeference (without: "
+                  "--overlay-fit), else over the scene or --extent",
           .files = "*",
           .common = true});
+  ground(&files.overlay_fit,
+         {.names = "--overlay-fit",
+          .help = "--overlay stretched over the whole terrain, border to border, whatever its georeference",
+          .note = "without it, image and terrain must both be georeferenced or neither",
+          .rules = {needs("--overlay FILE", [&files] { return !files.overlay.empty(); })}});
 }
 
 void add_water_options(Command& command, PictureRequest& o) {
@@ -334,10 +339,10 @@ PictureFiles read_picture_files(const PictureFileNames& names, const PictureRequ
   return files;
 }
 
-OverlayFiles read_overlay_files(const std::string& name, const Georeference& georeference, int cols, int rows,
+OverlayFiles read_overlay_files(const PictureFileNames& names, const Georeference& georeference, int cols, int rows,
                                 bool mirror, std::int64_t most_pixels) {
-  if (name.empty()) return {};
-  Overlay overlay = read_overlay(name, georeference, cols, rows, most_pixels);
+  if (names.overlay.empty()) return {};
+  Overlay overlay = read_overlay(names.overlay, georeference, cols, rows, most_pixels, names.overlay_fit);
   ColourImage& image = overlay.image;
   return {std::make_shared<Drape>(Drape{image.width,
                                         image.height,

@@ -14,9 +14,10 @@ namespace scarp::cli {
 
 /// Files that a picture needs in addition to its input; empty: none.
 struct PictureFileNames {
-  std::string ramp;  ///< .cpt, .txt, .clr or .png
-  std::string detail_texture;
-  std::string overlay;
+  std::string ramp{};  ///< .cpt, .txt, .clr or .png
+  std::string detail_texture{};
+  std::string overlay{};
+  bool overlay_fit = false;  ///< stretches the overlay over the scene, whatever its georeference
 
   bool operator==(const PictureFileNames&) const = default;
 };
@@ -33,9 +34,9 @@ struct OverlayFiles {
   std::shared_ptr<const Drape> drape;
   std::vector<std::string> files;  ///< all files that were opened
 };
-/// Reads the image `name`, unless that is empty, for a raster of `cols` x `rows` samples, or for any scene if there is
-/// no georeference. An image with more than `most_pixels` over the raster is averaged. Throws Error naming the file.
-OverlayFiles read_overlay_files(const std::string& name, const Georeference& georeference, int cols, int rows,
+/// Reads the image of `names`, if any, for a raster of `cols` x `rows` samples, or for any scene if there is no
+/// georeference. An image with more than `most_pixels` over the raster is averaged. Throws Error naming the file.
+OverlayFiles read_overlay_files(const PictureFileNames& names, const Georeference& georeference, int cols, int rows,
                                 bool mirror, std::int64_t most_pixels);
 
 }  // namespace scarp::cli

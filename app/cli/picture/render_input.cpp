@@ -158,19 +158,20 @@ RenderInput with_defaults(const InputRequest& request, OpenedInput opened) {
 }  // namespace
 
 InputRequest input_request(InputKind kind, const RenderOptions& options) {
-  InputRequest request{.kind = kind,
-                       .input = options,
-                       .overlay = options.picture_files.overlay,
-                       .plinth = !options.no_plinth,
-                       .voxel_drawing = options.voxel_drawing,
-                       .camera = options.camera};
+  InputRequest request{
+      .kind = kind,
+      .input = options,
+      .overlay = {.overlay = options.picture_files.overlay, .overlay_fit = options.picture_files.overlay_fit},
+      .plinth = !options.no_plinth,
+      .voxel_drawing = options.voxel_drawing,
+      .camera = options.camera};
   if (kind == InputKind::terrain && !reads_all_samples(options))
     request.input.raster.decimation.emplace().samples = samples_shown(options);
   double& reach = request.input.march_settings.function.reach;
   if (kind == InputKind::function && std::isinf(reach))
     reach = function_reach(options.picture, options.function.extent);
   if (!options.vox.volume.empty()) request.ramp = options.picture.ramp;
-  if (!request.overlay.empty()) request.overlay_pixels = samples_shown(options);
+  if (!request.overlay.overlay.empty()) request.overlay_pixels = samples_shown(options);
   return request;
 }
 

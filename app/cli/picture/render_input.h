@@ -23,7 +23,7 @@ struct InputRequest {
   InputKind kind = InputKind::terrain;
   InputOptions input{};             ///< including the decimation of rasters and the reach of functions
   std::string ramp{};               ///< colours of the numbers of volumes; empty: one colour
-  std::string overlay{};            ///< file; empty: none
+  PictureFileNames overlay{};       ///< only the file of the overlay, and how it is placed
   std::int64_t overlay_pixels = 0;  ///< over the raster; an image with more is averaged
   bool plinth = true;               ///< below a raster
   std::string voxel_drawing{};

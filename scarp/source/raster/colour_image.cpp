@@ -149,7 +149,7 @@ ColourImage read_colour_image(const std::string& path, int most_side) {
 }
 
 Overlay read_overlay(const std::string& path, const Georeference& georeference, int cols, int rows,
-                     std::int64_t most_pixels) {
+                     std::int64_t most_pixels, bool fit) {
   GdalSession session;
   const StrictReading strict;
   const GdalCacheLimit cache;
@@ -158,12 +158,14 @@ Overlay read_overlay(const std::string& path, const Georeference& georeference, 
     const std::vector<std::string> files = files_of(*stored);
     GDALDatasetUniquePtr dataset = in_colours(std::move(stored), session);
     const bool placed = has_place(*dataset);
-    if (placed != georeference.present) {
-      throw Error(placed
-                      ? "overlay is georeferenced, but the input is not (georeference a raster with --crs and --bounds)"
-                      : "overlay is not georeferenced, but the raster is (use gdal_translate -a_srs -a_ullr)");
+    if (!fit && placed != georeference.present) {
+      throw Error(
+          placed ? "overlay is georeferenced, but the input is not (georeference a raster with --crs and --bounds, or "
+                   "stretch the image over the input with --overlay-fit)"
+                 : "overlay is not georeferenced, but the raster is (stretch it over the raster with --overlay-fit, or "
+                   "use gdal_translate -a_srs -a_ullr)");
     }
-    if (!placed) {
+    if (fit || !placed) {
       Overlay overlay{pixels_of(*dataset, dataset->GetRasterYSize(), session)};
       overlay.image.files = files;
       return overlay;

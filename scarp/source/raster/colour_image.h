@@ -34,10 +34,10 @@ struct Overlay {
 
 /// Returns the part of an image over a raster, interpolated bilinearly by GDAL's warper, from any CRS. An image in the
 /// raster's CRS keeps its pixels. The result has at most `most_pixels` (>= 1) pixels and no side longer than 16384;
-/// larger images are averaged first. A raster and an image that both lack a georeference are aligned border to border.
-/// Throws Error naming the file: unreadable, only one of the two has a georeference, the image does not overlap the
-/// raster.
+/// larger images are averaged first. A raster and an image that both lack a georeference are aligned border to border;
+/// with `fit`, all are, and georeferences are ignored. Throws Error naming the file: unreadable, only one of the two
+/// has a georeference, the image does not overlap the raster.
 Overlay read_overlay(const std::string& path, const Georeference& georeference, int cols, int rows,
-                     std::int64_t most_pixels);
+                     std::int64_t most_pixels, bool fit = false);
 
 }  // namespace scarp
