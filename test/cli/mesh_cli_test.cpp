@@ -88,6 +88,31 @@ TEST_F(MeshOption, StandsAtMeshAt) {
   EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
 }
 
+TEST_F(MeshOption, UnseenMeshesGetANote) {
+  const auto note = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "64x64", "--mesh", roof_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::size_t at = result.err.find("note: --mesh ");
+    return at == std::string::npos ? "" : result.err.substr(at, result.err.find('\n', at) - at);
+  };
+  const auto expect = [&](const std::string& part, const std::vector<std::string>& more) {
+    const std::string text = note(more);
+    EXPECT_NE(text.find(part), std::string::npos) << "expected '" << part << "' in '" << text << "'";
+  };
+  // 64 cells of 30 m, a pixel each, and a roof of 20 m, or 300 m.
+  expect("is smaller than a pixel: 20 m wide, ", {"--top", "--mesh-at", "960,960,9000"});
+  EXPECT_EQ(note({"--top", "--mesh-at", "960,960,9000", "--mesh-scale", "15"}), "");
+  expect("is hidden", {"--top", "--mesh-at", "960,960,-9000", "--mesh-scale", "15"});
+  expect("is outside the picture",
+         {"--top", "--area", "0,0,1900,1900", "--mesh-at", "-5000,960,0", "--mesh-scale", "15"});
+  expect("is behind the eye",
+         {"--eye", "960,0,5000", "--target", "960,960,0", "--mesh-at", "960,-9000,9000", "--mesh-scale", "15"});
+  expect("is hidden", {"--top", "--look", "height", "--mesh-at", "960,960,-9000", "--mesh-scale", "15"});
+  EXPECT_EQ(note({"--mesh-at", "960,960,1000", "--mesh-scale", "15"}), "");
+}
+
 TEST_F(MeshOption, OpenMeshesCannotBeVoxelised) {
   const auto refusal = [&](const std::string& mesh, const std::string& voxel) {
     const auto result = run({"voxelise", mesh, "--voxel", voxel, "-o", scratch_.path("v.binvox")});

@@ -42,6 +42,7 @@ class Render {
     const PictureSettings settings = prepared_.picture(camera);
     const auto begin = std::chrono::steady_clock::now();
     const Picture picture = make(file, options().output, settings, camera, terminal_progress("render"));
+    look_for_mesh(settings, camera);
     const double render_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     tell_notes();
     tell_of_contours(settings, camera);
@@ -71,6 +72,7 @@ class Render {
       ReplaceFile file(name);
       const int blank_before = blank_.count();
       make(file, name, prepared_.picture(), camera, [](double) { return caught_signal() == 0; });
+      look_for_mesh(prepared_.picture(), camera);
       if (!format().layers && blank_.count() == blank_before)
         tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
@@ -119,12 +121,21 @@ class Render {
     blank_.add(name, why_blank(prepared_.scene(), camera, settings, facts));
   }
 
+  // A mesh that one frame shows needs no note.
+  void look_for_mesh(const PictureSettings& settings, const Camera& camera) {
+    if (options().mesh.file.empty() || mesh_seen_) return;
+    const Scene& scene = prepared_.scene();
+    mesh_unseen_ = why_unseen(scene, static_cast<std::uint32_t>(scene.objects().size() - 1), camera, settings);
+    mesh_seen_ = mesh_unseen_.empty();
+  }
+
   // Printed last: a run that fails prints only one line.
   void tell_notes() const {
     for (const std::string& note : prepared_.input().notes) fmt::print(stderr, "note: {}\n", note);
     if (const std::string note = note_on_low_water(prepared_.scene(), prepared_.picture(), prepared_.facts());
         !note.empty())
       fmt::print(stderr, "note: {}\n", note);
+    if (!mesh_unseen_.empty()) fmt::print(stderr, "note: --mesh {} {}\n", options().mesh.file, mesh_unseen_);
     if (format().map && !prepared_.input().raster.georeference.present)
       fmt::print(stderr, "note: the input has no georeference, nor has {}\n", options().output);
     if (!depth_note_.empty()) fmt::print(stderr, "note: {}\n", depth_note_);
@@ -162,6 +173,8 @@ class Render {
   WrittenSize written_;
   BlankPictures blank_;
   std::string depth_note_;  // of the first picture that has one
+  bool mesh_seen_ = false;
+  std::string mesh_unseen_;  // why no picture so far shows the mesh; empty: one does, or there is no mesh
 };
 
 }  // namespace

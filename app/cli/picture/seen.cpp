@@ -52,6 +52,21 @@ Projected project(const WorldBox& box, const Camera& camera) {
   return seen;
 }
 
+// Whether a sample of these pixels shows the object.
+bool shows(const Scene& scene, std::uint32_t object, const Camera& camera, const PixelTile& pixels, int aa) {
+  std::vector<Ray> rays;
+  for (PixelTile row = pixels; row.y0 < pixels.y1; ++row.y0) {
+    row.y1 = row.y0 + 1;
+    rays.clear();
+    for (const PicturePoint& point : points_of(row, aa)) rays.push_back(camera.ray(point.x, point.y));
+    std::vector<Hit> hits(rays.size());
+    scene.closest_hits(rays, hits);
+    if (std::any_of(hits.begin(), hits.end(), [object](const Hit& hit) { return hit && hit.object == object; }))
+      return true;
+  }
+  return false;
+}
+
 std::string of_eye_below(const Scene& scene, const Camera& camera) {
   const auto ground = scene.height(camera.eye().x, camera.eye().y);
   if (!ground || camera.eye().z >= *ground) return {};
@@ -197,6 +212,33 @@ std::string why_blank(const Scene& scene, const Camera& camera, const PictureSet
   if (why.empty() && facts.area) why = "--area has hardly any surfaces in it";
   if (why.empty()) why = "the camera looks past all surfaces, or along them (--view, --eye, --target)";
   return fmt::format("{:.2g} % of the pixels show a surface of the scene: {}", 100 * seen.surfaces, why);
+}
+
+std::string why_unseen(const Scene& scene, std::uint32_t object, const Camera& camera, const PictureSettings& picture) {
+  SceneObject alone = scene.objects()[object];
+  const SceneFieldPtr field = scene.fields()[alone.field];
+  alone.field = 0;
+  const WorldBox box = Scene({field}, {alone}).box();
+  const dvec2 size(picture.width, picture.height);
+  const Projected seen = project(box, camera);
+  if (seen.in_front == 0) return "is behind the eye (--target, --mesh-at)";
+  PixelTile pixels{0, 0, picture.width, picture.height};
+  if (seen.in_front == 8) {
+    if (seen.high.x <= 0 || seen.high.y <= 0 || seen.low.x >= size.x || seen.low.y >= size.y)
+      return "is outside the picture (--target, --mesh-at)";
+    const dvec2 extent = seen.high - seen.low;
+    if (std::max(extent.x, extent.y) < 1) {
+      const dvec3 sides = box.high - box.low;
+      return fmt::format(
+          "is smaller than a pixel: {} m wide, {} m away (move the eye closer, or use a smaller --fov or a larger "
+          "--mesh-scale)",
+          metres_text(std::max({sides.x, sides.y, sides.z})), metres_text(way_to(box, camera.eye())));
+    }
+    const dvec2 low = glm::max(glm::floor(seen.low), dvec2(0.0)), high = glm::min(glm::ceil(seen.high), size);
+    pixels = {static_cast<int>(low.x), static_cast<int>(low.y), static_cast<int>(high.x), static_cast<int>(high.y)};
+  }
+  if (shows(scene, object, camera, pixels, entry_of(picture.look).antialiased ? picture.aa : 1)) return {};
+  return "is hidden: other surfaces are in front of it, or it is thinner than a pixel (--eye, --mesh-at)";
 }
 
 void BlankPictures::add(const std::string& name, const std::string& why) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Warns about pictures that show nothing, with the reason. A coarse grid of camera rays measures the fraction of the
 // picture on surfaces above water. Below half a percent the picture counts as blank, and the reason is derived from the
-// position of the eye, obstructions and heights. A picture of one colour counts as blank, too.
+// position of the eye, obstructions and heights. A picture of one colour counts as blank, too. A mesh that no sample of
+// the picture shows gets a note.
 #pragma once
 
 #include <string>
@@ -55,6 +56,10 @@ class BlankPictures {
   int pictures_ = 0, blank_ = 0;
   std::string first_, why_;  // name and reason of the first blank picture
 };
+
+/// Returns why a picture shows an object of the scene in no sample, or smaller than a pixel, as text that follows its
+/// name; empty: it is visible. Traces the picture's camera rays around the object until one hits it.
+std::string why_unseen(const Scene& scene, std::uint32_t object, const Camera& camera, const PictureSettings& picture);
 
 /// Returns a note for water below all ground; empty: there is none.
 std::string note_on_low_water(const Scene& scene, const PictureSettings& picture, const BlankFacts& facts);
