@@ -142,6 +142,7 @@ void add_light_options(Command& command, RenderOptions& o) {
   add(set_sun, {.names = "--sun",
                 .value = "AZ,ALT",
                 .help = "compass azimuth and altitude of the sun in degrees",
+                .note = "from -6 with --sky scattering",
                 .fallback = fmt::format("{},{}; voxels and meshes {},{}", usual.sun.azimuth_deg, usual.sun.altitude_deg,
                                         kModelSunAzimuth, usual.sun.altitude_deg),
                 .now =

@@ -309,6 +309,12 @@ void validate(const PictureSettings& settings) {
   require_setting("picture", settings.level >= 0, "the level", settings.level, "0 or more");
   validate(settings.error);
   validate(settings.sun);
+  if (settings.sky.kind == SkyKind::plain && settings.sun.altitude_deg <= 0) {
+    throw Error(
+        fmt::format("sun: the altitude is {} (must be above 0 and at most 90 degrees; a scattering sky has "
+                    "twilight, from {} degrees)",
+                    settings.sun.altitude_deg, kLowestSun));
+  }
   validate(settings.sky);
   if (settings.water) validate(*settings.water);
   validate(settings.ground);

@@ -12,49 +12,57 @@ const vec3 kScarpZenith = vec3(0.12f, 0.30f, 0.66f);
 const vec3 kScarpHorizon = vec3(0.80f, 0.87f, 0.93f);
 const vec3 kScarpNadir = vec3(0.60f, 0.66f, 0.72f);
 
+/// Coefficients of 1, the cosine of the angle to the sun, its square, and scarp_forward().
+struct ScarpSkyPart {
+  vec3 even;
+  vec3 cosine;
+  vec3 square;
+  vec3 forward;
+};
+
 /// A sky; +z is up. A plain sky has `scattering` 0 and uses only `to_sun`.
 struct ScarpSky {
   int scattering;
   vec3 to_sun;  ///< unit
-  // Perez's coefficients of the luminance Y and the chromaticities x and y.
-  vec3 a;
-  vec3 b;
-  vec3 c;
-  vec3 d;
-  vec3 e;
-  vec3 zenith;        ///< Y, x, y at the zenith, divided by Perez's formula at the zenith
+  // The radiance in linear light: a part at all heights, and parts in layers above the horizon (kScarpSkyLayers).
+  ScarpSkyPart all;
+  ScarpSkyPart first;
+  ScarpSkyPart second;
+  ScarpSkyPart third;
+  ScarpSkyPart fourth;
   vec3 horizon;       ///< mean colour of the horizon, linear light
   vec3 ground;        ///< pale ground below the horizon, linear light
   vec3 disc;          ///< radiance of the sun's disc, linear light
   float disc_square;  ///< squared chord of the disc's angular radius on the unit sphere; 0: invisible
 };
 
-/// Minimum sine of the elevation in Perez's formula, which divides by it.
-const float kScarpLowestSky = 1e-3f;
+/// Sines of the elevations over which the layers of the sky fade by the factor e.
+const vec4 kScarpSkyLayers = vec4(0.02f, 0.07f, 0.2f, 0.6f);
+SCARP_FN real scarp_sky_layer(real up, float thickness) { return exp(-up / real(thickness)); }
 
-/// Perez's formula. `up`: sine of the elevation; `angle`: angle to the sun; `cosine`: its cosine.
-SCARP_FN float scarp_perez(float a, float b, float c, float d, float e, real up, real angle, real cosine) {
-  return float((real(1.0) + real(a) * exp(real(b) / up)) *
-               (real(1.0) + real(c) * exp(real(d) * angle) + real(e) * cosine * cosine));
+/// Light scattered by aerosols, by the cosine of the angle to the sun: Henyey and Greenstein with the asymmetry 0.76,
+/// times 4 pi.
+SCARP_FN real scarp_forward(real cosine) {
+  real square = real(1.0 + 0.76 * 0.76) - real(2.0 * 0.76) * cosine;
+  return real(1.0 - 0.76 * 0.76) / (square * sqrt(square));
 }
 
-/// Converts luminance Y and chromaticities x, y to linear sRGB (CIE 1931; IEC 61966-2-1), clamped to >= 0.
-SCARP_FN vec3 scarp_linear_from_luminance(float luminance, float x, float y) {
-  float cx = luminance * x / y;
-  float cz = luminance * (1.0f - x - y) / y;
-  return vec3(max(0.0f, 3.2406f * cx - 1.5372f * luminance - 0.4986f * cz),
-              max(0.0f, -0.9689f * cx + 1.8758f * luminance + 0.0415f * cz),
-              max(0.0f, 0.0557f * cx - 0.2040f * luminance + 1.0570f * cz));
+SCARP_FN vec3 scarp_sky_part(ScarpSkyPart part, float cosine, float forward) {
+  return part.even + cosine * (part.cosine + cosine * part.square) + forward * part.forward;
 }
 
+/// Radiance of the scattered light towards a unit vector with z >= 0, >= 0.
 SCARP_FN vec3 scarp_scattered(ScarpSky sky, real3 direction) {
-  real up = max(direction.z, real(kScarpLowestSky));
-  real cosine = clamp(dot(direction, real3(sky.to_sun)), real(-1.0), real(1.0));
-  real angle = acos(cosine);
-  vec3 z = sky.zenith;
-  return scarp_linear_from_luminance(z.x * scarp_perez(sky.a.x, sky.b.x, sky.c.x, sky.d.x, sky.e.x, up, angle, cosine),
-                                     z.y * scarp_perez(sky.a.y, sky.b.y, sky.c.y, sky.d.y, sky.e.y, up, angle, cosine),
-                                     z.z * scarp_perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, angle, cosine));
+  real up = max(direction.z, real(0.0));
+  real angle = clamp(dot(direction, real3(sky.to_sun)), real(-1.0), real(1.0));
+  float cosine = float(angle);
+  float forward = float(scarp_forward(angle));
+  vec3 sum = scarp_sky_part(sky.all, cosine, forward);
+  sum += float(scarp_sky_layer(up, kScarpSkyLayers.x)) * scarp_sky_part(sky.first, cosine, forward);
+  sum += float(scarp_sky_layer(up, kScarpSkyLayers.y)) * scarp_sky_part(sky.second, cosine, forward);
+  sum += float(scarp_sky_layer(up, kScarpSkyLayers.z)) * scarp_sky_part(sky.third, cosine, forward);
+  sum += float(scarp_sky_layer(up, kScarpSkyLayers.w)) * scarp_sky_part(sky.fourth, cosine, forward);
+  return max(sum, vec3(0.0f));
 }
 
 /// Colour of the sky at the horizon, in linear light, in the direction of a unit vector. Towards zenith and nadir,

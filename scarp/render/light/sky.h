@@ -2,9 +2,8 @@
 // Settings of the sky.
 //
 //   plain       a pale gradient without a sun, against which terrain stands out; sun and sky together give white light
-//   scattering  sunlight scattered in clear air (A. J. Preetham, P. Shirley, B. Smits, "A practical analytic model for
-//               daylight", SIGGRAPH 1999), with the sun's disc. The model sets the colours and relative brightness of
-//               sky, sun and ground: a low sun is orange
+//   scattering  sunlight scattered in clear air (atmosphere.h), with the sun's disc; the sun may be below the horizon.
+//               The model sets the colours and relative brightness of sky, sun and ground: a low sun is orange
 #pragma once
 
 #include <string_view>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The radiance of the sky, and the light of sky and sun on surfaces.
 //
-//   Perez's formula   F = (1 + a exp(b / cos z)) (1 + c exp(d g) + e cos^2 g), z from the zenith, g from the sun
-//   Preetham et al.   a to e and the zenith's Y, x, y as functions of turbidity and sun;   Y = Yz F / F(zenith)
-//   sunlight          128 klx above the atmosphere, times its transmittance (Rayleigh scattering, aerosols, ozone) at
-//                     650, 550 and 450 nm, with the air mass of Kasten (1965)
-//   skylight          cosine-weighted mean of the sky over the hemisphere
+//   sky       a formula (sky.glsl.h) that is fitted to the integrals of atmosphere.h
+//   sunlight  its transmittance through the same atmosphere
+//   skylight  cosine-weighted mean of the sky over the hemisphere
+//
+// White balance: sunlight is white for a sun at 60 degrees, so shadows and the sky are blue, and a low sun is orange.
 //
 // One exposure scales everything: white level ground has the luminance 1 under a high sun, and less under a low sun,
-// where the sky above the sun is brighter than the ground. The sun's disc is more than ten thousand times as bright as
-// the sky; it is limited to kBrightest so that its edge can be anti-aliased.
+// where the sky above the sun is brighter than the ground. Twilight is darker than the sunset. The sun's disc is more
+// than ten thousand times as bright as the sky; it is limited to kBrightest so that its edge can be anti-aliased.
 #pragma once
 
 #include "scarp/base/vec.h"
@@ -23,7 +23,7 @@ constexpr float kBrightest = 8;
 
 class Sky {
  public:
-  /// `to_sun`: unit vector, above the horizon; `sun_radius` in radians. The settings must be valid.
+  /// `to_sun`: unit vector, in a plain sky above the horizon; `sun_radius` in radians. The settings must be valid.
   Sky(const SkySettings& settings, const dvec3& to_sun, double sun_radius);
 
   bool scatters() const { return numbers_.scattering != 0; }
@@ -38,7 +38,7 @@ class Sky {
   const glsl::ScarpSky& numbers() const { return numbers_; }
 
  private:
-  void scatter(double turbidity);
+  void scatter(double turbidity, double sun_radius);
 
   glsl::ScarpSky numbers_{};
   vec3 skylight_, sunlight_;

@@ -111,5 +111,18 @@ TEST(PictureRequest, ErrorNamesTheSettingOutOfRange) {
   }
 }
 
+TEST(PictureRequest, OnlyAScatteringSkyHasTwilight) {
+  PictureRequest asked;
+  asked.sun_altitude_deg = 0;
+  EXPECT_THROW(resolve(asked, {}), Error);
+  asked.sky = SkyKind::scattering;
+  for (const double altitude : {0.0, -4.0, kLowestSun}) {
+    asked.sun_altitude_deg = altitude;
+    EXPECT_EQ(resolve(asked, {}).sun.altitude_deg, altitude);
+  }
+  asked.sun_altitude_deg = kLowestSun - 0.1;
+  EXPECT_THROW(resolve(asked, {}), Error);
+}
+
 }  // namespace
 }  // namespace scarp::test

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "scarp/base/error.h"
+#include "scarp/render/light/sky_fit.h"
 #include "scarp/render/surface/water.glsl.h"
 
 namespace scarp {
@@ -41,18 +42,94 @@ TEST(Sky, HasNoEdgeAtTheHorizon) {
     EXPECT_LT(length(sky.colour(normalize(dvec3(1, 0, 1e-6))) - sky.colour(normalize(dvec3(1, 0, -1e-6)))), 1e-3f);
 }
 
-// Computed from the paper's formulas by a separate program: turbidity 3, the sun 45 degrees high.
-TEST(Sky, HasPreethamsLuminanceAndChromaticityAtTheZenith) {
-  const Sky sky = scattering(45);
-  const vec3 zenith = sky.colour({0, 0, 1});
-  const dvec3 c(zenith);
-  // IEC 61966-2-1.
-  const double x = 0.4124 * c.x + 0.3576 * c.y + 0.1805 * c.z, y = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z,
-               z = 0.0193 * c.x + 0.1192 * c.y + 0.9505 * c.z;
-  EXPECT_NEAR(x / (x + y + z), 0.24568, 2e-4);
-  EXPECT_NEAR(y / (x + y + z), 0.25148, 2e-4);
-  // 7.320 kcd/m^2 of the sky; sunlight gives 81.52 klx, pi times as many kcd/m^2 of a white surface.
-  EXPECT_NEAR(luminance(zenith) / luminance(sky.sunlight()), 7.320 / (81.52 / std::numbers::pi), 0.005);
+// F. Kasten, "A new table and approximation formula for the relative optical air mass", 1965.
+TEST(Atmosphere, HasKastensAirMass) {
+  const Atmosphere atmosphere(3, 0.5);
+  for (const double altitude : {60.0, 30.0, 20.0, 10.0}) {
+    const double mass = 1 / (std::sin(glm::radians(altitude)) + 0.15 * std::pow(altitude + 3.885, -1.253));
+    for (int i = 0; i < 3; ++i) {
+      const double depth = -std::log(atmosphere.sunlight(glm::radians(altitude))[i]),
+                   vertical = -std::log(atmosphere.sunlight(std::numbers::pi / 2)[i]);
+      EXPECT_NEAR(depth / vertical, mass, 0.07 * mass) << altitude;
+    }
+  }
+}
+
+TEST(Atmosphere, GroundReceivesLessLightThanEnters) {
+  for (const double turbidity : {2.0, 10.0}) {
+    for (const double degrees : {10.0, 45.0, 90.0}) {
+      const double altitude = glm::radians(degrees);
+      const Atmosphere atmosphere(turbidity, altitude);
+      dvec3 sum(0.0);
+      constexpr int kUp = 16, kAround = 16;
+      for (int i = 0; i < kUp; ++i) {
+        const double level = std::sqrt((i + 0.5) / kUp), up = std::sqrt(1 - level * level);
+        for (int j = 0; j < kAround; ++j) {
+          const double turn = 2 * std::numbers::pi * (j + 0.5) / kAround;
+          sum += atmosphere.radiance({level * std::cos(turn), level * std::sin(turn), up});
+        }
+      }
+      const dvec3 sky = sum * (std::numbers::pi / (kUp * kAround)),
+                  sun = atmosphere.sunlight(altitude) * std::sin(altitude);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_LT(sky[i] + sun[i], std::sin(altitude)) << turbidity << ", " << degrees;
+        EXPECT_GT(sky[i], 0.02 * sun[i]) << turbidity << ", " << degrees;
+      }
+    }
+  }
+}
+
+// The errors that sky_fit.h states, over directions between those of the fit.
+TEST(Sky, FormulaMatchesTheAtmosphere) {
+  for (const double degrees : {90.0, 45.0, 20.0, 5.0, 0.0, -4.0, -6.0}) {
+    const double altitude = glm::radians(degrees);
+    const Atmosphere atmosphere(3, altitude);
+    glsl::ScarpSky sky{};
+    sky.to_sun = vec3(atmosphere.to_sun());
+    fit_sky(atmosphere, sky);
+    double squares = 0;
+    int count = 0;
+    for (double up = 1.5; up < 90; up += 6) {
+      for (double turn = 7; turn < 360; turn += 19, ++count) {
+        const dvec3 towards = direction(up, turn), truth = atmosphere.radiance(towards);
+        const dvec3 error = dvec3(glsl::scarp_scattered(sky, towards)) - truth;
+        squares += dot(error, error) / dot(truth, truth);
+      }
+    }
+    EXPECT_LT(std::sqrt(squares / count), degrees >= 20 ? 0.02 : 0.1) << degrees;
+  }
+}
+
+TEST(Sky, SunlightIsWhiteAtNoon) {
+  const vec3 sun = scattering(60).sunlight();
+  EXPECT_NEAR(sun.x, sun.y, 1e-5);
+  EXPECT_NEAR(sun.z, sun.y, 1e-5);
+}
+
+TEST(Sky, HorizonIsNoRedderThanBlueByDay) {
+  for (const double altitude : {20.0, 40.0, 60.0}) {
+    const Sky sky = scattering(altitude);
+    for (const double from_sun : {60.0, 90.0, 180.0}) {
+      const vec3 horizon = sky.colour(direction(0, from_sun));
+      EXPECT_LE(horizon.x, horizon.z) << altitude << ", " << from_sun;
+      EXPECT_LE(horizon.x, 1.02f * horizon.y) << "mauve: " << altitude << ", " << from_sun;
+    }
+  }
+}
+
+TEST(Sky, TwilightDarkensAndIsBlue) {
+  float before = luminance(scattering(0).skylight());
+  for (const double altitude : {-2.0, -4.0, -6.0}) {
+    const Sky sky = scattering(altitude);
+    EXPECT_EQ(sky.sunlight(), vec3(0.0f)) << altitude;
+    const float now = luminance(sky.skylight());
+    EXPECT_LT(now, before) << altitude;
+    EXPECT_GT(now, 0) << altitude;
+    before = now;
+    const vec3 zenith = sky.colour({0, 0, 1}), glow = sky.colour(direction(2));
+    EXPECT_GT(zenith.z, 1.2f * zenith.x) << altitude;
+    EXPECT_GT(glow.x / glow.z, 1.5f * zenith.x / zenith.z) << altitude;
+  }
 }
 
 TEST(Sky, LowSunTurnsSkyAndSunlightOrange) {
@@ -96,7 +173,7 @@ TEST(Sky, LightsLevelGroundWithOneUnderAHighSun) {
 
 TEST(Sky, IsFiniteAndNonNegativeEverywhere) {
   for (const double turbidity : {2.0, 10.0}) {
-    for (const double sun : {0.01, 3.0, 45.0, 90.0}) {
+    for (const double sun : {-6.0, -0.1, 0.01, 3.0, 45.0, 90.0}) {
       const Sky sky = scattering(sun, turbidity);
       for (double altitude = -90; altitude <= 90; altitude += 7.5) {
         for (double turn = 0; turn < 360; turn += 45) {
