@@ -59,7 +59,8 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
       {{"--look", "comanchee"},
        "--look 'comanchee': expected shaded, hillshade, height, steps, error, comanche or level:N"},
       {{"--look", "comanche", "--size", "640x480"}, "--lowres WIDTHxHEIGHT and --pixel-size PX"},
-      {{"--lowres", "64x48"}, "applies to the looks height and comanche, not to 'shaded' (other"},
+      {{"--look", "steps", "--lowres", "64x48"},
+       "applies to the looks shaded, height and comanche, not to 'steps' (other"},
       {{"--look", "height", "--lowres", "64x48", "--size", "64x48"}, "--lowres cannot be combined with --size"},
       {{"--look", "level:x"}, "--look 'level:x': expected level:N, N a whole number, 0 or more"},
       {{"--look", "level:-1"}, "--look 'level:-1': expected level:N"},
@@ -82,6 +83,8 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
       {{"--look", "comanche", "--fog", "iterations"}, "--fog iterations needs --look comanche --march fixed-step"},
       {{"--look", "comanche", "--march", "fixed-step", "--refine", "bisect"}, "--fixed-step-interpolate instead"},
       {{"--look", "comanche", "--shells"}, "--shells has no effect without --march fixed-step"},
+      {{"--detail-texture", scratch.path("unplaced.png"), "--detail", "0"}, "has no effect with --detail 0"},
+      {{"--pixel-size", "2"}, "--pixel-size needs --lowres WIDTHxHEIGHT without --look comanche"},
       {{"--fog", "distance", "--visibility", "0"}, "--visibility '0': expected a finite number above 0"},
       {{"--ground", "lava"}, "--ground 'lava': expected ramp or natural"},
       {{"--ramp", scratch.path("gap.cpt")}, "line 2: begins at 20, but the previous line ends at 10"},
@@ -263,7 +266,107 @@ TEST(Overlay, IsMirroredWithTheGround) {
   }
 }
 
+// A picture of endless hills in large pixels; `name` is its file.
+void render_low(const test::Scratch& scratch, const std::string& name, const std::vector<std::string>& options) {
+  std::vector<std::string> arguments{"render",  hill(scratch), "-o",       scratch.path(name), "--wrap", "mirror",
+                                     "--eye",   "40,-40,120",  "--target", "40,60,20",         "--fov",  "40",
+                                     "--reach", "400"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const auto result = test::run(arguments);
+  EXPECT_EQ(result.status, 0) << name << ": " << result.err;
+}
+
+TEST(Comanche, ShellsAreNotInterpolatedByDefault) {
+  const test::Scratch scratch;
+  const auto picture = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> options{"--look", "height",  "--lowres",   "64x48",   "--pixel-size",
+                                     "1",      "--march", "fixed-step", "--steps", "24"};
+    options.insert(options.end(), more.begin(), more.end());
+    render_low(scratch, "shells.png", options);
+    return test::read_png(scratch.path("shells.png")).bytes;
+  };
+  const auto shells = picture({"--shells"});
+  EXPECT_EQ(shells, picture({"--shells", "--fixed-step-interpolate", "false"}));
+  EXPECT_NE(shells, picture({"--shells", "--fixed-step-interpolate", "true"}));
+  EXPECT_EQ(picture({}), picture({"--fixed-step-interpolate", "true"}));
+}
+
+TEST(Comanche, ShadedPicturesHaveLargePixelsToo) {
+  const test::Scratch scratch;
+  render_low(scratch, "large.png", {"--lowres", "16x12", "--pixel-size", "3"});
+  render_low(scratch, "small.png", {"--size", "16x12"});
+  const test::Rgb large = test::read_png(scratch.path("large.png")), small = test::read_png(scratch.path("small.png"));
+  ASSERT_EQ(large.width, 48);
+  ASSERT_EQ(large.height, 36);
+  for (int y = 0; y < 36; ++y) {
+    for (int x = 0; x < 48; ++x) {
+      for (int i = 0; i < 3; ++i) EXPECT_EQ(large.pixel(x, y)[i], small.pixel(x / 3, y / 3)[i]) << x << ", " << y;
+    }
+  }
+}
+
 #ifdef SCARP_OPENEXR
+TEST(Comanche, WritesTheDepthOfItsSteps) {
+  const test::Scratch scratch;
+  const std::vector<std::string> stepped{"--look",
+                                         "comanche",
+                                         "--lowres",
+                                         "24x18",
+                                         "--pixel-size",
+                                         "1",
+                                         "--march",
+                                         "fixed-step",
+                                         "--steps",
+                                         "40",
+                                         "--fixed-step-interpolate",
+                                         "false"};
+  const auto depths = [&](const std::string& name, std::vector<std::string> options, const std::string& more = "") {
+    if (!more.empty()) options.push_back(more);
+    options.insert(options.end(), {"--depth-range", "1,1000"});
+    render_low(scratch, name, options);
+    return read_exr_channel(scratch.path(name), "Z").values;
+  };
+  // Hits are on planes 10 m apart: the reach by the number of steps.
+  const std::vector<float> planes = depths("planes.exr", stepped);
+  int hits = 0;
+  for (const float z : planes) {
+    if (!std::isfinite(z)) continue;
+    ++hits;
+    EXPECT_NEAR(z, 10 * std::round(z / 10), 1e-3);
+  }
+  EXPECT_GT(hits, 100);
+  // On shells it is the distance from the eye.
+  depths("shells.exr", stepped, "--shells");
+  std::vector<std::vector<float>> place;
+  for (const char* axis : {"P.X", "P.Y", "P.Z", "Z"})
+    place.push_back(read_exr_channel(scratch.path("shells.exr"), axis).values);
+  for (std::size_t i = 0; i < place[0].size(); ++i) {
+    if (!std::isfinite(place[3][i])) continue;
+    const double away = std::hypot(place[0][i] - 40, place[1][i] + 40, place[2][i] - 120);
+    EXPECT_NEAR(away, 10 * std::round(away / 10), 1e-3);
+  }
+  // Exact rays have the depth of the look shaded.
+  EXPECT_EQ(depths("exact.exr", {"--look", "comanche", "--lowres", "24x18", "--pixel-size", "1"}),
+            depths("shaded.exr", {"--size", "24x18"}));
+  // Large pixels; the depth buffer of a projection with these planes.
+  EXPECT_EQ(depths("large.exr", {"--lowres", "12x9", "--pixel-size", "2"}).size(), planes.size());
+  const std::vector<float> device = read_exr_channel(scratch.path("planes.exr"), "depth").values;
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    EXPECT_NEAR(device[i], std::isfinite(planes[i]) ? 1000.0 / 999 * (1 - 1 / planes[i]) : 1, 1e-5);
+  // A plate at 105 m hides everything behind it.
+  std::vector<float> zero(planes.size(), 0.0f), one(planes.size(), 1.0f), plate(planes.size(), 105.0f);
+  write_exr(scratch.path("plate.exr"),
+            {24, 18, {{"R", zero.data()}, {"G", one.data()}, {"B", zero.data()}, {"Z", plate.data()}}, {}});
+  const auto result = test::run({"composite", scratch.path("planes.exr"), scratch.path("plate.exr"), "-o",
+                                 scratch.path("both.png"), "--no-tone-curve"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb both = test::read_png(scratch.path("both.png"));
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const std::uint8_t* rgb = both.bytes.data() + 3 * i;
+    EXPECT_EQ(rgb[0] == 0 && rgb[1] == 255, planes[i] > 105) << i;
+  }
+}
+
 TEST(Composite, ShowsTheNearerPixel) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch), ours = scratch.path("ours.exr");

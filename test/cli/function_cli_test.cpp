@@ -109,6 +109,20 @@ TEST_F(Functions, AcceptColourRamps) {
   EXPECT_NE(rendered({"--ramp", "grey"}), plain);
 }
 
+TEST_F(Functions, TheSeaIsBlue) {
+  const auto blue = [&](const std::string& function) {
+    const auto result = test::run({"render", "--function", function, "--unlit", "--haze", "0", "--size", "32x32",
+                                   "--eye", "0,0,2500", "--target", "0,1,0", "-o", out("sea.png")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const test::Rgb picture = test::read_png(out("sea.png"));
+    int count = 0;
+    for (int i = 0; i < 32 * 32; ++i) count += picture.bytes[3 * i + 2] > picture.bytes[3 * i] + 20;
+    return count;
+  };
+  EXPECT_GT(blue("sea"), 32 * 32 * 95 / 100);
+  EXPECT_LT(blue("hills"), 32 * 32 / 100);
+}
+
 TEST_F(Functions, AreDescribedByInfo) {
   const auto result = test::run({"info", "--function", "island", "--extent", "4000", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;

@@ -270,7 +270,8 @@ TEST_F(WithoutEffect, IsRejectedForTerrain) {
   expect_refused(function, {"--steps", "9", "--march", "fixed-step", "--look", "comanche"}, "applies to terrain only");
   expect_refused(function, {"--shells", "--march", "fixed-step", "--look", "comanche"}, "step by --function-step M");
   expect_refused(function, {"--fixed-step", "2", "--march", "fixed-step"}, "functions have --function-step M");
-  expect_refused(render, {"--pixel-size", "2", "--look", "height"}, "needs --lowres WIDTHxHEIGHT with --look height");
+  expect_refused(render, {"--pixel-size", "2", "--look", "height"},
+                 "needs --lowres WIDTHxHEIGHT without --look comanche");
   expect_refused(render, {"--sun", "1,30", "--unlit"}, "has no effect with --unlit");
   expect_refused(render, {"--error-tolerance", "1"}, "applies to the look error");
   expect_refused(render, {"--sun-size", "1"}, "--samples N");
@@ -330,7 +331,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
       {{"--snow-line", "1"}, lit, {"--ground", "natural"}},
       {{"--detail", "1"}, lit},
       {{"--detail-size", "3"}, lit, {"--detail", "1"}},
-      {{"--detail-texture", path("overlay.asc")}, lit, {"--detail", "1"}, false},
+      {{"--detail-texture", SCARP_SOURCE_DIR "/test/golden/lake.png"}, lit},
       {{"--contours", "7"}, lit},
       {{"--steps-range", "0,900"}, {"steps"}},
       {{"--overlay", path("overlay.asc")}, lit, {}, false},
@@ -347,7 +348,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
       {{"--fog-base", "90"}, lit, fog},
       {{"--fog-falloff", "1"}, lit, fog},
       {{"--sun-tint", "1"}, lit, fog, false},
-      {{"--pixel-size", "2"}, {"height", "comanche"}, {"--lowres", "24x18"}},
+      {{"--pixel-size", "2"}, {"shaded", "height", "comanche"}, {"--lowres", "24x18"}},
       {{"--steps", "3"}, {"height", "comanche"}, steps},
       {{"--shells"}, {"height", "comanche"}, steps, false},
       {{"--step-by-view"}, {"height", "comanche"}, steps, false},

@@ -30,10 +30,10 @@ void check_output(const RenderOptions& options) {
   if (options.depth.fitted && options.frames.several())
     throw Error("--depth-range auto: frames share their planes (name NEAR,FAR)");
   check_figure(options.figure, picture, format);
-  if (format.layers && picture.look != Look::shaded) {
+  if (format.layers && !entry_of(options.picture.look).lit) {
     throw Error(
-        fmt::format("--look {}: EXR pictures hold the look 'shaded', with depth, position and steps as channels "
-                    "(leave --look out, or name the output *.png)",
+        fmt::format("--look {}: EXR pictures hold the look 'shaded' or 'comanche', with depth, position and steps as "
+                    "channels (leave --look out, or name the output *.png)",
                     name_of(options.picture.look)));
   }
   if (format.map && options.frames.several())

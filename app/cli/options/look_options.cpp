@@ -117,19 +117,25 @@ void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& f
                         .unit = "metres",
                         .fallback = fmt::format("{} of the relief", GroundPaintSettings{}.snow_share),
                         .rules = {needs("--ground natural", [&o] { return o.natural; })}});
-  const Rule detailed = needs("--detail F", [&o] { return o.detail > 0; });
-  ground(&o.detail, {.names = "--detail", .help = "strength of noise patches or of --detail-texture", .range = {0, 1}});
+  const Rule detailed = needs("--detail F or --detail-texture FILE", [&o, &files] {
+    return o.detail.value_or(files.detail_texture.empty() ? 0 : kTextureDetail) > 0;
+  });
+  ground(&o.detail, {.names = "--detail",
+                     .help = "strength of noise patches or of --detail-texture",
+                     .range = {0, 1},
+                     .fallback = fmt::format("0; {} with --detail-texture", kTextureDetail)});
   ground(&o.detail_size, {.names = "--detail-size",
                           .help = "size of the largest patches or width of --detail-texture",
                           .unit = "metres",
                           .range = kZeroOrMore,
                           .fallback = "16 cells",
                           .rules = {detailed}});
-  ground(&files.detail_texture, {.names = "--detail-texture",
-                                 .value = "FILE",
-                                 .help = "image, repeated over the ground, whose grey levels replace the noise",
-                                 .files = "*",
-                                 .rules = {detailed}});
+  ground(&files.detail_texture,
+         {.names = "--detail-texture",
+          .value = "FILE",
+          .help = "image, repeated over the ground, whose grey levels replace the noise",
+          .files = "*",
+          .rules = {{"has no effect with --detail 0", [&o] { return o.detail.value_or(1) > 0; }}}});
   ground(&o.contours, {.names = "--contours",
                        .help = "contour interval",
                        .unit = "metres",
@@ -247,14 +253,16 @@ void add_fog_options(Command& command, PictureRequest& o) {
 }
 
 void add_large_pixel_options(Command& command, PictureRequest& o) {
-  constexpr Looks kLarge{"comanche"};
-  constexpr Looks kPixels{"height comanche"};
+  // In the window, pictures of the look shaded have the window's size.
+  const bool written = command.find("--output") != nullptr;
+  constexpr Looks kLarge{"comanche"}, kStepping{"height comanche"};
+  const Looks pixels{written ? "shaded height comanche" : "height comanche", "other looks have --size"};
   const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
   const Rule alone{"has no effect with --mesh, where rays step by --fixed-step",
                    [&command] { return !command.given("--mesh"); }};
   constexpr Inputs kStepped{kTerrain, "rays over functions step by --function-step M", "its rays do not step"};
-  const Rule large_pixels{"needs --lowres WIDTHxHEIGHT with --look height",
-                          [&command, &o] { return command.value("--look") != "height" || o.low_resolution; }};
+  const Rule large_pixels{"needs --lowres WIDTHxHEIGHT without --look comanche",
+                          [&o] { return o.look == Look::comanche || o.low_resolution; }};
   const auto large = [&](Binding to, Option option) {
     option.topic = Topic::comanche;
     command.add(std::move(to), std::move(option));
@@ -268,29 +276,30 @@ void add_large_pixel_options(Command& command, PictureRequest& o) {
                              .help = "size of the picture in large pixels",
                              .note = "the look height then uses the rays and camera of comanche",
                              .fallback = fmt::format("{}x{}", kLowResolution.width, kLowResolution.height),
-                             .looks = {"height comanche", "other looks have --size"},
+                             .looks = pixels,
                              .excludes = {"--size", "--refine"}});
   large(&o.comanche.scale, {.names = "--pixel-size",
                             .value = "PX",
                             .help = "side of a large pixel in pixels of the image",
                             .range = {1, 64},
-                            .looks = kPixels,
+                            .looks = pixels,
                             .rules = {large_pixels}});
   large(&o.comanche.steps, {.names = "--steps",
                             .help = "number of steps of fixed-step over the reach",
                             .range = {1, 65536},
                             .inputs = kStepped,
-                            .looks = kPixels,
+                            .looks = kStepping,
                             .rules = {stepped, large_pixels, alone}});
   large(&o.comanche.shells, {.names = "--shells",
                              .help = "fixed-step samples on spheres round the eye instead of planes",
+                             .note = "hits are at samples unless --fixed-step-interpolate true",
                              .inputs = kStepped,
-                             .looks = kPixels,
+                             .looks = kStepping,
                              .rules = {stepped, large_pixels, alone}});
   large(&o.comanche.step_by_view, {.names = "--step-by-view",
                                    .help = "longer fixed-step steps for rays that point down",
                                    .inputs = kStepped,
-                                   .looks = kPixels,
+                                   .looks = kStepping,
                                    .rules = {stepped, large_pixels, alone}});
   large(&o.comanche.iterations,
         {.names = "--iterations",

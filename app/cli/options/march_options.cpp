@@ -52,7 +52,7 @@ namespace {
 
 constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};
 
-void add_fixed_step_options(Command& command, FixedStepSettings& fixed_step) {
+void add_fixed_step_options(Command& command, FixedStepSettings& fixed_step, std::optional<bool>* typed) {
   // Over a single raster, the look comanche steps by its own rules (step_march_of() in frame_view.h).
   std::vector<Rule> plain;
   if (command.find("--steps")) {
@@ -70,14 +70,20 @@ void add_fixed_step_options(Command& command, FixedStepSettings& fixed_step) {
                                  .inputs = {kTerrain, "functions have --function-step M"},
                                  .marches = "fixed-step",
                                  .rules = plain});
-  command.add(&fixed_step.interpolate, {.names = "--fixed-step-interpolate",
-                                        .value = "BOOL",
-                                        .help = "hit between the last two samples instead of at the last one",
-                                        .choices = {"true", "false"},
-                                        .closed = true,
-                                        .topic = Topic::march,
-                                        .inputs = kMarched,
-                                        .marches = "fixed-step"});
+  const auto set_interpolate = [&fixed_step, typed](const std::string& text) {
+    fixed_step.interpolate = text == "true";
+    if (typed) *typed = fixed_step.interpolate;
+  };
+  command.add(set_interpolate, {.names = "--fixed-step-interpolate",
+                                .value = "BOOL",
+                                .help = "hit between the last two samples instead of at the last one",
+                                .choices = {"true", "false"},
+                                .closed = true,
+                                .fallback = typed ? "true; with --shells false" : "true",
+                                .now = [&fixed_step] { return std::string(fixed_step.interpolate ? "true" : "false"); },
+                                .topic = Topic::march,
+                                .inputs = kMarched,
+                                .marches = "fixed-step"});
   command.add(&fixed_step.max_steps, {.names = "--fixed-step-max-steps",
                                       .help = "maximum number of steps",
                                       .range = kSteps,
@@ -112,7 +118,7 @@ void add_refinement_options(Command& command, SamplingSettings& sampling) {
 
 }  // namespace
 
-void add_march_options(Command& command, MarchSettings& march) {
+void add_march_options(Command& command, MarchSettings& march, std::optional<bool>* interpolate) {
   const auto add = [&](const char* name, Binding to, const char* help, const NumberRange& range,
                        std::string_view marches, const char* note = "", const Inputs& inputs = kMarched) {
     command.add(to, {.names = name,
@@ -130,7 +136,7 @@ void add_march_options(Command& command, MarchSettings& march) {
   add("--naive-tolerance", &naive.tolerance, "height above ground that counts as a hit, per unit of distance",
       kZeroOrMore, "naive");
   add("--naive-max-steps", &naive.max_steps, "maximum number of steps", kSteps, "naive");
-  add_fixed_step_options(command, march.fixed_step);
+  add_fixed_step_options(command, march.fixed_step, interpolate);
   RelaxedSettings& relaxed = march.relaxed;
   add("--relaxed-step-factor", &relaxed.step_factor, "step as a fraction of the vertical distance", kAboveZero,
       "relaxed");

@@ -2,6 +2,7 @@
 // --march, and the settings of all marches as options.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/options/command.h"
@@ -11,7 +12,8 @@ namespace scarp::cli {
 
 /// Declares --march; empty: the default of the kind of input.
 void add_march_option(Command& command, std::string& march);
-/// Declares an option for each setting of each march.
-void add_march_options(Command& command, MarchSettings& march);
+/// Declares an option for each setting of each march. `interpolate` receives --fixed-step-interpolate if it is typed;
+/// null: its default does not depend on --shells.
+void add_march_options(Command& command, MarchSettings& march, std::optional<bool>* interpolate = nullptr);
 
 }  // namespace scarp::cli

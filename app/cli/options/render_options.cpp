@@ -338,7 +338,7 @@ void declare_picture(Command& command, RenderOptions& o, bool written) {
                         .topic = Topic::input,
                         .inputs = {kTerrain, "other inputs are always read completely"}});
   add_march_option(command, o.march);
-  add_march_options(command, o.march_settings);
+  add_march_options(command, o.march_settings, &o.picture.interpolate);
 }
 
 ViewSettings view_of(const CameraOptions& camera, Look look) {

@@ -191,7 +191,7 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
   if (options.any().empty()) return {};
   const Scene& scene = subject.scene;
   const Camera& camera = subject.camera;
-  const double per_pixel = entry_of(settings.look).large_pixels ? settings.comanche.scale : 1;
+  const double per_pixel = pixel_side(settings);
   const double width = per_pixel * settings.width, height = per_pixel * settings.height;
   Figure figure{.title = options.title};
   if (options.layout == "beside") figure.layout = FigureLayout::beside;

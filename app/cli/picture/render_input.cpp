@@ -125,6 +125,7 @@ RenderInput function(OpenedInput opened, const FunctionInput& options) {
   subject.across = extent, subject.function_extent = extent;
   subject.own.haze = kFunctionHaze, subject.own.ao_distance = extent / 8;
   subject.heights = heights_around(function, extent);
+  subject.sea = options.function == "sea";
   RenderInput input{Scene(opened.scene.fields(), {{.material = kFunctionMaterial}}), std::move(subject)};
   input.march = opened.scene.marches() + (options.preset.empty() ? "" : fmt::format(" as in {}", options.preset));
   input.camera.target = dvec3(0, 0, function.value(0, 0));
@@ -187,7 +188,6 @@ RenderInput open_render_input(const InputRequest& request) {
   RenderInput input = with_defaults(request, std::move(opened));
   input.notes = std::move(notes), input.files = std::move(files), input.numbers = numbers;
   input.subject.files.drape = std::move(overlay.drape);
-  input.subject.interpolate = options.march_settings.fixed_step.interpolate;
   if (request.kind == InputKind::function) input.function_reach = options.march_settings.function.reach;
   return input;
 }

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/render/film/middles.h"
@@ -25,6 +27,10 @@ class LayersTile final : public TileWork {
         layers_(layers) {}
 
   bool next(RayRound& round) override {
+    if (const StepMarch* march = view_.step_march(); march && !seen_) {
+      asked_ = seen_ = true;
+      for (std::size_t i = 0; i < middles_.size(); ++i) take_stepped(i, march->march(middles_[i], view_.water()));
+    }
     if (!asked_) {
       asked_ = true;
       round.question = RayRound::Question::closest_cost;
@@ -34,7 +40,8 @@ class LayersTile final : public TileWork {
     }
     if (!seen_) {
       seen_ = true;
-      for (std::size_t i = 0; i < middles_.size(); ++i) take(i, round.hits[i], round.steps[i]);
+      for (std::size_t i = 0; i < middles_.size(); ++i)
+        take(i, round.hits[i], round.steps[i], frame_.water_of(middles_[i], round.hits[i]));
     }
     if (frame_.next(round)) return true;
     const std::vector<vec3> colours = frame_.pixels();
@@ -50,11 +57,20 @@ class LayersTile final : public TileWork {
            static_cast<std::size_t>(tile_.x0) + i % across;
   }
 
-  void take(std::size_t i, const Hit& hit, std::uint32_t steps) {
+  void take_stepped(std::size_t i, const StepMarch::Answer& answer) {
+    std::optional<Water::Meeting> water;
+    if (answer.water) {
+      water = {answer.t, {0, 0, 1}, {}};
+    } else if (view_.water() && view_.water()->is_sea(answer.hit)) {
+      water = {answer.hit.t, {0, 0, 1}, answer.hit};
+    }
+    take(i, answer.hit, answer.steps, water);
+  }
+
+  void take(std::size_t i, const Hit& hit, std::uint32_t steps, const std::optional<Water::Meeting>& water) {
     const Ray& ray = middles_[i];
     const std::size_t to = pixel(i);
     layers_.steps[to] = steps;
-    const auto water = frame_.water_of(ray, hit);
     if (!hit && !water) return;
     const dvec3 position = ray.at(water ? water->t : hit.t);
     layers_.depth[to] = static_cast<float>(dot(position - view_.camera().eye(), view_.camera().forward()));
@@ -74,10 +90,10 @@ class LayersTile final : public TileWork {
 
 PictureLayers empty_layers(const PictureSettings& settings) {
   validate(settings);
-  if (settings.look != Look::shaded) {
-    throw Error(
-        fmt::format("picture: look '{}': only 'shaded' has layers; depth, position and steps are layers themselves",
-                    name_of(settings.look)));
+  if (!entry_of(settings.look).lit || (settings.look == Look::comanche && settings.comanche.heights)) {
+    throw Error(fmt::format(
+        "picture: look '{}': only 'shaded' and 'comanche' have layers; depth, position and steps are layers themselves",
+        name_of(settings.comanche.heights ? Look::height : settings.look)));
   }
   const std::size_t pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
   return {settings.width,
@@ -97,6 +113,20 @@ PictureLayers render_layers(const Scene& scene, const Camera& camera, const Pict
   work_on_tiles(
       scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(view),
       [&](const PixelTile& tile) { return std::make_unique<LayersTile>(view, tile, layers); }, progress);
+  const int side = pixel_side(settings);
+  if (side == 1) return layers;
+  const auto scaled = [&]<class Value>(std::vector<Value>& values) {
+    std::vector<Value> large;
+    large.reserve(values.size() * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    for (int y = 0; y < layers.height * side; ++y) {
+      for (int x = 0; x < layers.width * side; ++x)
+        large.push_back(values[static_cast<std::size_t>(y / side) * static_cast<std::size_t>(layers.width) +
+                               static_cast<std::size_t>(x / side)]);
+    }
+    values = std::move(large);
+  };
+  scaled(layers.colour), scaled(layers.depth), scaled(layers.normal), scaled(layers.position), scaled(layers.steps);
+  layers.width *= side, layers.height *= side;
   return layers;
 }
 

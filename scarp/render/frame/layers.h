@@ -21,11 +21,13 @@ struct PictureLayers {
   std::vector<std::uint32_t> steps;  ///< sum over all marches
 };
 
-/// Layers of a picture without hits. Throws Error if the settings are out of range or the look is not `shaded`.
+/// Layers of a picture without hits. Throws Error if the settings are out of range or the look is neither `shaded` nor
+/// `comanche`.
 PictureLayers empty_layers(const PictureSettings& settings);
 
-/// Renders the look `shaded` with all layers; water and walls count as hits. Throws Error if the settings are out of
-/// range, the look is not `shaded`, or nothing is visible. Throws Interrupted if `progress` returns false.
+/// Renders the look `shaded` or `comanche` with all layers; water and walls count as hits. Large pixels are scaled up,
+/// as in render_picture(). Throws Error if the settings are out of range, the look is another one, or nothing is
+/// visible. Throws Interrupted if `progress` returns false.
 PictureLayers render_layers(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                             const Progress& progress = {});
 

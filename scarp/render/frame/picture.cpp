@@ -230,6 +230,10 @@ bool uses_tone_curve(const PictureSettings& settings) {
   return settings.tone_curve && !settings.unlit && !counts;
 }
 
+int pixel_side(const PictureSettings& settings) {
+  return settings.large_pixels || entry_of(settings.look).large_pixels ? settings.comanche.scale : 1;
+}
+
 std::string_view ramp_of(const PictureSettings& settings) {
   if (!settings.ramp.empty()) return settings.ramp;
   return settings.look == Look::steps ? "viridis" : "hypsometric";
@@ -397,7 +401,7 @@ Picture render_picture(const Scene& scene, const Camera& camera, const PictureSe
   Picture picture = render_look(scene, camera, settings, progress);
   Image& image = picture.image;
   if (settings.alpha && image.alpha.empty()) find_alpha(scene, camera, settings, image);
-  if (entry_of(settings.look).large_pixels) image = scaled_up(image, settings.comanche.scale);
+  if (const int side = pixel_side(settings); side > 1) image = scaled_up(image, side);
   return picture;
 }
 

@@ -71,6 +71,7 @@ struct PictureSettings {
   std::uint32_t seed = 0;           ///< seed of the sampling pattern
 
   // Looks.
+  bool large_pixels = false;  ///< `shaded`: pixels are scaled up by ComancheSettings::scale, as `comanche` always does
   ComancheSettings comanche{};
   ErrorSettings error{};
   std::optional<StepScale> step_scale{};  ///< `steps`: range of the ramp, clamped; nullopt: the minimum and
@@ -80,6 +81,9 @@ struct PictureSettings {
 
 /// Returns whether the tone curve applies: not to pictures of counts or unlit pictures.
 bool uses_tone_curve(const PictureSettings& settings);
+
+/// Returns the side of a pixel of the picture in pixels of its image.
+int pixel_side(const PictureSettings& settings);
 
 /// Returns the name of the ramp in the settings or, if that is empty, the default for the look.
 std::string_view ramp_of(const PictureSettings& settings);

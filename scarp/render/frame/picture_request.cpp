@@ -16,9 +16,18 @@ void take(std::optional<T>& asked, const std::optional<T>& own) {
   if (!asked) asked = own;
 }
 
-// kFunctionMaterial: meadows, dry grass and snow by height, rock on steep slopes; or one of the ramps.
-std::vector<Material> function_materials(const ReliefRange& range, const std::string& ramp) {
+// kFunctionMaterial: meadows, dry grass and snow by height, rock on steep slopes; water, green on steep slopes, where
+// light shines through, and foam on the highest crests; or one of the ramps.
+std::vector<Material> function_materials(const ReliefRange& range, const std::string& ramp, bool sea) {
   const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
+  if (sea && ramp.empty()) {
+    return {HeightStops{{{at(0.0), {0.04f, 0.15f, 0.24f}},
+                         {at(0.5), {0.07f, 0.24f, 0.34f}},
+                         {at(0.85), {0.16f, 0.40f, 0.48f}},
+                         {at(0.93), {0.30f, 0.54f, 0.60f}},
+                         {at(1.0), {0.88f, 0.93f, 0.94f}}}},
+            PlainColour{{0.12f, 0.38f, 0.40f}}, Blend{Blend::By::slope, 10, 25, 0, 1}};
+  }
   std::vector<Material> materials{HeightStops{{{at(0.0), {0.40f, 0.47f, 0.30f}},
                                                {at(0.35), {0.50f, 0.53f, 0.33f}},
                                                {at(0.6), {0.62f, 0.57f, 0.42f}},
@@ -36,8 +45,13 @@ double way_to(const WorldBox& box, const Camera& camera) {
   return length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
 }
 
-ImageSize size_of(const PictureRequest& r, const PictureSubject& subject) {
-  if (entry_of(look_of(r)).large_pixels) return r.low_resolution.value_or(kLowResolution);
+// `asked` without the size of a scene file.
+bool has_large_pixels(const PictureRequest& asked) {
+  return entry_of(look_of(asked)).large_pixels || (asked.look == Look::shaded && asked.low_resolution && !asked.width);
+}
+
+ImageSize size_of(const PictureRequest& r, const PictureSubject& subject, bool large_pixels) {
+  if (large_pixels) return r.low_resolution.value_or(kLowResolution);
   return {r.width.value_or(subject.size.width), r.height.value_or(subject.size.height)};
 }
 
@@ -47,7 +61,8 @@ GroundPaintSettings ground_of(const PictureRequest& r, const PictureSubject& sub
   const double relief = subject.heights.high - subject.heights.low;
   if (r.snow_line && relief > 0)
     ground.snow_share = (*r.snow_line * subject.exaggeration - subject.heights.low) / relief;
-  ground.detail = r.detail, ground.detail_size = r.detail_size, ground.contours = r.contours;
+  ground.detail = r.detail.value_or(subject.files.detail_texture ? kTextureDetail : 0);
+  ground.detail_size = r.detail_size, ground.contours = r.contours;
   ground.detail_texture = subject.files.detail_texture, ground.drape = subject.files.drape;
   return ground;
 }
@@ -87,7 +102,7 @@ void set_function(const PictureRequest& r, const PictureSubject& subject, Pictur
       WorldBox{{-0.5 * extent, -0.5 * extent, subject.heights.low}, {0.5 * extent, 0.5 * extent, subject.heights.high}};
   // A ramp from a file and natural ground are painted by the renderer.
   if (!r.natural && !subject.files.ramp_stops)
-    picture.materials = function_materials(r.ramp_range.value_or(subject.heights), r.ramp);
+    picture.materials = function_materials(r.ramp_range.value_or(subject.heights), r.ramp, subject.sea);
 }
 
 }  // namespace
@@ -133,7 +148,8 @@ PictureSettings resolve(const PictureRequest& asked, const PictureSubject& subje
   PictureSettings picture;
   picture.look = look_of(r), picture.level = r.level;
   const bool comanche = picture.look == Look::comanche;
-  ImageSize size = size_of(r, subject);
+  picture.large_pixels = has_large_pixels(asked);
+  ImageSize size = size_of(r, subject, picture.large_pixels);
   if (subject.map && !asked.width) size = size_of_map(*subject.map, size.width);
   picture.width = size.width, picture.height = size.height;
   picture.aa = comanche ? 1 : r.aa.value_or(picture.aa);
@@ -141,7 +157,7 @@ PictureSettings resolve(const PictureRequest& asked, const PictureSubject& subje
   if (r.error_tolerance) picture.error = {*r.error_tolerance, *r.error_tolerance / 100};
   picture.comanche = r.comanche;
   picture.comanche.heights = r.look == Look::height && comanche;
-  picture.comanche.interpolate = subject.interpolate;
+  picture.comanche.interpolate = r.interpolate.value_or(!r.comanche.shells);
   picture.alpha = subject.alpha;
 
   picture.materials = r.materials;

@@ -15,6 +15,9 @@
 
 namespace scarp {
 
+/// Default PictureRequest::detail of a texture: the contrast of its image.
+constexpr double kTextureDetail = 0.5;
+
 /// Default size of `comanche` in large pixels.
 constexpr ImageSize kLowResolution{320, 240};
 
@@ -24,7 +27,8 @@ struct PictureRequest {
   Look look = Look::shaded;
   int level = 0;                            ///< `level`
   std::optional<int> width{}, height{};     ///< pixels; `comanche` has `low_resolution`
-  std::optional<ImageSize> low_resolution;  ///< large pixels; the look `height` then uses the rays of `comanche`
+  std::optional<ImageSize> low_resolution;  ///< large pixels, also of `shaded` unless it has a width; the look
+                                            ///< `height` then uses the rays of `comanche`
   std::optional<int> aa{};
   std::optional<StepScale> step_scale{};
   std::optional<double> error_tolerance{};  ///< cells or voxels; functions and shapes: percent of the distance
@@ -48,7 +52,8 @@ struct PictureRequest {
   std::optional<ReliefRange> ramp_range{};
   bool natural = false;
   std::optional<double> snow_line{};  ///< metres, not exaggerated
-  double detail = 0, detail_size = 0, contours = 0;
+  std::optional<double> detail{};     ///< kTextureDetail for a texture, else 0
+  double detail_size = 0, contours = 0;
 
   // Water, enabled by `water_level`.
   std::optional<double> water_level{};
@@ -61,8 +66,9 @@ struct PictureRequest {
   std::optional<double> visibility{}, fog_base{}, fog_falloff{};  ///< metres; `fog_base` is not exaggerated
   std::optional<double> sun_tint{};
 
-  ComancheSettings comanche{};
-  std::optional<double> reach{};  ///< maximum length of camera rays in metres
+  ComancheSettings comanche{};        ///< without `heights` and `interpolate`
+  std::optional<bool> interpolate{};  ///< ComancheSettings::interpolate; without `shells`, which it would hide
+  std::optional<double> reach{};      ///< maximum length of camera rays in metres
 };
 
 /// Returns `asked`, completed by `own`, the request of the input itself.
@@ -87,7 +93,7 @@ struct PictureSubject {
   WorldBox box{};                           ///< used for the distance of cameras; see resolve()
   std::optional<WorldBox> map{};  ///< extent of a map; a picture without a requested size has its aspect ratio
   ImageSize size{1280, 720};      ///< default size in pixels
-  bool interpolate = true;        ///< ComancheSettings::interpolate
+  bool sea = false;               ///< whether a terrain function is water, by its default colours
   bool alpha = false;             ///< PictureSettings::alpha
 };
 
