@@ -32,7 +32,7 @@ row() {
   pictures="![](../images/$file.png) | ![](../images/$file-steps.png)"
   if $judged; then
     "$scarp" render "${field[@]}" "$@" --size $small --look error -o "$images/$file-error.png" >"$scratch/errors"
-    count() { awk -v what="$1" '$0 ~ "^  " what {print $NF}' "$scratch/errors"; }
+    count() { awk -v what="$1" '$0 ~ "^  " what {for (i = 1; i <= NF; ++i) if ($i ~ /^[0-9]+$/) {print $i; exit}}' "$scratch/errors"; }
     pictures="$pictures | ![](../images/$file-error.png)"
     counts=" | $(count lost) | $(count late) | $(count early) | $(count 'gave up')"
   fi
@@ -49,6 +49,8 @@ fill() {
 }
 
 judged=true
+"$scarp" render "$dem" --crs EPSG:4326 --bounds=-84.41375,36.44625,-84.0779166667,36.7329166667 --exaggeration 4 \
+  --view 195,40,0.7 --no-plinth --size 720x320 --compare naive,max-mip -o "$images/techniques-compare.png" >/dev/null
 field=("$dem" --crs EPSG:4326 --bounds=-84.41375,36.44625,-84.0779166667,36.7329166667 --exaggeration 4 --view 195,40 --no-plinth)
 {
   row heights naive 0,100 --march naive

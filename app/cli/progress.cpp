@@ -22,6 +22,7 @@ namespace {
 std::atomic<int> signal_caught = 0;
 std::atomic<bool> signal_seen = false;  // the signal was noticed, and the program is stopping
 std::atomic<bool> line_open = false;
+std::atomic<int> silences = 0;  // SilentProgress objects
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 // Signals by which users, shells and systems end programs. HUP: the terminal was closed.
@@ -92,7 +93,7 @@ void stop_if_interrupted() {
 }
 
 Progress terminal_progress(std::string_view what) {
-  if (::isatty(STDERR_FILENO) == 0) return [](double) { return !stop_wanted(); };
+  if (silences > 0 || ::isatty(STDERR_FILENO) == 0) return [](double) { return !stop_wanted(); };
   // std::function copies its target: the count is shared.
   return [name = std::string(what), ticks = std::make_shared<int>(-1)](double share) {
     const int now = std::clamp(static_cast<int>(share * kTicks), 0, kTicks);
@@ -113,6 +114,9 @@ Progress terminal_progress(std::string_view what) {
     return !stop_wanted();
   };
 }
+
+SilentProgress::SilentProgress() { ++silences; }
+SilentProgress::~SilentProgress() { --silences; }
 
 void end_progress_line() {
   if (!line_open) return;

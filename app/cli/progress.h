@@ -26,6 +26,15 @@ void stop_if_interrupted();
 /// Prints a line "what 0...10...20" to stderr if that is a terminal; requests a stop after a signal.
 Progress terminal_progress(std::string_view what);
 
+/// While it exists, terminal_progress() prints nothing: for parts of a task that has its own line.
+class SilentProgress {
+ public:
+  SilentProgress();
+  ~SilentProgress();
+  SilentProgress(const SilentProgress&) = delete;
+  SilentProgress& operator=(const SilentProgress&) = delete;
+};
+
 /// Ends an incomplete progress line, so that a message starts on its own line.
 void end_progress_line();
 

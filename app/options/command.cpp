@@ -219,11 +219,26 @@ void Command::set_values() {
     if (one.option.required && !given(one.name))
       throw WrongUsage(fmt::format("{} is required (see '{} {} --help')", one.synopsis(), program_, name_));
   }
+  require_compatible();
+}
+
+void Command::require_compatible() const {
   for (const Typed& one : typed_) {
     for (const std::string& other : one.option->option.excludes) {
       if (given(other)) throw WrongUsage(fmt::format("{} cannot be combined with {}", one.option->name, other));
     }
   }
+}
+
+void Command::retype(const Declared& option, const std::string& text) {
+  set_value(option, text);
+  const auto before = std::find_if(typed_.begin(), typed_.end(), [&](const Typed& t) { return t.option == &option; });
+  if (before == typed_.end()) {
+    typed_.push_back({&option, {text}});
+  } else {
+    before->values = {text};
+  }
+  require_compatible();
 }
 
 void Command::run(std::vector<Typed> typed) {

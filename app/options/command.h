@@ -58,6 +58,9 @@ class Command {
   };
   /// In the order typed, each option once.
   const std::vector<Typed>& all_typed() const { return typed_; }
+  /// Sets an option as if it had been typed with this value, in place of what was typed. Throws what its binding
+  /// throws; then the variable and the typed value may have changed.
+  void retype(const Declared& option, const std::string& text);
   /// The names of the options that were typed and have no effect.
   std::vector<std::string> without_effect(const Use& use) const;
   /// Sets the variables and runs. Throws WrongUsage and the exceptions of the subcommand.
@@ -66,6 +69,7 @@ class Command {
  private:
   const Typed* typed(std::string_view name) const;
   void set_values();
+  void require_compatible() const;
 
   std::string program_, name_, summary_, footer_;
   bool hidden_;

@@ -121,8 +121,12 @@ class Viewer {
   }
 
   void describe() {
-    const auto& steps = shown_ && !shown_->sides.empty() ? shown_->sides.front().steps : std::nullopt;
-    panel_.controls = subject_->controls(steps ? std::optional(steps->scale) : std::nullopt);
+    std::optional<StepScale> scale;
+    if (shown_ && !shown_->sides.empty()) {
+      const Picture& first = shown_->sides.front();
+      if (const auto& counts = first.steps ? first.steps : first.cost) scale = counts->scale;
+    }
+    panel_.controls = subject_->controls(scale);
     panel_.comparisons = subject_->comparisons();
     panel_.compared = subject_->compared();
     panel_.device = subject_->device();
@@ -432,7 +436,9 @@ class Viewer {
     shown_ = std::move(worked);
     unpresented_ = true;
     show_sides();
-    if (is_complete() && subject_->settings().look == Look::steps) describe();
+    // The panel shows the range of the picture's counts.
+    if (const Look look = subject_->settings().look; is_complete() && (look == Look::steps || look == Look::cost))
+      describe();
     if (saves_ && is_complete()) save_picture();
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws the annotations of a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
+// Draws the annotations of a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines,
+// strips.
 //
 //     +-----------------------------------------+     A title
 //     |               A title              N    |        84°W    83°W
@@ -76,6 +77,11 @@ struct FigureLabel {
   std::string text{};
 };
 
+/// A picture made of vertical strips of equal width: dividers between them, and a label at the top of each.
+struct FigureStrip {
+  std::vector<std::string> lines{};  ///< of its label
+};
+
 /// Position of title, legend, scale bar, north arrow and labels of the graticule.
 enum class FigureLayout : std::uint8_t {
   on,      ///< on the picture
@@ -92,6 +98,7 @@ struct Figure {
   /// In order of preference: labels that would touch anything drawn before, or repeat a text within twenty times its
   /// height, are omitted.
   std::vector<FigureLabel> labels{};
+  std::vector<FigureStrip> strips{};  ///< from left to right; their labels are on the picture in every layout
   FigureLayout layout = FigureLayout::on;
 };
 

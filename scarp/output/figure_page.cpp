@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFrameLine = 1;    // pixels, around the picture on a page
 constexpr double kLeastTitle = 24;  // text heights: a tiny picture gets a wider page
+constexpr double kDivider = 0.2;    // text heights, between strips
 
 }  // namespace
 
@@ -45,7 +46,7 @@ void FigurePage::place_on(const FigurePen& pen, int width, int height) {
   const double pad = pen.pad();
   const auto bottom = [&](const FigurePanel& panel) { return height - 3 * pad - panel.height; };
   const auto right = [&](const FigurePanel& panel) { return width - 3 * pad - panel.width; };
-  double free_width = width - 4 * pad;
+  double free_width = width - 4 * pad, top = pad;
   if (figure_.scale) {
     FigurePanel panel = scale_panel(pen, *figure_.scale);
     const double y = bottom(panel);
@@ -66,8 +67,31 @@ void FigurePage::place_on(const FigurePen& pen, int width, int height) {
   if (!figure_.title.empty()) {
     FigurePanel panel = title_panel(pen, figure_.title, free_width);
     const double x = (width - panel.width) / 2 - pad;
+    top += panel.height + 3 * pad;
     place(std::move(panel), x, pad, pad);
   }
+  place_strips(pen, top);
+  require_fit();
+}
+
+// Labels are in the middle of their strips; `top` is their upper edge in the picture.
+void FigurePage::place_strips(const FigurePen& pen, double top) {
+  const double wide = frame_.width / static_cast<double>(std::max<std::size_t>(figure_.strips.size(), 1));
+  for (std::size_t i = 0; i < figure_.strips.size(); ++i) {
+    FigurePanel panel = strip_panel(pen, figure_.strips[i]);
+    const double needed = panel.width + 2 * pen.pad();
+    if (needed > wide) {
+      throw Error(fmt::format("figure: {} needs {:.0f} pixels, its strip is {:.0f} wide (enlarge the image)",
+                              panel.name, needed, wide));
+    }
+    const double x = frame_.x + static_cast<double>(i) * wide + (wide - needed) / 2;
+    place(std::move(panel), x, frame_.y + top, pen.pad());
+  }
+}
+
+// Panels on the picture.
+void FigurePage::require_fit() const {
+  const int width = width_, height = height_;
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const FigureRect& rect = placed_[i].rect;
     if (rect.x < 0 || rect.y < 0 || rect.x + rect.width > width || rect.y + rect.height > height) {
@@ -129,6 +153,8 @@ void FigurePage::place_beside(const FigurePen& pen, int width, int height) {
     }
     y += high;
   }
+  strips_ = placed_.size();
+  place_strips(pen, pen.pad());
   width_ = static_cast<int>(std::ceil(right + pad));
   height_ = static_cast<int>(std::ceil(y + pad));
 }
@@ -150,9 +176,20 @@ void FigurePage::draw(cairo_t* cr, cairo_surface_t* picture) const {
   draw_graticule(pen, figure_, frame_, taken);
   draw_labels(FigurePen(cr, label_text_), figure_, frame_, taken);
   pen = FigurePen(cr, text_);  // restores the context's font, which the last pen has set
-  for (const auto& [panel, rect] : placed_) {
-    if (!beside) pen.paper(rect);
+  draw_dividers(pen);
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const auto& [panel, rect] = placed_[i];
+    if (!beside || i >= strips_) pen.paper(rect);
     panel.draw(pen, rect.x + (rect.width - panel.width) / 2, rect.y + (rect.height - panel.height) / 2);
+  }
+}
+
+void FigurePage::draw_dividers(const FigurePen& pen) const {
+  const double thick = kDivider * text_;
+  for (std::size_t i = 1; i < figure_.strips.size(); ++i) {
+    const double x = frame_.x + frame_.width * static_cast<double>(i) / static_cast<double>(figure_.strips.size());
+    pen.fill({x - thick, frame_.y, 2 * thick, frame_.height}, {255, 255, 255});
+    pen.fill({x - thick / 2, frame_.y, thick, frame_.height}, {0, 0, 0});
   }
 }
 

@@ -2,6 +2,7 @@
 // Places the parts of a figure, and draws them with the picture.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "scarp/output/figure_panels.h"
@@ -29,6 +30,9 @@ class FigurePage {
 
   void place_on(const FigurePen& pen, int width, int height);
   void place_beside(const FigurePen& pen, int width, int height);
+  void place_strips(const FigurePen& pen, double top);
+  void require_fit() const;
+  void draw_dividers(const FigurePen& pen) const;
   void place(FigurePanel panel, double x, double y, double pad);
 
   const Figure& figure_;
@@ -36,6 +40,7 @@ class FigurePage {
   int width_, height_;
   FigureRect frame_;  // the picture's position
   std::vector<Placed> placed_;
+  std::size_t strips_ = 0;  // index of the first label of a strip in placed_, with margins
 };
 
 }  // namespace scarp

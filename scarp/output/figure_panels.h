@@ -21,6 +21,8 @@ FigurePanel scale_panel(const FigurePen& pen, const FigureScale& scale);
 /// `most_width`: maximum width of the colour bar.
 FigurePanel legend_panel(const FigurePen& pen, const FigureLegend& legend, double most_width);
 FigurePanel key_panel(const FigurePen& pen, const FigureKey& key);
+/// The label of a strip.
+FigurePanel strip_panel(const FigurePen& pen, const FigureStrip& strip);
 FigurePanel arrow_panel(const FigurePen& pen, double north);
 /// Lines are at most `most_width` long, unless a single word is longer. Throws Error if there would be more than three
 /// lines.

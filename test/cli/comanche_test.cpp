@@ -57,7 +57,7 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
   };
   const std::vector<Case> cases{
       {{"--look", "comanchee"},
-       "--look 'comanchee': expected shaded, hillshade, height, steps, error, comanche or level:N"},
+       "--look 'comanchee': expected shaded, hillshade, height, steps, cost, error, comanche or level:N"},
       {{"--look", "comanche", "--size", "640x480"}, "--lowres WIDTHxHEIGHT and --pixel-size PX"},
       {{"--look", "steps", "--lowres", "64x48"},
        "applies to the looks shaded, height and comanche, not to 'steps' (other"},
@@ -97,7 +97,7 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
       {{"--overlay", scratch.path("elsewhere.png")}, "overlay does not overlap the raster"},
       {{"--path", scratch.path("empty.csv")}, "frames need a place for their number"},
       {{"--path", scratch.path("empty.csv"), "--turntable"}, "--turntable cannot be combined with --path"},
-      {{"--frames", "3"}, "--frames has no effect without --path FILE or --turntable"},
+      {{"--frames", "3"}, "--frames has no effect without --path FILE, --turntable or --animate"},
       {{"--depth-range", "1,100"}, "name the output *.exr"},
       {{"--depth-range", "auto"}, "name the output *.exr"},
       {{"--depth-range", "near"}, "NEAR,FAR in metres, for example 1,50000, or auto"},

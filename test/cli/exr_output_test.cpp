@@ -2,10 +2,15 @@
 // `scarp render -o OUT.exr` from outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "cli/program.h"
 #include "output/read_exr.h"
@@ -75,6 +80,77 @@ TEST_F(ExrOutput, PositionsMatchTheMatrices) {
   }
 }
 
+// Errors in metres, judged by the positions of two marches' own pictures.
+TEST_F(ExrOutput, HasTheErrorsOfAMarchInMetres) {
+  std::string text = "ncols 33\nnrows 33\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (int i = 0; i < 33 * 33; ++i) text += i == 16 * 33 + 16 ? "20 " : std::to_string(i * 7919 % 23 / 8) + " ";
+  const std::string dem = scratch_.write("spike.asc", text);
+  const Imath::V3d eye(16, -10, 12);
+  const auto render = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"render", dem, "-o", out(), "--size", "64x64", "--no-plinth", "--eye", "16,-10,12",
+                                     "--target", "16,16,6"});
+    return test::run(options);
+  };
+  // Distances from the eye; infinite for misses.
+  const auto distances = [&](const std::vector<std::string>& march) {
+    const auto result = render(march);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const test::Exr exr = test::read_exr(out());
+    const auto values = [&](const char* name) { return exr.channels.at(name).values; };
+    const auto x = values("P.X"), y = values("P.Y"), z = values("P.Z"), depth = values("Z");
+    std::vector<double> all;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      all.push_back(std::isinf(depth[i]) ? depth[i] : (Imath::V3d(x[i], y[i], z[i]) - eye).length());
+    return all;
+  };
+  const std::vector<double> truth = distances({});
+  const auto check = [&](std::vector<std::string> march, const std::vector<const char*>& wrong) {
+    const std::vector<double> answer = distances(march);
+    march.insert(march.end(), {"--look", "error", "--json"});
+    const auto result = render(march);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const test::Exr exr = test::read_exr(out());
+    std::set<std::string> names;
+    for (const auto& [name, channel] : exr.channels) names.insert(name);
+    EXPECT_EQ(names, (std::set<std::string>{"B", "G", "R", "early", "false", "late", "lost"}));
+    // Coordinates below 64 m are rounded to 2^-19 m, in each of two positions.
+    constexpr double kRounding = 4e-6 * 2 * 1.8, kTolerance = 0.1;
+    std::map<std::string, std::vector<double>> expected;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const auto pixel = [&](const char* name) { return exr.channels.at(name).values[i]; };
+      const double early = truth[i] - answer[i], off = std::abs(early);
+      if (std::abs(off - kTolerance) < kRounding) continue;
+      const bool lost = std::isfinite(truth[i]) && std::isinf(answer[i]);
+      const bool invented = std::isinf(truth[i]) && std::isfinite(answer[i]);
+      const bool both = std::isfinite(off);
+      EXPECT_NEAR(pixel("early"), both && early > kTolerance ? early : 0, kRounding) << i;
+      EXPECT_NEAR(pixel("late"), both && -early > kTolerance ? -early : 0, kRounding) << i;
+      EXPECT_NEAR(pixel("lost"), lost ? truth[i] : 0, kRounding) << i;
+      EXPECT_NEAR(pixel("false"), invented ? answer[i] : 0, kRounding) << i;
+      for (const char* name : {"early", "late", "lost", "false"}) {
+        if (pixel(name) > 0) expected[name].push_back(pixel(name));
+      }
+    }
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["march"], march[1]);
+    EXPECT_EQ(json["errors"]["judge"], "exhaustive");
+    for (const char* name : wrong) {
+      std::vector<double>& all = expected[name];
+      ASSERT_GT(all.size(), 10u) << name;
+      std::sort(all.begin(), all.end());
+      const auto& found = json["errors"][name];
+      EXPECT_EQ(found["pixels"], all.size()) << name;
+      EXPECT_NEAR(found["mean_m"], std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()),
+                  1e-9);
+      EXPECT_EQ(found["p99_m"], all[(99 * all.size() + 99) / 100 - 1]) << name;
+      EXPECT_EQ(found["most_m"], all.back()) << name;
+    }
+  };
+  check({"--march", "naive", "--naive-min-step", "0.2"}, {"late", "lost"});
+  // A ray that gives up is not lost.
+  check({"--march", "relaxed", "--relaxed-tolerance", "0.02", "--relaxed-max-steps", "100000"}, {"early"});
+}
+
 TEST_F(ExrOutput, ReportsErrorsInOneLineWithoutOutput) {
   const std::string input = plane();
   std::filesystem::create_symlink("/dev/full", scratch_.path("full.exr"));
@@ -84,6 +160,7 @@ TEST_F(ExrOutput, ReportsErrorsInOneLineWithoutOutput) {
     std::string fragment;
   } cases[] = {
       {{"-o", out(), "--look", "steps"}, "channels"},
+      {{"-o", out(), "--look", "error", "--depth-range", "1,9"}, "--depth-range applies to the look shaded"},
       {{"-o", scratch_.path("no/folder/out.exr")}, "folder"},
       {{"-o", "/proc/out.exr"}, "/proc"},
       {{"-o", scratch_.path("full.exr")}, "device"},

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/options/animation.h"
 #include "app/options/help.h"
 #include "base/refusal.h"
 #include "cli/program.h"
@@ -50,6 +51,27 @@ TEST(Options, RejectNonFiniteNumbers) {
     }
   }
   EXPECT_GT(found, 50u);
+}
+
+// Every option of numbers can be animated, without a list of them.
+TEST(Options, CanBeAnimated) {
+  const cli::Command& render = *declared().find("render");
+  int animated = 0;
+  for (const cli::Declared& option : render.options()) {
+    if (option.positional()) continue;
+    const std::string text = option.name.substr(2) + "=1..2";
+    const bool number = std::holds_alternative<double*>(option.to) || std::holds_alternative<int*>(option.to) ||
+                        std::holds_alternative<std::optional<double>*>(option.to) ||
+                        std::holds_alternative<std::optional<int>*>(option.to);
+    if (number && option.option.topic != cli::Topic::flight) {
+      ++animated;
+      EXPECT_NO_THROW(cli::Animation(render, text)) << option.name;
+    }
+    if (option.flag()) {
+      EXPECT_THROW(cli::Animation(render, text), cli::WrongUsage) << option.name;
+    }
+  }
+  EXPECT_GT(animated, 50);
 }
 
 // Topics, looks, marches and other options that a declaration names exist.
@@ -228,7 +250,7 @@ TEST_F(WithoutEffect, IsRejectedForVoxels) {
   expect_refused(make, {"--ramp", "grey"}, "terrain");
   expect_refused(render, {"--no-plinth"}, "applies to terrain only");
   expect_refused(render, {"--function-step", "5"}, "applies to functions only");
-  expect_refused(render, {"--ramp", "viridis"}, "--volume or --look steps");
+  expect_refused(render, {"--ramp", "viridis"}, "--volume or --look steps or cost");
   expect_refused(render, {"--normal-radius", "4"}, "--normals voxel or smooth");
   expect_refused(render, {"--seed", "4"}, "--samples N");
   for (const Names& options :
@@ -312,7 +334,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
   const Names soft{"--samples", "4"}, fog{"--fog", "height"}, lake{"--water", "30"}, lit{"shaded", "comanche"},
       steps{"--march", "fixed-step", "--reach", "200", "--lowres", "24x18"};
   const std::vector<Case> cases = {
-      {{"--ramp", "magma"}, {"shaded", "steps", "comanche"}},
+      {{"--ramp", "magma"}, {"shaded", "steps", "cost", "comanche"}},
       {{"--ramp-range", "20,30"}, {"shaded", "height", "comanche", "level"}},
       {{"--sun", "100,20"}, {"shaded", "hillshade", "comanche"}},
       {{"--sky", "scattering"}, lit},
@@ -333,7 +355,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
       {{"--detail-size", "3"}, lit, {"--detail", "1"}},
       {{"--detail-texture", SCARP_SOURCE_DIR "/test/golden/lake.png"}, lit},
       {{"--contours", "7"}, lit},
-      {{"--steps-range", "0,900"}, {"steps"}},
+      {{"--steps-range", "0,900"}, {"steps", "cost"}},
       {{"--overlay", path("overlay.asc")}, lit, {}, false},
       {{"--overlay-fit"}, lit, {"--overlay", path("overlay.asc")}, false},
       {{"--water", "30"}, lit},
@@ -372,7 +394,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
   const cli::Command& render = *declared().find("render");
   std::map<Names, std::string> without;
   for (const Case& c : cases) {
-    for (const std::string look : {"shaded", "hillshade", "height", "steps", "error", "comanche", "level"}) {
+    for (const std::string look : {"shaded", "hillshade", "height", "steps", "cost", "error", "comanche", "level"}) {
       const std::string what = fmt::format("{} with {}", fmt::join(c.options, " "), look);
       if (std::find(c.looks.begin(), c.looks.end(), look) == c.looks.end()) {
         const std::string form = c.looks.size() == 1 ? "applies to the look " : "applies to the looks ";

@@ -2,15 +2,21 @@
 // `scarp render`: renders an elevation model, a voxel model or a scene to a picture.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/options/animation.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/picture_format.h"
 #include "app/cli/options/render_options.h"
+#include "app/cli/picture/comparison.h"
 #include "app/cli/picture/figure.h"
+#include "app/cli/picture/film.h"
 #include "app/cli/picture/render_run.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -30,10 +36,11 @@ void check_output(const RenderOptions& options) {
   if (options.depth.fitted && options.frames.several())
     throw Error("--depth-range auto: frames share their planes (name NEAR,FAR)");
   check_figure(options.figure, picture, format);
-  if (format.layers && !entry_of(options.picture.look).lit) {
+  check_comparison(options, format);
+  if (format.layers && !entry_of(picture.look).lit && picture.look != Look::error) {
     throw Error(
-        fmt::format("--look {}: EXR pictures hold the look 'shaded' or 'comanche', with depth, position and steps as "
-                    "channels (leave --look out, or name the output *.png)",
+        fmt::format("--look {}: EXR pictures hold the looks 'shaded' and 'comanche', with depth, position and steps as "
+                    "channels, or 'error', with its metres (leave --look out, or name the output *.png)",
                     name_of(options.picture.look)));
   }
   if (format.map && options.frames.several())
@@ -43,14 +50,67 @@ void check_output(const RenderOptions& options) {
   }
 }
 
-void run(RenderOptions options, const Command& command) {
+// An option has an effect on a comparison if one of its marches reads it.
+void require_effect(const RenderOptions& options, InputKind kind, const Command& command) {
+  std::vector<Use> uses;
+  const std::string_view look = name_of(options.picture.look);
+  for (const std::string& march : options.compared) uses.push_back({kind, look, march});
+  if (uses.empty()) return command.require_effect({kind, look, march_of(options, kind)});
+  command.require_effect({kind, look, {}});
+  for (const Command::Typed& typed : command.all_typed()) {
+    if (std::none_of(uses.begin(), uses.end(), [&](const Use& use) { return has_effect(*typed.option, use); }))
+      cli::require_effect(*typed.option, uses.front());
+  }
+}
+
+// Everything that is known before a file is read.
+InputKind checked(const RenderOptions& options, const Command& command) {
   const InputKind kind = kind_of_input(command, options);
-  command.require_effect({kind, name_of(options.picture.look), march_of(options, kind)});
+  require_effect(options, kind, command);
   check_picture(options);
   check_output(options);
   keep_inputs(options.output, options.typed);
+  return kind;
+}
+
+// Sets the options of a frame.
+void set_frame(const std::vector<Animation>& animations, int frame, int frames, Command& command) {
+  for (const Animation& animation : animations) animation.set(command, frames > 1 ? frame / (frames - 1.0) : 0.0);
+}
+
+void run_animation(RenderOptions& options, Command& command) {
+  std::vector<Animation> animations;
+  for (const std::string& text : options.frames.animated) animations.emplace_back(command, text);
+  const int frames = options.frames.chosen();
+  InputKind kind{};
+  for (int i = 0; i < frames; ++i) {
+    set_frame(animations, i, frames, command);
+    kind = checked(options, command);
+  }
+  render_animation(kind, options, [&](int i) {
+    set_frame(animations, i, frames, command);
+    return options;
+  });
+}
+
+void run_frames(RenderOptions& options, Command& command) {
+  if (!options.frames.animated.empty()) return run_animation(options, command);
+  const InputKind kind = checked(options, command);
+  render_input(kind, options);
+}
+
+void run(RenderOptions& options, Command& command) {
   const ThreadLimit limit(options.threads);
-  render_input(kind, std::move(options));
+  if (!is_film(options.output)) return run_frames(options, command);
+  if (!options.frames.several()) {
+    throw Error(fmt::format("output '{}': a film needs frames (add --animate, --turntable or --path, or name it *.png)",
+                            options.output));
+  }
+  keep_inputs(options.output, options.typed);
+  Film film(options.output);
+  options.frames.film = std::exchange(options.output, film.frames());
+  options.frames.encode = [&] { film.finish(options.frames.per_second); };
+  run_frames(options, command);
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ void add_depth_options(Command& command, DepthOptions& options) {
        .value = "NEAR[,FAR]",
        .help = "near and far plane of the depth buffer in metres, as in OpenGL and Vulkan",
        .note = "without FAR: no far plane; auto, in scarp render: those that fit the picture",
-       .topic = Topic::depth});
+       .topic = Topic::depth,
+       .looks = {"shaded comanche", "EXR pictures of the others have no depth"}});
   command.add(&options.reversed,
               {.names = "--depth-reversed",
                .help = "reversed depth: 1 at the near plane, 0 at the far plane",

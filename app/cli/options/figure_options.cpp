@@ -36,7 +36,7 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
                                 .help = "legend of the colours in the lower right corner",
                                 .topic = Topic::figure,
                                 .common = true,
-                                .looks = {"shaded height steps error comanche level", "its greys have no unit"}});
+                                .looks = {"shaded height steps cost error comanche level", "its greys have no unit"}});
   command.add(&options.scale_bar, {.names = "--scale-bar",
                                    .help = "scale bar in the lower left corner",
                                    .note = "in perspective, valid at the centre",

@@ -16,7 +16,7 @@ namespace scarp::cli {
 namespace {
 
 constexpr int kMostFrames = 1000000;
-constexpr int kTurntableFrames = 120;
+constexpr int kUsualFrames = 120;  // of turntables and animations
 
 // The #s must be in the name, not in its folders.
 struct Place {
@@ -58,6 +58,8 @@ std::vector<CameraStation> stations_of(const RayTable& table, const PathPlaces& 
 
 }  // namespace
 
+int FrameOptions::chosen() const { return frames > 0 ? frames : kUsualFrames; }
+
 void add_frame_options(Command& command, FrameOptions& o) {
   const auto several = [&o] { return o.several(); };
   command.add(&o.path,
@@ -74,22 +76,38 @@ void add_frame_options(Command& command, FrameOptions& o) {
                              .topic = Topic::flight,
                              .common = true,
                              .excludes = {"--path"}});
+  command.add(&o.animated, {.names = "--animate",
+                            .value = "NAME=VALUE",
+                            .help = "frames in which the option NAME changes: its value, with ranges FROM..TO for "
+                                    "numbers",
+                            .note = "shrink=1..0.2, sun=90..270,30; several options change together; the output is "
+                                    "frame-####.png, or a .gif or .mp4 film by ffmpeg",
+                            .repeats = true,
+                            .topic = Topic::flight,
+                            .excludes = {"--path", "--turntable"}});
   command.add(&o.frames, {.names = "--frames",
                           .help = "number of frames",
                           .range = {1, kMostFrames},
-                          .fallback = fmt::format("one per row of --path; {} with --turntable", kTurntableFrames),
+                          .fallback = fmt::format("one per row of --path; otherwise {}", kUsualFrames),
                           .topic = Topic::flight,
                           .common = true,
-                          .rules = {needs("--path FILE or --turntable", several)}});
+                          .rules = {needs("--path FILE, --turntable or --animate", several)}});
+  command.add(&o.per_second, {.names = "--fps",
+                              .help = "frames per second of a film",
+                              .range = {.least = 0.1, .most = 240},
+                              .topic = Topic::flight,
+                              .rules = {{"applies to .gif and .mp4 files only", [&o] { return !o.film.empty(); }}}});
   command.add(&o.overwrite, {.names = "--overwrite",
                              .help = "existing frames are rendered again instead of kept",
                              .topic = Topic::flight,
-                             .rules = {needs("--path FILE or --turntable", several)}});
+                             .rules = {needs("--path FILE, --turntable or --animate", several)}});
 }
 
 void check_frames(const FrameOptions& o, const std::string& output) {
-  if (o.several() && place_of_number(output).count == 0) {
-    throw Error(fmt::format("output '{}': frames need a place for their number (name it frame-####.png)", output));
+  if (o.several() && o.film.empty() && place_of_number(output).count == 0) {
+    throw Error(fmt::format(
+        "output '{}': frames need a place for their number (name it frame-####.png, or *.gif or *.mp4 for a film)",
+        output));
   }
 }
 
@@ -97,7 +115,7 @@ std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& vie
                                   const std::function<Camera(const ViewSettings&)>& framed, const PathPlaces& path) {
   std::vector<Camera> cameras;
   if (o.turntable) {
-    const int frames = o.frames > 0 ? o.frames : kTurntableFrames;
+    const int frames = o.chosen();
     for (int i = 0; i < frames; ++i) {
       ViewSettings turned = view;
       turned.azimuth_deg += 360.0 * i / frames;
@@ -135,9 +153,8 @@ std::string frame_name(const std::string& output, int i) {
   return name.replace(place.first, place.count, fmt::format("{:0{}}", i, place.count));
 }
 
-void make_frames(const FrameOptions& o, const std::string& output, const std::vector<Camera>& cameras,
-                 const std::function<void(const Camera&, const std::string&)>& make) {
-  const int frames = static_cast<int>(cameras.size());
+void make_frames(const FrameOptions& o, const std::string& output, int frames,
+                 const std::function<void(int, const std::string&)>& make) {
   const Progress progress = terminal_progress("frames");
   int kept = 0;
   for (int i = 0; i < frames; ++i) {
@@ -147,8 +164,13 @@ void make_frames(const FrameOptions& o, const std::string& output, const std::ve
       continue;
     }
     stop_if_interrupted();
-    make(cameras[static_cast<std::size_t>(i)], name);
+    make(i, name);
     if (progress) progress((i + 1.0) / frames);
+  }
+  if (!o.film.empty()) {
+    o.encode();
+    fmt::print("{}: {} frames, {:g} per second\n", o.film, frames, o.per_second);
+    return;
   }
   fmt::print("{}: {} frames, {} made now{}\n", output, frames, frames - kept,
              kept > 0 ? fmt::format(", {} kept; --overwrite renders all again", kept) : "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many pictures of one terrain: a flight along a path, or one turn on a turntable.
+// Many pictures: a flight along a path, one turn on a turntable, or an animation of other options.
 #pragma once
 
 #include <functional>
@@ -17,13 +17,22 @@ struct FrameOptions {
   std::string path;
   int frames = 0;  // 0: one per row of the path
   bool turntable = false, overwrite = false;
+  std::vector<std::string> animated;  // values of --animate
+  double per_second = 25;             // of films
+  std::string film{};                 // output that the frames are for; empty: the frames themselves
+  std::function<void()> encode{};     // makes it of the frames
 
-  bool several() const { return turntable || !path.empty(); }
+  /// Whether the frames have their own cameras.
+  bool fly() const { return turntable || !path.empty(); }
+  bool several() const { return fly() || !animated.empty(); }
+  /// Number of frames of turntables and animations.
+  int chosen() const;
 };
 
 void add_frame_options(Command& command, FrameOptions& options);
 
-/// Throws Error if several frames would have the same output name, which lacks a placeholder for the number.
+/// Throws Error if several frames would have the same output name, which lacks a placeholder for the number. Films
+/// need none.
 void check_frames(const FrameOptions& options, const std::string& output);
 
 /// Converts positions of a table to world metres.
@@ -42,9 +51,9 @@ std::vector<Camera> frame_cameras(const FrameOptions& options, const ViewSetting
 /// The output's name with the number of frame i (from 0) in place of its #s, padded to that many digits.
 std::string frame_name(const std::string& output, int i);
 
-/// Calls make(camera, name) for the frames that do not exist yet, and prints a summary. Stops at the first frame that
-/// fails; earlier frames are kept.
-void make_frames(const FrameOptions& options, const std::string& output, const std::vector<Camera>& cameras,
-                 const std::function<void(const Camera&, const std::string&)>& make);
+/// Calls make(i, name) for those of `count` frames that do not exist yet, and prints a summary. Stops at the first
+/// frame that fails; earlier frames are kept. Encodes films.
+void make_frames(const FrameOptions& options, const std::string& output, int count,
+                 const std::function<void(int, const std::string&)>& make);
 
 }  // namespace scarp::cli

@@ -76,21 +76,25 @@ auto lit(Command& command, Topic topic) {
 
 void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& files) {
   const auto ground = lit(command, Topic::ground);
-  command.add([&o, &files](const std::string& text) { set_ramp(text, o, files); },
-              {.names = "--ramp",
-               .value = "RAMP",
-               .help = "colours by height",
-               .choices = {ramp_names().begin(), ramp_names().end()},
-               .files = "cpt txt clr png",
-               .note = "or a file: .cpt, .txt or .clr of gdaldem, .png of 1 x N colours",
-               .fallback = "hypsometric; viridis for the look steps",
-               .now = [&o, &files] { return files.ramp.empty() ? o.ramp : files.ramp; },
-               .topic = Topic::ground,
-               .common = true,
-               .looks = {"shaded steps comanche", "the others have their own colours"},
-               .rules = {{"has no effect without --volume or --look steps (voxels and meshes have their own colours)",
-                          [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
-                          kVoxels | kMesh}}});
+  command.add(
+      [&o, &files](const std::string& text) { set_ramp(text, o, files); },
+      {.names = "--ramp",
+       .value = "RAMP",
+       .help = "colours by height",
+       .choices = {ramp_names().begin(), ramp_names().end()},
+       .files = "cpt txt clr png",
+       .note = "or a file: .cpt, .txt or .clr of gdaldem, .png of 1 x N colours",
+       .fallback = "hypsometric; viridis for the looks steps and cost",
+       .now = [&o, &files] { return files.ramp.empty() ? o.ramp : files.ramp; },
+       .topic = Topic::ground,
+       .common = true,
+       .looks = {"shaded steps cost comanche", "the others have their own colours"},
+       .rules = {{"has no effect without --volume or --look steps or cost (voxels and meshes have their own colours)",
+                  [&command] {
+                    const std::string look = command.value("--look");
+                    return command.given("--volume") || look == "steps" || look == "cost";
+                  },
+                  kVoxels | kMesh}}});
   command.add([&o](const std::string& text) { o.ramp_range = ramp_range_from(text); },
               {.names = "--ramp-range",
                .value = "LOW,HIGH",

@@ -48,6 +48,22 @@ void add_march_option(Command& command, std::string& march) {
                        .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree"}});
 }
 
+void add_compare_option(Command& command, std::vector<std::string>& marches, const std::function<bool()>& several) {
+  command.add(
+      List<std::string>{&marches},
+      {.names = "--compare",
+       .value = "NAME,NAME,...",
+       .help = "one picture with a vertical strip for each of these marches, labelled with its steps and errors",
+       .choices = march_names(),
+       .closed = true,
+       .unlisted = true,
+       .topic = Topic::march,
+       .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree"},
+       .looks = {"shaded hillshade height steps cost error level", "it has its own rays"},
+       .rules = {{"describes one picture, without --path or --turntable", [several] { return !several(); }}},
+       .excludes = {"--march"}});
+}
+
 namespace {
 
 constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};
@@ -104,7 +120,7 @@ void add_refinement_options(Command& command, SamplingSettings& sampling) {
                .fallback = std::string(name_of(sampling.refinement)),
                .topic = Topic::march,
                .inputs = kMarched,
-               .looks = {"shaded hillshade height steps error level", "it has --fixed-step-interpolate instead"},
+               .looks = {"shaded hillshade height steps cost error level", "it has --fixed-step-interpolate instead"},
                .marches = "naive fixed-step relaxed"});
   command.add(&sampling.halvings,
               {.names = "--refine-halvings",

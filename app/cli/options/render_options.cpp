@@ -90,17 +90,21 @@ void add_picture_options(Command& command, RenderOptions& o) {
        .help = "size of the picture in pixels",
        .fallback = fmt::format("{}x{}; with --top the aspect ratio of the ground or --area", usual.width, usual.height),
        .common = true,
-       .looks = {"shaded hillshade height steps error level", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
+       .looks = {"shaded hillshade height steps cost error level",
+                 "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
   add([&picture](const std::string& text) { set_look(text, picture); },
       {.names = "--look",
        .value = "LOOK",
        .help = "what the picture shows",
        .choices = plain_looks(),
-       .note = "or level:N, maxima of blocks of 2^N x 2^N cells, level N of the pyramid",
+       .note = "or level:N, level N of the maximum pyramid; cost: heights, blocks, voxels or evaluations that the "
+               "march reads per ray",
        .fallback = std::string(name_of(usual.look)),
        .now = [&picture] { return std::string(name_of(picture.look)); },
        .common = true,
-       .rules = {{"level:N needs a raster (other inputs have no pyramid)",
+       .rules = {{"cost needs a picture without --device (it counts the reads of the CPU's marches)",
+                  [&o] { return o.picture.look != Look::cost || o.device.empty(); }},
+                 {"level:N needs a raster (other inputs have no pyramid)",
                   [&picture] { return picture.look != Look::level; }, kEveryInput & ~kTerrain}}});
   add(&picture.aa, {.names = "--aa",
                     .help = "anti-aliasing: N x N samples per pixel",
@@ -113,9 +117,10 @@ void add_picture_options(Command& command, RenderOptions& o) {
   add([&picture](const std::string& text) { picture.step_scale = step_scale_from(text); },
       {.names = "--steps-range",
        .value = "LOW,HIGH",
-       .help = "step counts of the first and last colour, to compare pictures",
+       .help = "counts of the first and last colour, to compare pictures",
+       .note = "steps, or reads of the look cost",
        .fallback = "minimum and maximum in the picture",
-       .looks = {"steps"}});
+       .looks = {"steps cost"}});
   constexpr ErrorSettings kErrors;
   add(&picture.error_tolerance,
       {.names = "--error-tolerance",
@@ -233,7 +238,7 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   };
   using Rules = std::vector<Rule>;
   const Rules no_frames = frames ? Rules{{"has no effect with --path or --turntable, which define their own cameras",
-                                          [&o] { return !o.frames.several(); }}}
+                                          [&o] { return !o.frames.fly(); }}}
                                  : Rules{};
   const Rules no_path = frames ? Rules{{"has no effect with --path, whose table defines the cameras",
                                         [&o] { return o.frames.path.empty(); }}}
@@ -311,7 +316,8 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
 
 void declare_picture(Command& command, RenderOptions& o, bool written) {
   add_raster_inputs(command, o.inputs, kEveryFile, false);
-  if (written) add_output_option(command, o.output, picture_help(), picture_extensions());
+  if (written)
+    add_output_option(command, o.output, picture_help() + ", .gif, .mp4 (films)", picture_extensions() + " gif mp4");
   add_device_option(command, o.device);
   add_voxel_drawing_option(command, o.voxel_drawing, o.device);
   add_threads_option(command, o.threads);
@@ -324,6 +330,11 @@ void declare_picture(Command& command, RenderOptions& o, bool written) {
     add_figure_options(command, o.figure, o.camera.top, o.output);
     add_frame_options(command, o.frames);
     add_depth_options(command, o.depth);
+    command.add(&o.json, {.names = "--json",
+                          .help = "one JSON object instead of text: times, and the numbers of the looks steps, cost, "
+                                  "error and height",
+                          .rules = {{"describes one picture, without --path, --turntable or --animate",
+                                     [&o] { return !o.frames.several(); }}}});
   }
   add_mesh_options(command, o.mesh);
   add_vox_options(command, o.vox);
@@ -338,6 +349,7 @@ void declare_picture(Command& command, RenderOptions& o, bool written) {
                         .topic = Topic::input,
                         .inputs = {kTerrain, "other inputs are always read completely"}});
   add_march_option(command, o.march);
+  if (written) add_compare_option(command, o.compared, [&o] { return o.frames.fly(); });
   add_march_options(command, o.march_settings, &o.picture.interpolate);
 }
 

@@ -60,7 +60,9 @@ struct RenderOptions : InputOptions {
   FigureOptions figure;
   std::string voxel_drawing = "compute";
   bool no_plinth = false;
-  bool full = false;  ///< reads all samples of large rasters
+  bool json = false;
+  std::vector<std::string> compared;  ///< marches, a strip of the picture each; empty: `march` alone
+  bool full = false;                  ///< reads all samples of large rasters
   int threads = 0;
   std::vector<std::string> typed;  ///< the typed values; files among them must not be overwritten
 };

@@ -2,7 +2,11 @@
 #include "app/cli/picture/exr_output.h"
 
 #ifdef SCARP_OPENEXR
+#include <array>
+#include <vector>
+
 #include "scarp/output/exr.h"
+#include "scarp/render/surface/ramp.h"
 #endif
 
 namespace scarp::cli {
@@ -16,6 +20,10 @@ ExrMatrix matrix(const char* name, const glm::dmat4& m) {
   ExrMatrix stored{name, {}};
   for (int i = 0; i < 16; ++i) stored.elements[static_cast<std::size_t>(i)] = static_cast<float>(m[i / 4][i % 4]);
   return stored;
+}
+
+std::vector<ExrMatrix> matrices_of(const Camera& camera) {
+  return {matrix("worldToCamera", camera.camera_from_world()), matrix("worldToNDC", camera.ndc_from_world())};
 }
 
 }  // namespace
@@ -38,14 +46,31 @@ void write_layers(ReplaceFile& file, const std::string& path, const PictureLayer
                       axis("P.Z", layers.position, 2, ExrStorage::full),
                       {"steps", layers.steps.data()}};
   if (!device_depths.empty()) picture.channels.push_back({"depth", device_depths.data()});
-  picture.matrices = {matrix("worldToCamera", camera.camera_from_world()),
-                      matrix("worldToNDC", camera.ndc_from_world())};
+  picture.matrices = matrices_of(camera);
   write_exr(file, path, picture);
+}
+
+void write_error_layers(ReplaceFile& file, const std::string& path, const Picture& picture, const Camera& camera) {
+  constexpr std::array kErrors = {Verdict::early, Verdict::late, Verdict::lost, Verdict::invented};
+  const Image& image = picture.image;
+  std::vector<float> colours;
+  colours.reserve(image.rgb.size());
+  for (const std::uint8_t byte : image.rgb) colours.push_back(linear_from_srgb(vec3(static_cast<float>(byte) / 255)).x);
+  std::array<std::vector<float>, kErrors.size()> metres;
+  ExrView layers{image.width, image.height};
+  for (const int i : {0, 1, 2}) layers.channels.push_back({std::string(1, "RGB"[i]), &colours[i], 3, ExrStorage::half});
+  for (std::size_t i = 0; i < kErrors.size(); ++i) {
+    metres[i] = picture.error_map->metres_of(kErrors[i]);
+    layers.channels.push_back({std::string(name_of(kErrors[i])), metres[i].data()});
+  }
+  layers.matrices = matrices_of(camera);
+  write_exr(file, path, layers);
 }
 
 #else
 
 void write_layers(ReplaceFile&, const std::string&, const PictureLayers&, const Camera&, const std::vector<float>&) {}
+void write_error_layers(ReplaceFile&, const std::string&, const Picture&, const Camera&) {}
 
 #endif
 

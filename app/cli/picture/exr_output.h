@@ -8,6 +8,7 @@
 #include "scarp/base/replace_file.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/layers.h"
+#include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
 
@@ -17,5 +18,9 @@ namespace scarp::cli {
 /// (float).
 void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
                   const std::vector<float>& device_depths);
+
+/// Writes a picture of the look `error` likewise: R, G, B (half, linear light of the picture's colours), and early,
+/// late, lost and false (float), error_metres() of the pixels with this verdict, 0 for all others.
+void write_error_layers(ReplaceFile& file, const std::string& path, const Picture& picture, const Camera& camera);
 
 }  // namespace scarp::cli

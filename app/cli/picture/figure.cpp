@@ -87,44 +87,20 @@ FigureLegend legend_of_numbers(const SolidRange& numbers, const std::string& ram
 
 void add_meaning(const PictureSettings& settings, const Scene& scene, const std::optional<SolidRange>& numbers,
                  const Picture& picture, Figure& figure) {
-  const PaintExtent extent = paint_extent(scene, settings);
-  const ReliefRange grey = picture.heights.value_or(ramp_heights(scene, settings));
-  // The legend shows heights without exaggeration.
-  const double exaggeration = extent.exaggeration;
-  switch (settings.comanche.heights ? Look::height : settings.look) {
-    case Look::steps:
-      figure.legend = legend_of("steps per ray", picture.steps->scale.low, picture.steps->scale.high,
-                                ramp_over(settings, picture.steps->scale.low, picture.steps->scale.high), 1, 1);
-      break;
-    case Look::error: {
-      FigureKey key{"the march is", {}};
-      for (int i = 0; i < kVerdicts; ++i) {
-        const auto verdict = static_cast<Verdict>(i);
-        if ((*picture.errors)[verdict] == 0) continue;
-        const vec3 colour = 255.f * srgb_of(verdict);
-        const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(v)); };
-        key.entries.push_back({{byte(colour.x), byte(colour.y), byte(colour.z)}, std::string(name_of(verdict))});
-      }
-      figure.key = std::move(key);
-      break;
-    }
-    case Look::height:
-    case Look::level: {
-      FigureLegend scale{"height, m", {}, ticks_of(grey.low / exaggeration, grey.high / exaggeration)};
-      for (int i = 0; i < 255; ++i) {
-        const auto byte = static_cast<std::uint8_t>(1 + i);
-        scale.colours.push_back({byte, byte, byte});
-      }
-      figure.legend = std::move(scale);
-      break;
-    }
-    case Look::hillshade:
-      break;  // cosines have no unit
-    case Look::shaded:
-    case Look::comanche:
-      figure.legend = numbers ? legend_of_numbers(*numbers, settings.ramp) : legend_of_heights(settings, scene, extent);
-      break;
+  if (!picture.legend) {
+    // Only hillshades have colours without unit.
+    if (entry_of(settings.look).lit)
+      figure.legend = numbers ? legend_of_numbers(*numbers, settings.ramp)
+                              : legend_of_heights(settings, scene, paint_extent(scene, settings));
+    return;
   }
+  const PictureLegend& legend = *picture.legend;
+  if (!legend.colours.empty()) {
+    figure.legend = FigureLegend{legend.title, legend.colours, ticks_of(legend.low, legend.high, legend.least_step)};
+    return;
+  }
+  figure.key = FigureKey{legend.title, {}};
+  for (const PictureLegend::Class& one : legend.classes) figure.key->entries.push_back({one.colour, one.name});
 }
 
 // The point in the centre of the picture, or else the centre of the scene. Throws Error if neither is in front of the
@@ -188,12 +164,12 @@ void check_figure(const FigureOptions& options, const PictureSettings& settings,
 
 std::optional<Figure> figure_of(const FigureOptions& options, const PictureSettings& settings,
                                 const FigureSubject& subject) {
-  if (options.any().empty()) return {};
+  if (options.any().empty() && subject.strips.empty()) return {};
   const Scene& scene = subject.scene;
   const Camera& camera = subject.camera;
   const double per_pixel = pixel_side(settings);
   const double width = per_pixel * settings.width, height = per_pixel * settings.height;
-  Figure figure{.title = options.title};
+  Figure figure{.title = options.title, .strips = subject.strips};
   if (options.layout == "beside") figure.layout = FigureLayout::beside;
   if (options.scale_bar) {
     const double depth = dot(middle_of(subject, "--scale-bar") - camera.eye(), camera.forward());

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/cli/options/figure_options.h"
 #include "app/cli/options/picture_format.h"
@@ -26,6 +27,7 @@ struct FigureSubject {
   const std::optional<SolidRange>& numbers;  ///< set for a volume that is coloured by its numbers
   const Georeference& georeference;          ///< of a raster
   int cols = 0, rows = 0;                    ///< likewise
+  std::vector<FigureStrip> strips{};         ///< of a comparison, with labels as long as those of the picture
 };
 
 /// Returns the requested figure without its legend; nullopt: none. Throws Error if the centre of the picture shows

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/cli/options/kept_inputs.h"
+#include "app/cli/picture/comparison.h"
 #include "app/cli/picture/depth_layer.h"
 #include "app/cli/picture/exr_output.h"
 #include "app/cli/picture/figure.h"
@@ -28,15 +30,24 @@
 namespace scarp::cli {
 namespace {
 
+// Called last: a run that fails prints only one line.
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
 class Render {
  public:
-  Render(InputKind kind, RenderOptions options) : prepared_(kind, std::move(options)) {}
+  Render(InputKind kind, const RenderOptions& options)
+      : march_(march_of(options, kind)),
+        prepared_(kind, options.compared.empty() ? options : with_march(options, options.compared.front())),
+        comparison_(kind, prepared_, options.compared) {}
 
   void run() {
     // The file is reserved first, so that an unwritable path is reported before the work starts.
     ReplaceFile file(options().output);
     prepared_.open();
-    if (options().frames.several()) return make_all();
+    comparison_.open();
+    if (options().frames.fly()) return make_all();
     Camera camera = prepared_.camera();
     prepared_.finish(camera);
     const PictureSettings settings = prepared_.picture(camera);
@@ -44,18 +55,62 @@ class Render {
     const Picture picture = make(file, options().output, settings, camera, terminal_progress("render"));
     look_for_mesh(settings, camera);
     const double render_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    tell_notes();
+    print_notes(notes());
     tell_of_contours(settings, camera);
     if (!blank_.tell()) tell_if_buried(camera, "the eye");
+    if (options().json) return print_report(picture, render_s);
+    const std::string march = comparison_ ? "" : prepared_.input().march;
     fmt::print("{}: {} x {} pixels; {}read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options().output,
-               written_.width, written_.height, prepared_.input().march.empty() ? "" : prepared_.input().march + "; ",
-               prepared_.read_seconds(), prepared_.build_seconds(), render_s, prepared_.on_device());
-    print_findings(picture);
+               written_.width, written_.height, march.empty() ? "" : march + "; ", prepared_.read_seconds(),
+               prepared_.build_seconds(), render_s, prepared_.on_device());
+    comparison_ ? comparison_.print() : print_findings(picture);
+  }
+
+  // A frame of an animation. Adds its warning to `blank`; prints nothing.
+  void make_frame(BlankPictures& blank) {
+    const SilentProgress silence;
+    ReplaceFile file(options().output);
+    prepared_.open();
+    comparison_.open();
+    Camera camera = prepared_.camera();
+    prepared_.finish(camera);
+    std::swap(blank, blank_);
+    make(file, options().output, prepared_.picture(camera), camera, [](double) { return caught_signal() == 0; });
+    std::swap(blank, blank_);
+  }
+
+  std::vector<std::string> notes() const {
+    std::vector<std::string> notes = prepared_.input().notes;
+    if (std::string note = note_on_low_water(prepared_.scene(), prepared_.picture(), prepared_.facts()); !note.empty())
+      notes.push_back(std::move(note));
+    if (!mesh_unseen_.empty()) notes.push_back(fmt::format("--mesh {} {}", options().mesh.file, mesh_unseen_));
+    if (format().map && !prepared_.input().raster.georeference.present)
+      notes.push_back(fmt::format("the input has no georeference, nor has {}", options().output));
+    if (!depth_note_.empty()) notes.push_back(depth_note_);
+    if (prepared_.raised() > 0) {
+      notes.push_back(fmt::format("the eye is raised by {}{} m, out of the ground",
+                                  options().frames.fly() ? "up to " : "", metres_text(prepared_.raised())));
+    }
+    return notes;
   }
 
  private:
   const RenderOptions& options() const { return prepared_.options(); }
   const PictureFormat& format() const { return picture_format_of(options().output); }
+
+  void print_report(const Picture& picture, double render_s) const {
+    nlohmann::ordered_json report{{"file", options().output}, {"width", written_.width}, {"height", written_.height}};
+    if (comparison_) {
+      report["compared"] = comparison_.describe();
+    } else if (const std::string& march = march_.empty() ? prepared_.input().march : march_; !march.empty()) {
+      report["march"] = march;
+    }
+    if (!prepared_.there().device.empty()) report["device"] = prepared_.there().device;
+    report["read_s"] = prepared_.read_seconds(), report["build_s"] = prepared_.build_seconds();
+    report["render_s"] = render_s;
+    if (!comparison_) report.update(describe_findings(picture));
+    fmt::print("{}\n", report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  }
 
   void make_all() {
     const FrameOptions& frames = options().frames;
@@ -67,7 +122,8 @@ class Render {
     // Without --overwrite no file is overwritten.
     for (int i = 0; frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options().output, i), inputs);
-    make_frames(frames, options().output, cameras, [&](Camera camera, const std::string& name) {
+    make_frames(frames, options().output, static_cast<int>(cameras.size()), [&](int i, const std::string& name) {
+      Camera camera = cameras[static_cast<std::size_t>(i)];
       prepared_.finish(camera);
       ReplaceFile file(name);
       const int blank_before = blank_.count();
@@ -76,7 +132,7 @@ class Render {
       if (!format().layers && blank_.count() == blank_before)
         tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
-    tell_notes();
+    print_notes(notes());
     if (!cameras.empty()) tell_of_contours(prepared_.picture(), cameras.front());
     blank_.tell();
   }
@@ -84,7 +140,14 @@ class Render {
   // Renders and writes one picture. Returns the findings; layers have none.
   Picture make(ReplaceFile& file, const std::string& name, const PictureSettings& settings, const Camera& camera,
                const Progress& progress) {
-    look_through(prepared_.there(), camera, entry_of(settings.look).antialiased || format().layers ? settings.aa : 1);
+    look_through(prepared_.there(), camera, entry_of(settings.look).antialiased ? settings.aa : 1);
+    if (format().layers && settings.look == Look::error) {
+      Picture picture = render_picture(prepared_.scene(), camera, settings, progress);
+      look_if_blank(name, settings, camera, false);
+      write_error_layers(file, name, picture, camera);
+      written_ = {picture.image.width, picture.image.height};
+      return picture;
+    }
     if (format().layers) {
       const PictureLayers layers = render_layers(prepared_.scene(), camera, settings, progress);
       look_if_blank(name, settings, camera, has_one_colour(layers));
@@ -100,9 +163,12 @@ class Render {
                                 prepared_.input().numbers,
                                 prepared_.input().raster.georeference,
                                 prepared_.input().raster.cols,
-                                prepared_.input().raster.rows};
+                                prepared_.input().raster.rows,
+                                comparison_.blank_strips()};
     std::optional<Figure> figure = figure_of(options().figure, settings, subject);
-    Picture picture = render_picture(prepared_.scene(), camera, settings, progress);
+    Picture picture =
+        comparison_ ? comparison_.render(camera) : render_picture(prepared_.scene(), camera, settings, progress);
+    if (comparison_) figure->strips = comparison_.strips();
     // A picture of the look error has one colour if nothing is wrong.
     look_if_blank(name, settings, camera, settings.look != Look::error && has_one_colour(picture.image));
     add_legend(options().figure, settings, subject, picture, figure);
@@ -129,22 +195,6 @@ class Render {
     mesh_seen_ = mesh_unseen_.empty();
   }
 
-  // Printed last: a run that fails prints only one line.
-  void tell_notes() const {
-    for (const std::string& note : prepared_.input().notes) fmt::print(stderr, "note: {}\n", note);
-    if (const std::string note = note_on_low_water(prepared_.scene(), prepared_.picture(), prepared_.facts());
-        !note.empty())
-      fmt::print(stderr, "note: {}\n", note);
-    if (!mesh_unseen_.empty()) fmt::print(stderr, "note: --mesh {} {}\n", options().mesh.file, mesh_unseen_);
-    if (format().map && !prepared_.input().raster.georeference.present)
-      fmt::print(stderr, "note: the input has no georeference, nor has {}\n", options().output);
-    if (!depth_note_.empty()) fmt::print(stderr, "note: {}\n", depth_note_);
-    if (prepared_.raised() > 0) {
-      fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
-                 options().frames.several() ? "up to " : "", metres_text(prepared_.raised()));
-    }
-  }
-
   // Warns about invisible contour lines.
   void tell_of_contours(const PictureSettings& settings, const Camera& camera) const {
     const double interval = settings.ground.contours;
@@ -169,7 +219,9 @@ class Render {
     fmt::print(stderr, "note: {} is {} m below the ground\n", whose, metres_text(*ground - camera.eye().z));
   }
 
+  const std::string march_;  // empty: of a scene file
   PreparedScene prepared_;
+  Comparison comparison_;
   WrittenSize written_;
   BlankPictures blank_;
   std::string depth_note_;  // of the first picture that has one
@@ -179,6 +231,22 @@ class Render {
 
 }  // namespace
 
-void render_input(InputKind kind, RenderOptions options) { Render(kind, std::move(options)).run(); }
+void render_animation(InputKind kind, const RenderOptions& options,
+                      const std::function<RenderOptions(int)>& options_of) {
+  BlankPictures blank;
+  std::optional<std::vector<std::string>> notes;  // those of the first frame stand for all
+  make_frames(options.frames, options.output, options.frames.chosen(), [&](int i, const std::string& name) {
+    RenderOptions frame = options_of(i);
+    frame.output = name;
+    if (options.frames.overwrite) keep_inputs(name, frame.typed);
+    Render render(kind, frame);
+    render.make_frame(blank);
+    if (!notes) notes = render.notes();
+  });
+  if (notes) print_notes(*notes);
+  blank.tell();
+}
+
+void render_input(InputKind kind, const RenderOptions& options) { Render(kind, options).run(); }
 
 }  // namespace scarp::cli

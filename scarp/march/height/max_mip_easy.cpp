@@ -66,7 +66,7 @@ Hit march_max_mip_easy(const HeightTarget& target, const Ray& ray, const MarchSe
   }
   const easy::Ground::EasyHit found =
       ground.max_mip_easy(begin, part.ray.direction, static_cast<float>(part.end - part.begin), false);
-  if (stats) *stats = {.steps = static_cast<std::uint32_t>(found.steps)};
+  if (stats) *stats = {.steps = static_cast<std::uint32_t>(found.steps), .cell_tests = ground.cells()};
   if (!found.hit) return hit;
   hit.t = std::ldexp(part.begin + static_cast<double>(found.t), -part.exponent);
   if (!std::isfinite(hit.t)) return {};

@@ -16,7 +16,8 @@
 
 namespace scarp {
 
-/// Closest hit; conventions as in ray.h. Requires the field's pyramid. Throws Error for other fields.
+/// Closest hit; conventions as in ray.h. Requires the field's pyramid. Throws Error for other fields. MarchStats::steps
+/// counts blocks and cells, cell_tests the cells among them.
 Hit march_max_mip_easy(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                        MarchStats* stats = nullptr);
 

@@ -33,6 +33,7 @@ class Ground {
   }
   float easy_maximum(ivec2 block, int level) const {
     if (level == 0) {
+      ++cells_;
       return max(max(easy_height(block), easy_height(block + ivec2(1, 0))),
                  max(easy_height(block + ivec2(0, 1)), easy_height(block + ivec2(1, 1))));
     }
@@ -42,6 +43,9 @@ class Ground {
                                                   : rounded;
   }
 
+  /// Number of maxima of level 0 so far, each of the four heights of a cell.
+  std::uint32_t cells() const { return cells_; }
+
 // The shader source defines a struct, constants and functions.
 #define MAX_MIP_EASY_HOST
 #include "scarp/march/height/max_mip_easy.glsl.h"
@@ -49,6 +53,7 @@ class Ground {
  private:
   const HeightField& field_;
   const MaxPyramid& pyramid_;
+  mutable std::uint32_t cells_ = 0;
 };
 
 }  // namespace scarp::easy

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "scarp/base/error.h"
@@ -15,6 +17,7 @@
 #include "scarp/render/film/tile_work.h"
 #include "scarp/render/frame/frame_tile.h"
 #include "scarp/render/light/light.h"
+#include "scarp/render/look/cost_look.h"
 #include "scarp/render/look/height_look.h"
 #include "scarp/render/look/hillshade_look.h"
 #include "scarp/render/look/level_look.h"
@@ -86,10 +89,10 @@ void require_steps(const Scene& scene) {
   }
 }
 
-Image render_shaded(const Scene& scene, const Camera& camera, const PictureSettings& settings,
-                    const Progress& progress) {
+Picture render_lit(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                   const Progress& progress) {
 #ifdef SCARP_VULKAN
-  if (makes_whole_frames(scene, camera, settings)) return render_whole_frame(scene, camera, settings, progress);
+  if (makes_whole_frames(scene, camera, settings)) return {render_whole_frame(scene, camera, settings, progress)};
 #endif
   if (settings.look == Look::comanche) require_steps(scene);
   const FrameView view(scene, camera, settings);
@@ -106,7 +109,7 @@ Image render_shaded(const Scene& scene, const Camera& camera, const PictureSetti
     work_on_camera_tiles(scene, camera, settings.width, settings.height, settings.aa, most_rays_of(view), make,
                          progress);
   }
-  return image;
+  return {std::move(image)};
 }
 
 Picture render_hillshade(const Scene& scene, const Camera& camera, const PictureSettings& settings,
@@ -159,12 +162,24 @@ std::optional<ReliefRange> range_of_grey(const Scene& scene, const PictureSettin
   return field ? std::optional(ReliefRange{field->min_height(), field->max_height()}) : std::nullopt;
 }
 
+// Heights without exaggeration.
+PictureLegend legend_of_grey(const ReliefRange& range, double exaggeration) {
+  PictureLegend legend{.title = "height, m", .low = range.low / exaggeration, .high = range.high / exaggeration};
+  for (int grey = 1; grey <= 255; ++grey) {
+    const auto byte = static_cast<std::uint8_t>(grey);
+    legend.colours.push_back({byte, byte, byte});
+  }
+  return legend;
+}
+
 Picture picture_of_heights(std::span<const double> heights, const Scene& scene, const PictureSettings& settings) {
   const std::optional<ReliefRange> given = range_of_grey(scene, settings);
   const std::optional<ReliefRange> range = given ? given : range_of_heights(heights);
   Picture picture{range ? image_of_heights(size_of(settings), heights, *range)
                         : Image(settings.width, settings.height)};
   if (!given) picture.heights = range;
+  picture.legend =
+      legend_of_grey(range.value_or(ramp_heights(scene, settings)), paint_extent(scene, settings).exaggeration);
   return picture;
 }
 
@@ -204,24 +219,108 @@ Picture render_height(const Scene& scene, const Camera& camera, const PictureSet
 
 Picture render_level(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress) {
-  const LevelMaxima maxima(scene, settings.level);
+  const LevelBoxes boxes(scene, settings.level);
   std::vector<double> heights = no_heights(settings);
-  look_through_middles(scene, camera, size_of(settings), false, progress,
-                       [&](std::size_t i, const Ray&, const Hit& hit, std::uint32_t) {
-                         if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = maxima.over(hit.cell);
-                       });
-  return picture_of_heights(heights, scene, settings);
+  std::vector<float> shades(heights.size(), 1.f);
+  look_through_middles(
+      scene, camera, size_of(settings), false, progress,
+      [&](std::size_t i, const Ray& ray, const Hit&, std::uint32_t) {
+        if (const auto hit = boxes.hit(ray)) heights[i] = hit->height, shades[i] = hit->shade;
+      },
+      [](RayRound& round) { round.hits.assign(round.rays.size(), Hit{}); });
+  Picture picture = picture_of_heights(heights, scene, settings);
+  for (std::size_t i = 0; i < shades.size(); ++i) {
+    std::uint8_t* grey = picture.image.rgb.data() + 3 * i;
+    std::fill_n(grey, 3, static_cast<std::uint8_t>(std::lround(shades[i] * static_cast<float>(*grey))));
+  }
+  return picture;
+}
+
+std::vector<std::uint32_t> steps_seen(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                                      const Progress& progress) {
+  std::vector<std::uint32_t> steps(static_cast<std::size_t>(settings.width) *
+                                   static_cast<std::size_t>(settings.height));
+  look_through_middles(scene, camera, size_of(settings), true, progress,
+                       [&](std::size_t i, const Ray&, const Hit&, std::uint32_t count) { steps[i] = count; });
+  return steps;
+}
+
+Picture picture_of_counts(std::span<const std::uint32_t> counts, const StepRange& range, std::string title,
+                          const PictureSettings& settings) {
+  constexpr int kColours = 256;
+  const auto [low, high] = range.scale;
+  const Ramp ramp = ramp_over(settings, low, high);
+  Picture picture{image_of_steps(size_of(settings), counts, ramp)};
+  picture.legend = PictureLegend{.title = std::move(title), .low = low, .high = high, .least_step = 1};
+  for (int i = 0; i < kColours; ++i) {
+    const vec3 colour = ramp(low + (high - low) * (i + 0.5) / kColours);
+    picture.legend->colours.push_back({srgb_byte(colour.x), srgb_byte(colour.y), srgb_byte(colour.z)});
+  }
+  return picture;
 }
 
 Picture render_steps(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress) {
-  std::vector<std::uint32_t> steps(static_cast<std::size_t>(settings.width) *
-                                   static_cast<std::size_t>(settings.height));
-  look_through_middles(scene, camera, size_of(settings), true, progress,
-                       [&](std::size_t i, const Ray&, const Hit&, std::uint32_t cost) { steps[i] = cost; });
-  const StepRange range = range_of_steps(steps, settings.step_scale);
-  return {image_of_steps(size_of(settings), steps, ramp_over(settings, range.scale.low, range.scale.high)), range};
+  const std::vector<std::uint32_t> steps = steps_seen(scene, camera, settings, progress);
+  const StepRange range = range_of_steps(steps, settings.step_scale, steps_of(scene));
+  Picture picture = picture_of_counts(steps, range, "steps per ray: " + range.of, settings);
+  picture.steps = range;
+  return picture;
 }
+
+Picture render_cost(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                    const Progress& progress) {
+  const std::vector<std::uint32_t> reads = steps_seen(counting_reads(scene), camera, settings, progress);
+  const StepRange range = range_of_steps(reads, settings.step_scale, reads_of(scene));
+  Picture picture = picture_of_counts(reads, range, "reads per ray: " + range.of, settings);
+  picture.cost = range;
+  return picture;
+}
+
+Picture render_errors(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                      const Progress& progress) {
+  ErrorPicture error = render_error(scene, camera, settings.width, settings.height, settings.error, progress);
+  Picture picture{std::move(error.image)};
+  picture.legend = PictureLegend{.title = "the march is"};
+  for (int i = 0; i < kVerdicts; ++i) {
+    const auto verdict = static_cast<Verdict>(i);
+    if (error.counts[verdict] == 0) continue;
+    const vec3 colour = 255.f * srgb_of(verdict);
+    const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(v)); };
+    picture.legend->classes.push_back(
+        {{byte(colour.x), byte(colour.y), byte(colour.z)}, std::string(name_of(verdict))});
+  }
+  picture.errors = std::move(error.counts);
+  picture.error_map = std::move(error.map);
+  return picture;
+}
+
+Picture render_comanche(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                        const Progress& progress) {
+  return settings.comanche.heights ? render_height(scene, camera, settings, progress)
+                                   : render_lit(scene, camera, settings, progress);
+}
+
+using RenderLook = Picture (*)(const Scene&, const Camera&, const PictureSettings&, const Progress&);
+
+// The renderer of each look, in the order of the enumeration.
+constexpr std::array kRenderers = std::to_array<std::pair<Look, RenderLook>>({
+    {Look::shaded, render_lit},
+    {Look::hillshade, render_hillshade},
+    {Look::height, render_height},
+    {Look::steps, render_steps},
+    {Look::cost, render_cost},
+    {Look::error, render_errors},
+    {Look::comanche, render_comanche},
+    {Look::level, render_level},
+});
+
+static_assert([] {
+  for (std::size_t i = 0; i < kRenderers.size(); ++i) {
+    if (static_cast<std::size_t>(kRenderers[i].first) != i) return false;
+  }
+  return kRenderers.size() == kLookCount;
+}());
 
 }  // namespace
 
@@ -236,7 +335,7 @@ int pixel_side(const PictureSettings& settings) {
 
 std::string_view ramp_of(const PictureSettings& settings) {
   if (!settings.ramp.empty()) return settings.ramp;
-  return settings.look == Look::steps ? "viridis" : "hypsometric";
+  return settings.look == Look::steps || settings.look == Look::cost ? "viridis" : "hypsometric";
 }
 
 Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale) {
@@ -355,30 +454,6 @@ WorldBox picture_box(const Scene& scene) {
 
 namespace {
 
-Picture render_look(const Scene& scene, const Camera& camera, const PictureSettings& settings,
-                    const Progress& progress) {
-  switch (settings.look) {
-    case Look::hillshade:
-      return render_hillshade(scene, camera, settings, progress);
-    case Look::height:
-      return render_height(scene, camera, settings, progress);
-    case Look::level:
-      return render_level(scene, camera, settings, progress);
-    case Look::steps:
-      return render_steps(scene, camera, settings, progress);
-    case Look::error: {
-      ErrorPicture error = render_error(scene, camera, settings.width, settings.height, settings.error, progress);
-      return {std::move(error.image), {}, error.counts, {}};
-    }
-    case Look::comanche:
-      if (settings.comanche.heights) return render_height(scene, camera, settings, progress);
-      break;
-    case Look::shaded:
-      break;
-  }
-  return {render_shaded(scene, camera, settings, progress)};
-}
-
 // For looks with one ray per pixel.
 void find_alpha(const Scene& scene, const Camera& camera, const PictureSettings& settings, Image& image) {
   image.make_transparent();
@@ -398,7 +473,7 @@ Picture render_picture(const Scene& scene, const Camera& camera, const PictureSe
                        const Progress& progress) {
   validate(settings);
   require_visible(scene);
-  Picture picture = render_look(scene, camera, settings, progress);
+  Picture picture = kRenderers[static_cast<std::size_t>(settings.look)].second(scene, camera, settings, progress);
   Image& image = picture.image;
   if (settings.alpha && image.alpha.empty()) find_alpha(scene, camera, settings, image);
   if (const int side = pixel_side(settings); side > 1) image = scaled_up(image, side);

@@ -2,6 +2,7 @@
 // Renders a picture of a scene in one of several looks (look/look.h).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -39,7 +40,7 @@ struct PictureSettings {
   // Surfaces.
   std::vector<Material> materials{};  ///< indexed by SceneObject::material
   GroundPaintSettings ground{};       ///< ground colours; overlay, patches and contours apply to all surfaces
-  std::string ramp{};                 ///< one of ramp_names(); empty: viridis for `steps`, else hypsometric
+  std::string ramp{};                 ///< one of ramp_names(); empty: viridis for `steps` and `cost`, else hypsometric
   std::shared_ptr<const RampStops> ramp_stops{};  ///< replaces `ramp` unless null
   /// Heights of the first and last colour of ramps and of grey, in metres, not exaggerated; low < high; nullopt: the
   /// lowest and highest of the scene. Values outside have the colour of the nearer end.
@@ -74,7 +75,7 @@ struct PictureSettings {
   bool large_pixels = false;  ///< `shaded`: pixels are scaled up by ComancheSettings::scale, as `comanche` always does
   ComancheSettings comanche{};
   ErrorSettings error{};
-  std::optional<StepScale> step_scale{};  ///< `steps`: range of the ramp, clamped; nullopt: the minimum and
+  std::optional<StepScale> step_scale{};  ///< `steps`, `cost`: range of the ramp, clamped; nullopt: the minimum and
                                           ///< maximum in the picture
   int level = 0;                          ///< `level`: level of the pyramid, 0 (cells) to the coarsest
 };
@@ -106,12 +107,30 @@ void validate(const PictureSettings& settings);
 /// empty.
 WorldBox picture_box(const Scene& scene);
 
+using Srgb = std::array<std::uint8_t, 3>;
+
+/// The meaning of a picture's colours: a scale of numbers, or classes.
+struct PictureLegend {
+  std::string title{};
+  std::vector<Srgb> colours{};  ///< of the scale, evenly spaced from `low` to `high`; empty: classes
+  double low = 0, high = 0;
+  double least_step = 0;  ///< of labels; 1: whole numbers
+  struct Class {
+    Srgb colour;
+    std::string name;
+  };
+  std::vector<Class> classes{};  ///< those in the picture
+};
+
 /// A picture, and statistics of some looks.
 struct Picture {
   Image image;
-  std::optional<StepRange> steps{};      ///< set by the look `steps`
-  std::optional<ErrorCounts> errors{};   ///< set by the look `error`
-  std::optional<ReliefRange> heights{};  ///< set by the look `height`, if anything was hit: heights of grey 1 and 255
+  std::optional<PictureLegend> legend{};  ///< nullopt if its colours are those of materials, or have no unit
+  std::optional<StepRange> steps{};       ///< set by the look `steps`
+  std::optional<StepRange> cost{};        ///< reads, set by the look `cost`
+  std::optional<ErrorCounts> errors{};    ///< set by the look `error`
+  std::optional<ErrorMap> error_map{};    ///< likewise
+  std::optional<ReliefRange> heights{};   ///< set by the look `height`, if anything was hit: heights of grey 1 and 255
 };
 
 /// Renders a picture. `camera` must have been created with the width and height of the settings; if terrain wraps, it

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "scarp/base/error.h"
@@ -30,7 +31,7 @@ constexpr std::array<Style, kVerdicts> kStyles{{
     {"right hit", "grey", {0.80f, 0.80f, 0.80f}},
     {"right miss", "dark grey", {0.16f, 0.16f, 0.16f}},
     {"lost", "red", {0.86f, 0.10f, 0.10f}},
-    {"invented", "magenta", {0.86f, 0.15f, 0.80f}},
+    {"false", "magenta", {0.86f, 0.15f, 0.80f}},
     {"early", "blue", {0.15f, 0.40f, 0.92f}},
     {"late", "orange", {0.98f, 0.55f, 0.05f}},
     {"gave up", "yellow", {0.98f, 0.92f, 0.20f}},
@@ -57,7 +58,43 @@ Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
   return answer.t < truth.t ? Verdict::early : Verdict::late;
 }
 
+double error_metres(Verdict verdict, const Ray& ray, const Hit& answer, const Hit& truth) {
+  if (!has_metres(verdict)) return 0;
+  const double t = verdict == Verdict::lost       ? truth.t
+                   : verdict == Verdict::invented ? answer.t
+                                                  : std::abs(answer.t - truth.t);
+  return t * length(ray.direction);
+}
+
+std::vector<float> ErrorMap::metres_of(Verdict verdict) const {
+  std::vector<float> chosen(metres.size(), 0.f);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (verdicts[i] == verdict) chosen[i] = metres[i];
+  }
+  return chosen;
+}
+
 namespace {
+
+// Sums are in the order of the pixels, so that they do not depend on threads.
+ErrorMetres summary_of(std::vector<float> metres) {
+  ErrorMetres summary;
+  if (metres.empty()) return summary;
+  summary.mean = std::accumulate(metres.begin(), metres.end(), 0.0) / static_cast<double>(metres.size());
+  const auto p99 = metres.begin() + static_cast<std::ptrdiff_t>((99 * metres.size() + 99) / 100 - 1);
+  std::nth_element(metres.begin(), p99, metres.end());
+  summary.p99 = static_cast<double>(*p99);
+  summary.most = static_cast<double>(*std::max_element(p99, metres.end()));
+  return summary;
+}
+
+ErrorMetres summary_of(const ErrorMap& map, Verdict verdict) {
+  std::vector<float> metres;
+  for (std::size_t i = 0; i < map.metres.size(); ++i) {
+    if (map.verdicts[i] == verdict) metres.push_back(map.metres[i]);
+  }
+  return summary_of(std::move(metres));
+}
 
 constexpr int kProvenEvery = 8;  // in both directions
 
@@ -87,7 +124,7 @@ struct Tally {
 class ErrorTile final : public TileWork {
  public:
   ErrorTile(const Scene& judges, const Camera& camera, const PixelTile& tile, const ErrorSettings& settings,
-            const Light& light, Tally& tally, Image& image)
+            const Light& light, Tally& tally, ErrorPicture& picture)
       : judges_(judges),
         function_(only_function(judges)),
         camera_(camera),
@@ -95,7 +132,7 @@ class ErrorTile final : public TileWork {
         settings_(settings),
         light_(light),
         tally_(tally),
-        image_(image) {}
+        picture_(picture) {}
 
   bool next(RayRound& round) override {
     if (!asked_) {
@@ -117,13 +154,16 @@ class ErrorTile final : public TileWork {
     const Hit truth = judges_.closest_hit(ray);
     const Verdict verdict = judge(answer, truth, hit_tolerance(judges_, truth, settings_));
     ++tally_.pixels[static_cast<std::size_t>(verdict)];
+    const auto pixel = static_cast<std::size_t>(std::int64_t{y} * picture_.image.width + x);
+    picture_.map.verdicts[pixel] = verdict;
+    picture_.map.metres[pixel] = static_cast<float>(error_metres(verdict, ray, answer, truth));
     vec3 colour = linear_from_srgb(style_of(verdict).srgb);
     // Shades the colours of surfaces without shadows, so that the relief shows where the errors are.
     if (truth) {
       const SceneSurface surface = judges_.surface(ray, truth);
       if (surface.normal != dvec3(0.0)) colour *= light_.on(surface.shading_normal, true);
     }
-    set_pixel(image_, x, y, colour);
+    set_pixel(picture_.image, x, y, colour);
     const bool chosen = x % kProvenEvery == kProvenEvery / 2 && y % kProvenEvery == kProvenEvery / 2;
     if (function_ && chosen && truth.status != HitStatus::below && std::isfinite(ray.t_max)) prove(ray, truth);
   }
@@ -141,7 +181,7 @@ class ErrorTile final : public TileWork {
   const ErrorSettings& settings_;
   const Light& light_;
   Tally& tally_;
-  Image& image_;
+  ErrorPicture& picture_;
   bool asked_ = false;
 };
 
@@ -162,7 +202,9 @@ ErrorPicture render_error(const Scene& scene, const Camera& camera, int width, i
                           const ErrorSettings& settings, const Progress& progress) {
   const Scene judges = scene.judge();
   const Light light(SunSettings{}, 0);
-  ErrorPicture picture{Image(width, height), {}};
+  ErrorPicture picture{Image(width, height), {}, {}};
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  picture.map.verdicts.resize(pixels), picture.map.metres.resize(pixels);
   picture.counts.judges = judges.marches();
   picture.counts.caveats = scene.caveats();
   picture.counts.tolerance_m = settings.tolerance * judges.cell_side();
@@ -171,10 +213,14 @@ ErrorPicture render_error(const Scene& scene, const Camera& camera, int width, i
   work_on_tiles(
       scene, PixelTiles(width, height, 1), kMostRays,
       [&](const PixelTile& tile) {
-        return std::make_unique<ErrorTile>(judges, camera, tile, settings, light, tally, picture.image);
+        return std::make_unique<ErrorTile>(judges, camera, tile, settings, light, tally, picture);
       },
       progress);
   std::copy(tally.pixels.begin(), tally.pixels.end(), picture.counts.pixels.begin());
+  for (int i = 0; i < kVerdicts; ++i) {
+    if (const auto verdict = static_cast<Verdict>(i); has_metres(verdict))
+      picture.counts.metres[static_cast<std::size_t>(i)] = summary_of(picture.map, verdict);
+  }
   picture.counts.proven = tally.proven;
   picture.counts.contradictions = tally.contradictions;
   return picture;

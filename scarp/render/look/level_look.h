@@ -1,28 +1,45 @@
 // SPDX-License-Identifier: MIT
-// The look `level`: a level of the maximum pyramid of a height field (accel/max_pyramid.h), shown on the ground. Each
-// pixel shows the maximum of the node that contains the cell hit by its ray, in the grey levels of the look `height`:
-// level 0 is the highest corner of each cell, level N the maximum of 2^N x 2^N cells. A map shows the level as an
-// image.
+// The look `level`: a level of the maximum pyramid of a height field (accel/max_pyramid.h) as boxes. Each block of
+// 2^N x 2^N cells is a box from below the ground up to its maximum, in the grey of that height; its sides are darker.
+// Level 0 has a box per cell, up to its highest corner. A map shows the boxes from above: the level as an image.
+//
+//            +-------+
+//     ray    |       |          a march skips a block if the ray stays above its box, and descends into it otherwise
+//   ------>--|->     +-------+
+//            |       |       |
+//
+// Holes have no boxes where a block has no ground at all.
 #pragma once
 
-#include "scarp/accel/max_pyramid.h"
+#include <optional>
+#include <vector>
+
 #include "scarp/scene/scene.h"
 
 namespace scarp {
 
-class LevelMaxima {
+class LevelBoxes {
  public:
-  /// Refers to the scene. Throws Error if the scene is not a single height field, or its pyramid lacks the level.
-  LevelMaxima(const Scene& scene, int level);
+  /// Refers to the scene. Throws Error if the scene is not a single height field, its pyramid lacks the level, or the
+  /// field wraps: boxes need borders.
+  LevelBoxes(const Scene& scene, int level);
 
-  /// Returns the maximum of the node that contains a cell, in metres; from level 1 on, it is rounded up to a code of
-  /// the pyramid. The cell must exist and must not be a hole.
-  double over(const Cell& cell) const;
+  struct Hit {
+    double height = 0;  ///< maximum of the block, in metres; from level 1 on, it is rounded up to a code of the pyramid
+    float shade = 1;    ///< brightness of the side that was hit; 1: the top
+  };
+  /// Returns the first box that the ray enters; nullopt if there is none. A ray that starts in a box leaves it first.
+  std::optional<Hit> hit(const Ray& ray) const;
 
  private:
+  bool has_ground(int col, int row) const;
+  double maximum_of(int col, int row) const;
+
   const HeightField& field_;
   int level_;
-  MaxPyramid pyramid_;
+  int cols_ = 0, rows_ = 0;     // of blocks
+  double base_, highest_ = 0;   // z of the lower ends of the boxes, and of the highest
+  std::vector<double> maxima_;  // from level 1 on, in rows; NaN: no box
 };
 
 }  // namespace scarp

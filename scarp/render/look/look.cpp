@@ -9,11 +9,12 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<LookEntry, 7> kLooks = {{
+constexpr std::array<LookEntry, kLookCount> kLooks = {{
     {.look = Look::shaded, .name = "shaded", .lit = true, .antialiased = true},
     {.look = Look::hillshade, .name = "hillshade"},
     {.look = Look::height, .name = "height"},
     {.look = Look::steps, .name = "steps", .measures = true},
+    {.look = Look::cost, .name = "cost", .measures = true},
     {.look = Look::error, .name = "error", .measures = true},
     {.look = Look::comanche, .name = "comanche", .lit = true, .large_pixels = true},
     {.look = Look::level, .name = "level", .measures = true},

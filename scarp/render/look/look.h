@@ -8,21 +8,25 @@
 //   height    grey, linear in height, see height_look.h
 //   steps     steps of the march per ray, as a colour ramp from the minimum to the maximum in the picture, or over a
 //             given range
+//   cost      heights, nodes and voxels that the march reads per ray, in the same way, see cost_look.h
 //   error     errors of the march, see error_look.h
 //   comanche  like `shaded`, in few large pixels, see comanche.h
 //   level     maxima of a level of the pyramid, see level_look.h
 //
-// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps`, `error` and `level` trace one ray through
-// the centre of each pixel.
+// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps`, `cost`, `error` and `level` trace one ray
+// through the centre of each pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace scarp {
 
-enum class Look : std::uint8_t { shaded, hillshade, height, steps, error, comanche, level };
+enum class Look : std::uint8_t { shaded, hillshade, height, steps, cost, error, comanche, level };
+constexpr std::size_t kLookCount = 8;
 
 /// A row of the table.
 struct LookEntry {
@@ -34,17 +38,18 @@ struct LookEntry {
   bool measures = false;      ///< shows numbers of the march or of its structures, which averaged samples would change
 };
 
-/// Step counts of the first and last colour of a ramp; 0 <= low < high.
+/// Counts of the first and last colour of a ramp: steps, or reads; 0 <= low < high.
 struct StepScale {
   double low = 0, high = 0;
 };
 
-/// Minimum, maximum and mean number of steps per ray, and the scale of the colours.
+/// Minimum, maximum and mean number of steps or reads per ray, and the scale of the colours.
 struct StepRange {
   std::uint32_t least = 0;
   std::uint32_t most = 0;
   double mean = 0;
   StepScale scale{};
+  std::string of{};  ///< what is counted: "samples", "blocks and cells", "heights"
 };
 
 /// Returns all looks, in the order of the enumeration.

@@ -94,7 +94,7 @@ int varied(const Image& image) {
 
 TEST_P(EveryInput, SupportsEveryLook) {
   const Scene scene = GetParam().make();
-  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error, Look::comanche}) {
+  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::cost, Look::error, Look::comanche}) {
     PictureSettings with = settings();
     with.look = look;
     with.comanche.scale = 2;
@@ -102,6 +102,7 @@ TEST_P(EveryInput, SupportsEveryLook) {
     EXPECT_EQ(picture.image.width, look == Look::comanche ? 2 * kWidth : kWidth);
     EXPECT_GT(varied(picture.image), kWidth * kHeight / 8) << name_of(look);
     EXPECT_EQ(picture.steps.has_value(), look == Look::steps);
+    EXPECT_EQ(picture.cost.has_value(), look == Look::cost);
     EXPECT_EQ(picture.errors.has_value(), look == Look::error);
   }
 }

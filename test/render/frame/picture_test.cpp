@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <glm/trigonometric.hpp>
 #include <limits>
@@ -13,6 +15,7 @@
 #include "render/terrain.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/plinth.h"
 
 namespace scarp {
 namespace {
@@ -249,6 +252,72 @@ TEST(Picture, LevelsShowTheMaximaOfTheirNodes) {
   EXPECT_THROW(map_of(field, settings), Error);
 }
 
+// In perspective, the nearest of all boxes, each tested on its own.
+TEST(Picture, LevelsAreBoxesInPerspective) {
+  constexpr int kCols = 8, kRows = 6, kSide = 64;
+  std::vector<float> samples;
+  for (int i = 0; i < kCols * kRows; ++i) samples.push_back(static_cast<float>(i * 29 % 48) / 8);
+  const HeightField field = HeightField::own(samples, kCols, kRows);
+  const Scene scene = test::terrain_on_plinth(field);
+  PictureSettings settings;
+  settings.width = settings.height = kSide;
+  settings.look = Look::level;
+  for (const dvec3& eye : {dvec3(-6, -8, 9), dvec3(12, 9, 8), dvec3(4.3, 2.7, 30)}) {
+    const Camera camera = Camera::look_at(eye, {3.6, 2.4, 2}, 45, kSide, kSide);
+    for (settings.level = 0; settings.level <= 3; ++settings.level) {
+      const Image image = render_picture(scene, camera, settings).image;
+      const int side = 1 << settings.level;
+      int sides = 0, tops = 0;
+      for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+          const Ray ray = camera.ray(x + 0.5, y + 0.5);
+          double nearest = std::numeric_limits<double>::infinity(), second = nearest, grey = 0;
+          // Maxima are rounded up by less than two codes, of which the range has 65533.
+          const double tie = 2 * 47.0 / 8 / 65533 / std::abs(ray.direction.z);
+          bool top = false;
+          for (int r0 = 0; r0 < kRows - 1; r0 += side) {
+            for (int c0 = 0; c0 < kCols - 1; c0 += side) {
+              const int r1 = std::min(r0 + side, kRows - 1), c1 = std::min(c0 + side, kCols - 1);
+              double most = 0;
+              for (int r = r0; r <= r1; ++r) {
+                for (int c = c0; c <= c1; ++c)
+                  most = std::max<double>(most, samples[static_cast<std::size_t>(r * kCols + c)]);
+              }
+              // The field's rows run south from its northern border. Boxes stand deep below the ground.
+              const dvec3 low(c0, kRows - 1 - r1, -100), high(c1, kRows - 1 - r0, most);
+              double in = 0, out = std::numeric_limits<double>::infinity();
+              int axis = 0;
+              double edge = std::numeric_limits<double>::infinity();  // how far the ray enters from an edge
+              for (int k = 0; k < 3; ++k) {
+                const double a = (low[k] - ray.origin[k]) / ray.direction[k],
+                             b = (high[k] - ray.origin[k]) / ray.direction[k];
+                edge = std::min(edge, std::abs(std::min(a, b) - in));
+                if (std::min(a, b) > in) in = std::min(a, b), axis = k;
+                out = std::min(out, std::max(a, b));
+              }
+              if (in > out || ray.at(in).z < plinth_base(field)) continue;
+              if (in < nearest) {
+                second = edge < tie ? in : nearest;
+                nearest = in, top = axis == 2;
+                grey = (1 + 254 * most / (47.0 / 8)) * (axis == 0 ? 0.7 : axis == 1 ? 0.5 : 1);
+              } else {
+                second = std::min(second, in);
+              }
+            }
+          }
+          if (second - nearest < tie) continue;  // on an edge
+          (top ? tops : sides) += std::isfinite(nearest);
+          // Half a level for each of two roundings, and a step of the pyramid's code.
+          EXPECT_NEAR(red(image, x, y), std::isfinite(nearest) ? grey : 0, 1.01)
+              << settings.level << ": " << x << ", " << y;
+        }
+      }
+      EXPECT_GT(tops, 100) << settings.level << ": " << eye.x;
+      EXPECT_GT(sides, eye.z > 20 ? -1 : 100) << settings.level << ": " << eye.x;
+    }
+  }
+}
+
 TEST(Picture, HeightIsLinearAndMissesAreBlack) {
   // Ten steps from 100 m in the west to 110 m in the east, with a hole.
   const HeightField field = field_of(11, 0, [](std::vector<float>& samples, int side) {
@@ -298,6 +367,79 @@ TEST(Picture, StepsCountWhatTheMarchReports) {
   }
   settings.step_scale = StepScale{5, 5};
   EXPECT_THROW(render_picture(scene, camera, settings), Error);
+}
+
+// One read per pixel of a picture of one ray.
+std::uint32_t reads(const Scene& scene, const Camera& camera, int side) {
+  PictureSettings settings;
+  settings.width = settings.height = side;
+  settings.look = Look::cost;
+  const StepRange cost = render_picture(scene, camera, settings).cost.value();
+  return static_cast<std::uint32_t>(std::lround(cost.mean * side * side));
+}
+
+TEST(CostLook, CountsWhatTheMarchReads) {
+  constexpr int kSide = 9;
+  const HeightField field = wall();
+  // Straight down: each ray tests one cell, of four heights.
+  const Camera top = Camera::top(picture_box(test::terrain(field)), kSide, kSide);
+  EXPECT_EQ(reads(test::terrain(field), top, kSide), 4u * kSide * kSide);
+  EXPECT_EQ(reads(test::terrain_on_plinth(field), top, kSide), 4u * kSide * kSide) << "walls do not count";
+  const Camera aslant = Camera::look_at({-8, 9, 12}, {12, 11, 0}, 50, kSide, kSide);
+  const auto steps = [](const Scene& scene, const Camera& camera) {
+    PictureSettings settings;
+    settings.width = settings.height = kSide;
+    settings.look = Look::steps;
+    const StepRange range = render_picture(scene, camera, settings).steps.value();
+    return static_cast<std::uint32_t>(std::lround(range.mean * kSide * kSide));
+  };
+  // A step of these is a sample in a cell.
+  for (const std::string_view march : {"naive", "relaxed", "exhaustive"}) {
+    const Scene scene = test::terrain(field, march);
+    EXPECT_EQ(reads(scene, aslant, kSide), 4 * steps(scene, aslant)) << march;
+  }
+  // With walls the same rays are marched: those that a wall hides are not.
+  const Scene walled = test::terrain_on_plinth(field, "naive");
+  const Camera low = Camera::framed(picture_box(walled), {.azimuth_deg = 200, .elevation_deg = 10}, 0, kSide, kSide);
+  EXPECT_EQ(reads(walled, low, kSide), 4 * steps(walled, low));
+  EXPECT_LT(steps(walled, low), steps(test::terrain(field, "naive"), low)) << "walls hide ground";
+  // One of these is a block or a cell.
+  for (const std::string_view march : {"max-mip", "max-mip-easy"}) {
+    const Scene scene = test::terrain(field, march);
+    EXPECT_GT(reads(scene, aslant, kSide), steps(scene, aslant)) << march;
+    EXPECT_LT(reads(scene, aslant, kSide), 4 * steps(scene, aslant)) << march;
+  }
+  // Along a column of empty voxels to the floor.
+  for (const auto& [march, most] : {std::pair{"voxel-planes", 7u}, {"voxel-cubes", 3u}}) {
+    VoxelGrid grid({8, 8, 8}, 24);
+    grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
+      return v.z == 0 || v == ivec3(7) ? VoxelGrid::Voxel(0x60a040) : VoxelGrid::Voxel();
+    });
+    auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
+    const Scene voxels(scene_voxels({{std::move(model)}, {VoxelPlace{}}}));
+    const std::uint32_t count = reads(voxels, Camera::look_at({2.5, 2.5, 20}, {2.5, 2.5, 0}, 1, 1, 1), 1);
+    if (march == std::string_view("voxel-planes"))
+      EXPECT_EQ(count, 8u) << "seven empty ones, and the floor";
+    else
+      EXPECT_LE(count, most);
+  }
+}
+
+TEST(CostLook, LegendsSayWhatIsCounted) {
+  const auto title = [](Look look, const Scene& scene) {
+    PictureSettings settings;
+    settings.width = settings.height = 8;
+    settings.look = look;
+    const Camera camera = Camera::look_at({10, -20, 12}, {10, 10, 8}, 25, 8, 8);
+    return render_picture(scene, camera, settings).legend.value().title;
+  };
+  EXPECT_EQ(title(Look::steps, test::terrain_on_plinth(wall())), "steps per ray: blocks and cells");
+  EXPECT_EQ(title(Look::cost, test::terrain_on_plinth(wall())), "reads per ray: heights and blocks");
+  EXPECT_EQ(title(Look::steps, test::terrain(wall(), "naive")), "steps per ray: samples");
+  EXPECT_EQ(title(Look::cost, test::terrain(wall(), "naive")), "reads per ray: heights");
+  EXPECT_EQ(title(Look::steps, test::terrain(wall(), "exhaustive")), "steps per ray: cells");
+  EXPECT_EQ(title(Look::height, test::terrain(wall())), "height, m");
+  EXPECT_EQ(title(Look::error, test::terrain(wall())), "the march is");
 }
 
 // From the south, just above the ground, towards a spike in the middle of a plain.
@@ -359,6 +501,57 @@ TEST(ErrorLook, ExactMarchHasNoErrors) {
   for (const Verdict wrong : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up}) {
     EXPECT_EQ(counts[wrong], 0) << name_of(wrong);
   }
+}
+
+// The errors of each pixel, from the hits themselves.
+void expect_metres(std::string_view march, const MarchSettings& march_settings, const std::vector<Verdict>& found) {
+  const HeightField field = field_of(65, 0, [](std::vector<float>& samples, int side) {
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>((i * 7919) % 23) / 4;
+    samples[static_cast<std::size_t>(32 * side + 32)] = 20;
+  });
+  const Scene scene = test::terrain(field, march, march_settings), judges = test::terrain(field, "exhaustive");
+  PictureSettings settings;
+  settings.width = settings.height = 64;
+  settings.look = Look::error;
+  const Camera camera = Camera::look_at({32, -20, 12}, {32, 32, 8}, 25, settings.width, settings.height);
+  const Picture picture = render_picture(scene, camera, settings);
+  std::array<std::vector<double>, kVerdicts> expected;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const Ray ray = camera.ray(x + 0.5, y + 0.5);
+      const Hit answer = scene.closest_hit(ray), truth = judges.closest_hit(ray);
+      const auto pixel = static_cast<std::size_t>(64 * y + x);
+      const Verdict verdict = picture.error_map->verdicts[pixel];
+      ASSERT_EQ(verdict, judge(answer, truth, settings.error.tolerance));
+      const double metres = verdict == Verdict::early      ? truth.t - answer.t
+                            : verdict == Verdict::late     ? answer.t - truth.t
+                            : verdict == Verdict::lost     ? distance(ray.at(truth.t), camera.eye())
+                            : verdict == Verdict::invented ? distance(ray.at(answer.t), camera.eye())
+                                                           : 0;
+      EXPECT_NEAR(picture.error_map->metres[pixel], metres, 1e-6 * metres) << "rounded to float";
+      expected[static_cast<std::size_t>(verdict)].push_back(metres);
+    }
+  }
+  for (const Verdict verdict : found) {
+    std::vector<double>& all = expected[static_cast<std::size_t>(verdict)];
+    ASSERT_GT(all.size(), 10u) << name_of(verdict);
+    const ErrorMetres& metres = picture.errors->of(verdict);
+    const double mean = std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+    EXPECT_NEAR(metres.mean, mean, 1e-6 * mean) << name_of(verdict);
+    std::sort(all.begin(), all.end());
+    // The first that at least 99 % do not exceed.
+    std::size_t first = 0;
+    while (100 * (first + 1) < 99 * all.size()) ++first;
+    EXPECT_NEAR(metres.p99, all[first], 1e-6 * all[first]) << name_of(verdict);
+    EXPECT_NEAR(metres.most, all.back(), 1e-6 * all.back()) << name_of(verdict);
+  }
+}
+
+TEST(ErrorLook, MetresAreThoseOfTheHits) {
+  expect_metres("naive", coarse_naive(), {Verdict::late, Verdict::lost});
+  MarchSettings early;
+  early.relaxed.tolerance = 0.02;
+  expect_metres("relaxed", early, {Verdict::early});
 }
 
 // Under the rim of a bowl, from outside.
@@ -430,7 +623,7 @@ TEST(Picture, PlinthStandsBelowTheBorder) {
 }
 
 TEST(Picture, UnknownLookErrorListsTheKnownOnes) {
-  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error})
+  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::cost, Look::error})
     EXPECT_EQ(find_look(name_of(look)), look);
   EXPECT_THROW(find_look("pretty"), Error);
 }
