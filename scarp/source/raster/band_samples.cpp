@@ -222,15 +222,6 @@ bool hides_some(GDALRasterBand& mask, const RasterWindow& window, GdalSession& s
   return hides;
 }
 
-bool all_holes(const BandSamples& read) {
-  return std::visit(
-      [&](const auto& samples) {
-        return std::all_of(samples.begin(), samples.end(),
-                           [&](auto s) { return s != s || (read.nodata && s == *read.nodata); });
-      },
-      read.samples);
-}
-
 template <class T>
 bool holds(double value) {
   return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
@@ -238,6 +229,44 @@ bool holds(double value) {
 }
 
 }  // namespace
+
+SampleVector empty_samples(GDALRasterBand& band) {
+  const GDALDataType type = band.GetRasterDataType();
+  const std::string_view name = GDALGetDataTypeName(type);
+  if (GDALDataTypeIsComplex(type))
+    throw Error(fmt::format("samples are complex numbers ({}) (convert them with gdal_translate -ot Float32)", name));
+  if (has_own_mask(band)) return std::vector<float>();
+  if (type == GDT_Int16 || is_signed_byte(band) || name == "Int8") return std::vector<std::int16_t>();
+  if (type == GDT_UInt16 || type == GDT_Byte) return std::vector<std::uint16_t>();
+  return std::vector<float>();
+}
+
+std::optional<double> nodata_in_memory(std::optional<double> nodata, const SampleVector& samples) {
+  if (!nodata || std::isnan(*nodata)) return {};
+  return std::visit(
+      [&]<class T>(const std::vector<T>&) -> std::optional<double> {
+        if constexpr (std::is_floating_point_v<T>) {
+          if (!float_can_hold(*nodata)) return {};
+          return static_cast<double>(static_cast<float>(*nodata));
+        } else {
+          return holds<T>(*nodata) ? nodata : std::nullopt;
+        }
+      },
+      samples);
+}
+
+void refuse_all_nodata(const Raster& raster, const RasterWindow& window) {
+  const bool holes_alone = std::visit(
+      [&](const auto& samples) {
+        return std::all_of(samples.begin(), samples.end(),
+                           [&](auto s) { return s != s || (raster.nodata && s == *raster.nodata); });
+      },
+      raster.samples);
+  if (holes_alone) {
+    throw Error(fmt::format("all {} x {} samples are nodata{} (choose another --window or --nodata)", window.cols,
+                            window.rows, raster.nodata ? fmt::format(" ({})", *raster.nodata) : ""));
+  }
+}
 
 bool is_signed_byte(GDALRasterBand& band) {
   const char* pixel_type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
@@ -280,10 +309,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
                       const std::optional<Decimation>& decimation, GdalSession& session, const Progress& progress) {
   const GDALDataType type = band.GetRasterDataType();
   const std::string_view type_name = GDALGetDataTypeName(type);
-  if (GDALDataTypeIsComplex(type)) {
-    throw Error(
-        fmt::format("samples are complex numbers ({}) (convert them with gdal_translate -ot Float32)", type_name));
-  }
+  empty_samples(band);  // rejects complex ones
   const GdalCacheLimit cache;
   const ReadingPlan plan = plan_reading(band, window, decimation, !nodata);
   BandSamples read;
@@ -333,13 +359,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
               : fmt::format("{} samples converted to float32, rounded by at most {:.3g}", type_name, found.rounding));
   }
   // Float holes whose mark does not fit in float32 have become NaN.
-  if (std::holds_alternative<std::vector<float>>(read.samples) && read.nodata) {
-    if (float_can_hold(*read.nodata)) {
-      read.nodata = static_cast<double>(static_cast<float>(*read.nodata));
-    } else {
-      read.nodata.reset();
-    }
-  }
+  read.nodata = nodata_in_memory(read.nodata, read.samples);
   if (found.hidden > 0)
     read.notes.push_back(fmt::format("{} samples are holes by the file's {}", found.hidden,
                                      band.GetMaskFlags() & GMF_ALPHA ? "alpha band" : "mask"));
@@ -357,10 +377,6 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
         fmt::format("{} samples {} are taken as holes: no heights are beyond {:g} (--nodata=nan keeps "
                     "them)",
                     found.beyond, value, kBeyondHeights));
-  }
-  if (all_holes(read)) {
-    throw Error(fmt::format("all {} x {} samples are nodata{} (choose another --window or --nodata)", window.cols,
-                            window.rows, read.nodata ? fmt::format(" ({})", *read.nodata) : ""));
   }
   return read;
 }

@@ -24,14 +24,18 @@
 
 #include "scarp/base/progress.h"
 #include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster/raster.h"
 #include "scarp/source/raster/raster_options.h"
 #include "scarp/source/raster/reading_plan.h"
 
 namespace scarp {
 
+/// Samples in memory, as in Raster.
+using SampleVector = std::variant<std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<float>>;
+
 /// Result of read_band().
 struct BandSamples {
-  std::variant<std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<float>> samples;
+  SampleVector samples;
   int cols = 0;
   int rows = 0;
   SampleSpacing across, down;  ///< of the samples, in columns and rows of the window
@@ -40,10 +44,20 @@ struct BandSamples {
 };
 
 /// Reads a window, which must lie inside the band; rows as stored. `nodata` overrides the band's own. With `decimation`
-/// a large window is reduced. Throws Error without the file's name: unreadable, complex, infinite or all nodata, too
-/// large for the free memory.
+/// a large window is reduced. Throws Error without the file's name: unreadable, complex, infinite, too large for the
+/// free memory.
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
                       const std::optional<Decimation>& decimation, GdalSession& session, const Progress& progress);
+
+/// Returns an empty vector of the type that samples of the band have in memory, masked ones if it has a mask. Throws
+/// Error without the file's name for complex samples.
+SampleVector empty_samples(GDALRasterBand& band);
+
+/// Returns the value that marks holes in samples of this type; nullopt if none equals `nodata`, or only NaN marks them.
+std::optional<double> nodata_in_memory(std::optional<double> nodata, const SampleVector& samples);
+
+/// Throws Error if all samples of `raster`, read from `window`, are nodata.
+void refuse_all_nodata(const Raster& raster, const RasterWindow& window);
 
 /// Returns whether the samples are signed bytes, which GDAL before 3.7 reports only as metadata of Byte.
 bool is_signed_byte(GDALRasterBand& band);

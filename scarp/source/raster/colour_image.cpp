@@ -18,6 +18,7 @@
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster/band_pieces.h"
 #include "scarp/source/raster/gdal_dataset.h"
+#include "scarp/source/raster/gdal_raster.h"
 #include "scarp/source/raster/raster_name.h"
 
 namespace scarp {

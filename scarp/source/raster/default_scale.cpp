@@ -28,13 +28,15 @@ double range_of(const Raster& raster) {
 
 }  // namespace
 
+bool depends_on_samples(const HeightsStated& stated) { return stated.picture && stated.greatest && !stated.scaled; }
+
 std::string settle_default_scale(Raster& raster, const HeightsStated& stated) {
   const Georeference& geo = raster.georeference;
   if (geo.present || stated.scaled) return {};
   const double longer = std::max((raster.cols - 1) * geo.cell_x_m, (raster.rows - 1) * geo.cell_y_m),
                relief = range_of(raster) * std::abs(raster.scale);
   if (!(relief > longer)) return {};
-  if (stated.picture && stated.greatest) {
+  if (depends_on_samples(stated)) {
     const double high = kPictureRelief * stated.longer_side_m;
     raster.scale = high / *stated.greatest;
     return fmt::format(

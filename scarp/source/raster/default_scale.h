@@ -24,6 +24,9 @@ struct HeightsStated {
   double longer_side_m = 0;          ///< of the whole file; the raster may be a window of it
 };
 
+/// Returns whether settle_default_scale() may change the scale of a raster without georeference.
+bool depends_on_samples(const HeightsStated& stated);
+
 /// For a raster without georeference or scale whose relief exceeds its longer side: sets the scale for a picture with
 /// unsigned samples, otherwise leaves the raster unchanged. Returns a note in both cases, or an empty text if nothing
 /// is out of proportion.

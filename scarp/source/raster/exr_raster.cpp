@@ -21,7 +21,7 @@
 #include "scarp/base/error.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster/file_check.h"
-#include "scarp/source/raster/gdal_dataset.h"
+#include "scarp/source/raster/opened_dataset.h"
 #include "scarp/source/raster/raster_name.h"
 #include "scarp/source/raster/raw_band.h"
 
@@ -177,20 +177,18 @@ std::unique_ptr<ExrDataset> open_exr(const std::string& path, const std::string&
 
 }  // namespace
 
-Raster read_exr(const std::string& path, const RasterOptions& options, const Progress& progress) {
-  GdalSession session;
-  return read_named(path, [&] {
-    file_bytes(path);
-    check_file(path);
-    const std::unique_ptr<ExrDataset> dataset = open_exr(path, options.channel);
-    Raster raster = read_dataset(*dataset, options, session, progress);
-    raster.file_type = dataset->type_name();
-    if (options.channel.empty() && dataset->has_several_channels())
-      raster.notes.push_back(fmt::format("reads channel {} of {} (choose another with --channel)", dataset->channel(),
-                                         dataset->channel_names()));
-    if (dataset->parts() > 1) raster.notes.push_back(fmt::format("reads the first of {} parts", dataset->parts()));
-    return raster;
-  });
+OpenedDataset open_exr_raster(const std::string& path, const RasterOptions& options) {
+  file_bytes(path);
+  check_file(path);
+  std::unique_ptr<ExrDataset> dataset = open_exr(path, options.channel);
+  OpenedDataset opened;
+  opened.file_type = dataset->type_name();
+  if (options.channel.empty() && dataset->has_several_channels())
+    opened.notes.push_back(fmt::format("reads channel {} of {} (choose another with --channel)", dataset->channel(),
+                                       dataset->channel_names()));
+  if (dataset->parts() > 1) opened.notes.push_back(fmt::format("reads the first of {} parts", dataset->parts()));
+  opened.dataset.reset(dataset.release());
+  return opened;
 }
 
 ExrSamples read_exr_channel(const std::string& path, const std::string& channel) {
@@ -206,7 +204,6 @@ ExrSamples read_exr_channel(const std::string& path, const std::string& channel)
     if (dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, samples.width, samples.height, samples.values.data(),
                                             samples.width, samples.height, GDT_Float32, 0, 0, nullptr) != CE_None)
       throw Error(fmt::format("channel '{}' cannot be read: {}", channel, CPLGetLastErrorMsg()));
-    return Raster();
   });
   return samples;
 }

@@ -5,25 +5,25 @@
 #include <string>
 #include <vector>
 
-#include "scarp/base/progress.h"
-#include "scarp/source/raster/raster.h"
 #include "scarp/source/raster/raster_options.h"
 
 namespace scarp {
 
-/// Reads the channel options.channel of the first part, in scan lines or tiles (finest level only). Without a name, it
-/// reads the only channel, else Y, else R, and adds a note. The samples are those of the data window. EXR has no
-/// georeference: options.bounds and options.crs provide it. Throws as read_gdal_raster() does, and for a missing
-/// channel, a subsampled channel, a deep image, or a build without OpenEXR.
-Raster read_exr(const std::string& path, const RasterOptions& options, const Progress& progress = {});
+struct OpenedDataset;
+
+/// Opens the channel options.channel of the first part, in scan lines or tiles (finest level only). Without a name, it
+/// opens the only channel, else Y, else R, and adds a note. The samples are those of the data window. EXR has no
+/// georeference: options.bounds and options.crs provide it. Throws Error without the file's name if it cannot be
+/// opened, and for a missing channel, a subsampled channel, a deep image, or a build without OpenEXR.
+OpenedDataset open_exr_raster(const std::string& path, const RasterOptions& options);
 
 /// One channel of a picture, row by row from the top.
 struct ExrSamples {
   int width = 0, height = 0;
   std::vector<float> values;
 };
-/// Reads a channel of the first part unchanged, including infinities and NaN. Throws Error naming the file as
-/// read_exr() does.
+/// Reads a channel of the first part unchanged, including infinities and NaN. Throws as open_exr_raster() does, with
+/// the file's name.
 ExrSamples read_exr_channel(const std::string& path, const std::string& channel);
 
 }  // namespace scarp

@@ -4,19 +4,20 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/raster/exr_raster.h"
+#include "scarp/source/raster/opened_dataset.h"
 
 namespace scarp {
 
 namespace {
 
-Error no_exr(const std::string& path) {
-  return Error(fmt::format(
-      "{}: this build of Scarp does not read EXR (build with -D SCARP_OPENEXR=ON, or convert the image)", path));
-}
+constexpr const char* kNoExr =
+    "this build of Scarp does not read EXR (build with -D SCARP_OPENEXR=ON, or convert the image)";
 
 }  // namespace
 
-Raster read_exr(const std::string& path, const RasterOptions&, const Progress&) { throw no_exr(path); }
-ExrSamples read_exr_channel(const std::string& path, const std::string&) { throw no_exr(path); }
+OpenedDataset open_exr_raster(const std::string&, const RasterOptions&) { throw Error(kNoExr); }
+ExrSamples read_exr_channel(const std::string& path, const std::string&) {
+  throw Error(fmt::format("{}: {}", path, kNoExr));
+}
 
 }  // namespace scarp

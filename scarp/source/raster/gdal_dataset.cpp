@@ -20,7 +20,6 @@
 namespace scarp {
 namespace {
 
-constexpr std::size_t kWarningsWorthANote = 3;
 constexpr int kSubdatasetsListed = 6;
 
 // Rejects a container without bands of its own (netCDF, HDF5), listing its contents.
@@ -94,7 +93,7 @@ void find_heights(GDALRasterBand& band, const RasterPlace& place, const RasterOp
   }
 }
 
-// Raster::scale is positive, so a negative scale is applied to the samples here.
+// Replaces a negative scale by 1, because Raster::scale is positive, and applies it to the samples.
 void apply_negative_scale(Raster& raster) {
   std::visit(
       [&](const auto& samples) {
@@ -233,44 +232,102 @@ void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_
   options.height_range.reset();
 }
 
-Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession& session, const Progress& progress) {
-  RasterOptions options = given;
+// A band whose position and heights are known: everything but its samples.
+struct DatasetReader::Band {
+  RasterOptions options;
   std::unique_ptr<DecodedDataset> decoded;
-  if (options.encoding != HeightEncoding::none) {
-    if (options.band != 0) throw Error("--encoding reads three bands at once (omit --band)");
-    decoded = std::make_unique<DecodedDataset>(stored, options.encoding);
-  }
-  GDALDataset& dataset = decoded ? *decoded : stored;
-  GDALRasterBand& band = *dataset.GetRasterBand(height_band(dataset, options.band));
-  settle_height_range(options, band.GetRasterDataType(), is_signed_byte(band));
-  const RasterWindow window = choose_window(dataset, options.window);
-  Raster raster;
-  raster.files = files_of(stored);
-  raster.file_type = decoded ? std::string(name_of(options.encoding)) : GDALGetDataTypeName(band.GetRasterDataType());
+  GDALDataset* dataset = nullptr;
+  GDALRasterBand* band = nullptr;
+  RasterWindow window;
+  RasterPlace place;
+  Raster raster;                   // without samples
+  std::optional<double> greatest;  // largest value of an integer type
+  HeightsStated heights;
 
-  // Errors that do not require reading samples come first.
-  RasterPlace place = find_place(dataset, window, options);
-  raster.georeference = place.georeference;
-  find_heights(band, place, options, raster);
-  BandSamples read = read_band(band, window, options.nodata, options.decimation, session, progress);
+  // The window of the band that holds a part of the raster: before the flips.
+  RasterWindow stored(const RasterWindow& part) const {
+    return {window.col + (place.flip_cols ? window.cols - part.col - part.cols : part.col),
+            window.row + (place.flip_rows ? window.rows - part.row - part.rows : part.row), part.cols, part.rows};
+  }
+};
+
+DatasetReader::DatasetReader(GDALDataset& stored, const RasterOptions& given) : band_(std::make_unique<Band>()) {
+  Band& in = *band_;
+  in.options = given;
+  if (given.encoding != HeightEncoding::none) {
+    if (given.band != 0) throw Error("--encoding reads three bands at once (omit --band)");
+    in.decoded = std::make_unique<DecodedDataset>(stored, given.encoding);
+  }
+  in.dataset = in.decoded ? in.decoded.get() : &stored;
+  GDALRasterBand& band = *in.dataset->GetRasterBand(height_band(*in.dataset, given.band));
+  in.band = &band;
+  const GDALDataType type = band.GetRasterDataType();
+  const bool with_sign = has_sign(type, is_signed_byte(band));
+  settle_height_range(in.options, type, is_signed_byte(band));
+  in.window = choose_window(*in.dataset, given.window);
+  Raster& raster = in.raster;
+  raster.cols = in.window.cols;
+  raster.rows = in.window.rows;
+  raster.files = files_of(stored);
+  raster.file_type = in.decoded ? std::string(name_of(given.encoding)) : GDALGetDataTypeName(type);
+  in.place = find_place(*in.dataset, in.window, in.options);
+  raster.georeference = in.place.georeference;
+  find_heights(band, in.place, in.options, raster);
+  if (!GDALDataTypeIsFloating(type)) in.greatest = greatest_integer(type, with_sign);
+  in.heights.picture = is_picture_format(stored);
+  in.heights.scaled = in.options.scale || in.options.offset || !in.options.unit.empty() || raster.scale != 1 ||
+                      raster.offset != 0 || !raster.vertical_unit.empty();
+  if (!with_sign) in.heights.greatest = in.greatest;
+  in.heights.longer_side_m = std::max((in.dataset->GetRasterXSize() - 1) * raster.georeference.cell_x_m,
+                                      (in.dataset->GetRasterYSize() - 1) * raster.georeference.cell_y_m);
+}
+
+DatasetReader::~DatasetReader() = default;
+DatasetReader::DatasetReader(DatasetReader&&) noexcept = default;
+DatasetReader& DatasetReader::operator=(DatasetReader&&) noexcept = default;
+
+DatasetHeader DatasetReader::header() const {
+  const Band& in = *band_;
+  const RasterOptions& options = in.options;
+  DatasetHeader header{in.raster};
+  Raster& raster = header.raster;
+  raster.samples = empty_samples(*in.band);
+  raster.nodata = nodata_in_memory(options.nodata ? options.nodata : nodata_of(*in.band), raster.samples);
+  header.scale_varies = !raster.georeference.present && depends_on_samples(in.heights);
+  if (!options.nodata && in.window.cols == in.dataset->GetRasterXSize() &&
+      in.window.rows == in.dataset->GetRasterYSize() && raster.scale > 0)
+    header.stated = stated_ends(*in.band);
+  if (raster.scale < 0) apply_negative_scale(raster);
+  raster.notes.insert(raster.notes.end(), in.place.notes.begin(), in.place.notes.end());
+  return header;
+}
+
+Raster DatasetReader::read(const std::optional<RasterWindow>& part, GdalSession& session,
+                           const Progress& progress) const {
+  const Band& in = *band_;
+  Raster raster = in.raster;
+  const RasterPlace& place = in.place;
+  const RasterWindow window = part ? in.stored(*part) : in.window;
+  BandSamples read =
+      read_band(*in.band, window, in.options.nodata, part ? std::nullopt : in.options.decimation, session, progress);
   raster.samples = std::move(read.samples);
   raster.cols = read.cols;
   raster.rows = read.rows;
-  if (place.flip_cols) read.across.first = window.cols - 1 - last_of(read.across, read.cols);
-  if (place.flip_rows) read.down.first = window.rows - 1 - last_of(read.down, read.rows);
-  respace(raster.georeference, read.across, read.down);
   raster.nodata = read.nodata;
-  const GDALDataType type = band.GetRasterDataType();
-  std::optional<double> greatest;
-  if (!GDALDataTypeIsFloating(type)) greatest = greatest_integer(type, has_sign(type, is_signed_byte(band)));
-  const bool scaled = options.scale || options.offset || !options.unit.empty() || raster.scale != 1 ||
-                      raster.offset != 0 || !raster.vertical_unit.empty();
-  const double longer_side = std::max((dataset.GetRasterXSize() - 1) * place.georeference.cell_x_m,
-                                      (dataset.GetRasterYSize() - 1) * place.georeference.cell_y_m);
-  const std::string proportion = settle_default_scale(
-      raster,
-      {is_picture_format(stored), scaled, has_sign(type, is_signed_byte(band)) ? std::nullopt : greatest, longer_side});
-  const std::vector<std::string> suspected = suspected_nodata(raster, greatest);
+  if (part) {
+    read.across.first = part->col;
+    read.down.first = part->row;
+  } else {
+    if (place.flip_cols) read.across.first = window.cols - 1 - last_of(read.across, read.cols);
+    if (place.flip_rows) read.down.first = window.rows - 1 - last_of(read.down, read.rows);
+  }
+  respace(raster.georeference, read.across, read.down);
+  std::string proportion;
+  if (!part) {
+    refuse_all_nodata(raster, window);
+    proportion = settle_default_scale(raster, in.heights);
+  }
+  const std::vector<std::string> suspected = suspected_nodata(raster, in.greatest);
   if (raster.scale < 0) apply_negative_scale(raster);
   flip(raster, place.flip_rows, place.flip_cols);
 
@@ -278,9 +335,6 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   raster.notes.insert(raster.notes.end(), suspected.begin(), suspected.end());
   raster.notes.insert(raster.notes.end(), place.notes.begin(), place.notes.end());
   if (!proportion.empty()) raster.notes.push_back(proportion);
-  const auto& warnings = session.warnings();
-  for (std::size_t i = 0; i < std::min(warnings.size(), kWarningsWorthANote); ++i)
-    raster.notes.push_back("GDAL: " + warnings[i]);
   return raster;
 }
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The two halves of reading, shared by all readers: opening a dataset by name, and converting it to a Raster.
+// Converts a dataset to a Raster, for all readers.
 #pragma once
 
 #include <gdal_priv.h>
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scarp/base/progress.h"
 #include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster/decimate.h"
 #include "scarp/source/raster/raster.h"
 #include "scarp/source/raster/raster_options.h"
 
@@ -20,13 +23,6 @@ struct StrictReading {
   GdalOption sizes{"RAW_CHECK_FILE_SIZE", "YES"};
   GdalOption jpeg{"GDAL_ERROR_ON_LIBJPEG_WARNING", "YES"};
 };
-
-/// Returns whether GDAL reads the dataset as an ESRI ASCII grid.
-bool is_ascii_grid(GDALDataset& dataset);
-
-/// Opens any raster that GDAL reads. ESRI ASCII grids get a type that suits all their samples. Requires a StrictReading
-/// on the stack. Throws Error without the file's name.
-GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session);
 
 /// Returns the files of the dataset, including those that a virtual raster names.
 std::vector<std::string> files_of(GDALDataset& dataset);
@@ -45,8 +41,37 @@ bool is_picture(GDALDataset& dataset);
 /// Returns whether the dataset is georeferenced.
 bool has_place(GDALDataset& dataset);
 
-/// Reads the band that the options name, or decodes colours if the options declare an encoding. Leaves `path` of the
-/// result empty. Throws Error without the file's name.
-Raster read_dataset(GDALDataset& dataset, const RasterOptions& options, GdalSession& session, const Progress& progress);
+/// The properties of a dataset that do not require reading samples.
+struct DatasetHeader {
+  /// As DatasetReader::read() would return it, without samples; the alternative of `samples` is their type in memory.
+  /// Notes are only those about the header.
+  Raster raster{};
+  SampleEnds stated{};        ///< extremes of the window, in samples, if the file states them
+  bool scale_varies = false;  ///< whether the reader may choose the scale by all samples (default_scale.h)
+};
+
+/// Reads one band of a dataset, in parts.
+class DatasetReader {
+ public:
+  /// Chooses the band that the options name, or decodes colours if the options declare an encoding, and finds its
+  /// position and heights without reading samples. `dataset` must outlive the reader. Throws Error without the file's
+  /// name.
+  DatasetReader(GDALDataset& dataset, const RasterOptions& options);
+  ~DatasetReader();
+  DatasetReader(DatasetReader&&) noexcept;
+  DatasetReader& operator=(DatasetReader&&) noexcept;
+
+  /// Leaves `path` of the raster empty. Throws Error without the file's name.
+  DatasetHeader header() const;
+
+  /// Reads all samples, or a `part` of those that are returned otherwise, from the north-west corner. Scale and lengths
+  /// of cells are the same for every part. Leaves `path` of the result empty. Throws Error without the file's name; a
+  /// part may be all nodata, and is never decimated.
+  Raster read(const std::optional<RasterWindow>& part, GdalSession& session, const Progress& progress) const;
+
+ private:
+  struct Band;
+  std::unique_ptr<Band> band_;
+};
 
 }  // namespace scarp

@@ -10,11 +10,8 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
-#include "scarp/source/gdal_errors.h"
 #include "scarp/source/incomplete_file.h"
 #include "scarp/source/raster/file_check.h"
-#include "scarp/source/raster/gdal_dataset.h"
-#include "scarp/source/raster/raster_name.h"
 #include "scarp/source/raster/text_samples.h"
 #include "scarp/source/raster/zip_archive.h"
 
@@ -95,6 +92,7 @@ bool is_ascii_grid(GDALDataset& dataset) {
 }
 
 GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session) {
+  if (path.empty()) throw Error("file name is empty (name a raster file)");
   check_file(path);
   const auto open = [&] {
     return GDALDatasetUniquePtr(
@@ -113,16 +111,6 @@ GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession
     }
   }
   return dataset;
-}
-
-Raster read_gdal_raster(const std::string& path, const RasterOptions& options, const Progress& progress) {
-  GdalSession session;
-  const StrictReading strict;
-  return read_named(path, [&] {
-    if (path.empty()) throw Error("file name is empty (name a raster file)");
-    const GDALDatasetUniquePtr dataset = open_gdal_raster(path, session);
-    return read_dataset(*dataset, options, session, progress);
-  });
 }
 
 }  // namespace scarp

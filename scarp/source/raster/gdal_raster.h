@@ -2,18 +2,20 @@
 // Rasters in any format that GDAL reads: GeoTIFF and COG, .hgt, USGS .dem, ESRI ASCII, PNG, netCDF, VRT, ...
 #pragma once
 
+#include <gdal_priv.h>
+
 #include <string>
 
-#include "scarp/base/progress.h"
-#include "scarp/source/raster/raster.h"
-#include "scarp/source/raster/raster_options.h"
+#include "scarp/source/gdal_errors.h"
 
 namespace scarp {
 
-/// Reads one band of the raster at `path` (a file, or any name that GDAL opens: /vsizip/..., NETCDF:"f.nc":var).
-/// Accepts rasters with one row or column. Throws Error, in one line with the path: missing, empty, truncated, not a
-/// raster, a Git LFS pointer, a photograph, several bands without a choice, rotated, infinite or all nodata, larger
-/// than the free memory. Throws Interrupted if `progress` stops it. Prints nothing.
-Raster read_gdal_raster(const std::string& path, const RasterOptions& options, const Progress& progress = {});
+/// Returns whether GDAL reads the dataset as an ESRI ASCII grid.
+bool is_ascii_grid(GDALDataset& dataset);
+
+/// Opens the raster at `path` (a file, or any name that GDAL opens: /vsizip/..., NETCDF:"f.nc":var). ESRI ASCII grids
+/// get a type that suits all their samples. Requires a StrictReading on the stack. Throws Error without the file's
+/// name: missing, empty, truncated, not a raster, a Git LFS pointer.
+GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session);
 
 }  // namespace scarp

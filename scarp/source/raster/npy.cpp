@@ -18,8 +18,6 @@
 #include "scarp/source/raster/band_pieces.h"
 #include "scarp/source/raster/band_samples.h"
 #include "scarp/source/raster/file_check.h"
-#include "scarp/source/raster/gdal_dataset.h"
-#include "scarp/source/raster/raster_name.h"
 #include "scarp/source/raster/raw_band.h"
 #include "scarp/source/raster/vsi_file.h"
 #include "scarp/source/raster/zip_archive.h"
@@ -173,8 +171,7 @@ GDALDatasetUniquePtr open_in_memory(GDALDataset& stored, const NpyHeader& header
   return dataset;
 }
 
-Raster read_array(const std::string& file, const RasterOptions& options, GdalSession& session,
-                  const Progress& progress) {
+OpenedDataset open_array(const std::string& file, GdalSession& session) {
   const std::int64_t bytes = file_bytes(file);
   const NpyHeader header = read_header(file, session);
   const auto shape = raster_shape(header);
@@ -196,39 +193,33 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
                             shape_text(header), header.bytes, needed, bytes, kFetchAgain));
   }
 
-  std::vector<std::uint8_t> whole;
+  OpenedDataset opened;
   const int file_cols = static_cast<int>(header.fortran_order ? rows : cols),
             file_rows = static_cast<int>(header.fortran_order ? cols : rows);
   // In memory, an array in Fortran order equals its transpose in C order.
-  GDALDatasetUniquePtr dataset =
+  opened.dataset =
       open_raw_band({file, file_cols, file_rows, type, header.bytes, header.big_endian, header.data_begin}, session);
-  if (header.fortran_order || is_half(header)) dataset = open_in_memory(*dataset, header, whole, session);
-  Raster raster = read_dataset(*dataset, options, session, progress);
+  if (header.fortran_order || is_half(header))
+    opened.dataset = open_in_memory(*opened.dataset, header, opened.memory, session);
   if (is_half(header)) {
-    raster.file_type = "Float16";
-    raster.notes.push_back("Float16 samples converted to float32 without rounding");
+    opened.file_type = "Float16";
+    opened.notes.push_back("Float16 samples converted to float32 without rounding");
   }
   if (header.shape.size() == 3)
-    raster.notes.push_back(fmt::format("array of shape {} read as {} x {}", shape_text(header), rows, cols));
-  return raster;
+    opened.notes.push_back(fmt::format("array of shape {} read as {} x {}", shape_text(header), rows, cols));
+  return opened;
 }
 
 }  // namespace
 
 bool is_npy_path(const std::string& path) { return extension_of(path) == ".npy" || extension_of(path) == ".npz"; }
 
-Raster read_npy(const std::string& path, const RasterOptions& options, const Progress& progress) {
-  GdalSession session;
-  return read_named(path, [&] {
-    file_bytes(path);
-    check_file(path);
-    const bool archive = extension_of(path) == ".npz";
-    if (!archive && !options.key.empty()) throw Error("--key applies to .npz archives only (omit it)");
-    const std::string file = archive ? choose_member(path, options.key, session) : full_path(path);
-    RasterOptions of_array = options;
-    of_array.key.clear();
-    return read_array(file, of_array, session, progress);
-  });
+OpenedDataset open_npy(const std::string& path, const RasterOptions& options, GdalSession& session) {
+  file_bytes(path);
+  check_file(path);
+  const bool archive = extension_of(path) == ".npz";
+  if (!archive && !options.key.empty()) throw Error("--key applies to .npz archives only (omit it)");
+  return open_array(archive ? choose_member(path, options.key, session) : full_path(path), session);
 }
 
 }  // namespace scarp

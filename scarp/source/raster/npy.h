@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "scarp/base/progress.h"
-#include "scarp/source/raster/raster.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster/opened_dataset.h"
 #include "scarp/source/raster/raster_options.h"
 
 namespace scarp {
@@ -16,9 +16,10 @@ namespace scarp {
 /// Returns whether the name ends in .npy or .npz, ignoring case.
 bool is_npy_path(const std::string& path);
 
-/// Reads a two-dimensional array (or three with a leading or trailing 1); from a .npz, the array that options.key
-/// names, or the only one. Arrays have no georeference: options.bounds and options.crs provide it. Throws as
-/// read_gdal_raster() does, and also for other kinds and shapes, and for files shorter than their header requires.
-Raster read_npy(const std::string& path, const RasterOptions& options, const Progress& progress = {});
+/// Opens a two-dimensional array (or three with a leading or trailing 1); from a .npz, the array that options.key
+/// names, or the only one. Arrays have no georeference: options.bounds and options.crs provide it. Arrays in Fortran
+/// order and of halves are read into memory. Throws Error without the file's name if it cannot be opened, for other
+/// kinds and shapes, and for files shorter than their header requires.
+OpenedDataset open_npy(const std::string& path, const RasterOptions& options, GdalSession& session);
 
 }  // namespace scarp

@@ -8,18 +8,14 @@
 #include <string>
 
 #include "scarp/base/error.h"
-#include "scarp/source/raster/raster.h"
 
 namespace scarp {
 
-/// Returns the result of read() with its `path` set. Rethrows its Errors prefixed with the path, and Interrupted
-/// unchanged.
+/// Returns the result of read(). Rethrows its Errors prefixed with the path, and Interrupted unchanged.
 template <class Read>
-Raster read_named(const std::string& path, Read&& read) {
+auto read_named(const std::string& path, Read&& read) {
   try {
-    Raster raster = read();
-    raster.path = path;
-    return raster;
+    return read();
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {

@@ -4,10 +4,7 @@
 #include <fmt/format.h>
 
 #include "scarp/base/error.h"
-#include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster/file_check.h"
-#include "scarp/source/raster/gdal_dataset.h"
-#include "scarp/source/raster/raster_name.h"
 #include "scarp/source/raster/raw_band.h"
 
 namespace scarp {
@@ -29,21 +26,18 @@ std::int64_t bytes_left(const RawFormat& format, std::int64_t bytes) {
 
 }  // namespace
 
-Raster read_raw(const std::string& path, const RasterOptions& options, const Progress& progress) {
-  GdalSession session;
-  return read_named(path, [&] {
-    const RawFormat& format = options.raw.value();
-    const std::int64_t bytes = file_bytes(path);
-    check_file(path);
-    const std::int64_t left = bytes_left(format, bytes);
-    const GDALDatasetUniquePtr dataset =
-        open_raw_band({full_path(path), format.cols, format.rows, raw_sample_type(format.kind, format.bytes).value(),
-                       format.bytes, format.big_endian, format.offset},
-                      session);
-    Raster raster = read_dataset(*dataset, options, session, progress);
-    if (left > 0) raster.notes.push_back(fmt::format("ignored {} bytes after the samples", left));
-    return raster;
-  });
+OpenedDataset open_raw(const std::string& path, const RasterOptions& options, const GdalSession& session) {
+  const RawFormat& format = options.raw.value();
+  const std::int64_t bytes = file_bytes(path);
+  check_file(path);
+  const std::int64_t left = bytes_left(format, bytes);
+  OpenedDataset opened;
+  opened.dataset =
+      open_raw_band({full_path(path), format.cols, format.rows, raw_sample_type(format.kind, format.bytes).value(),
+                     format.bytes, format.big_endian, format.offset},
+                    session);
+  if (left > 0) opened.notes.push_back(fmt::format("ignored {} bytes after the samples", left));
+  return opened;
 }
 
 }  // namespace scarp

@@ -4,15 +4,15 @@
 
 #include <string>
 
-#include "scarp/base/progress.h"
-#include "scarp/source/raster/raster.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster/opened_dataset.h"
 #include "scarp/source/raster/raster_options.h"
 
 namespace scarp {
 
-/// Reads the file as options.raw (which must be set) specifies. Raw files have no georeference: options.bounds and
-/// options.crs provide it. Throws as read_gdal_raster() does, and if the file's length does not match the samples; if
-/// an offset is given, it ignores bytes after the samples and adds a note.
-Raster read_raw(const std::string& path, const RasterOptions& options, const Progress& progress = {});
+/// Opens the file as options.raw (which must be set) specifies. Raw files have no georeference: options.bounds and
+/// options.crs provide it. Throws Error without the file's name if it cannot be opened, and if its length does not
+/// match the samples; if an offset is given, it ignores bytes after the samples and adds a note.
+OpenedDataset open_raw(const std::string& path, const RasterOptions& options, const GdalSession& session);
 
 }  // namespace scarp

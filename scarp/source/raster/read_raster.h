@@ -11,9 +11,12 @@
 
 namespace scarp {
 
-/// Reads a raster: with read_raw() if options.raw is set, else with read_npy() for .npy and .npz, read_exr() for .exr,
-/// read_tiles() for a folder, and read_gdal_raster() for all other files. Throws Error as these functions do, and if an
-/// option does not apply to the file.
+/// Reads one band of the raster at `path`: headerless samples if options.raw is set, a NumPy array if the name ends in
+/// .npy or .npz, an OpenEXR image if it ends in .exr, a mosaic if it is a folder (read_tiles()), and otherwise a file
+/// or any other name that GDAL opens: /vsizip/..., NETCDF:"f.nc":var. Accepts rasters with one row or column. Throws
+/// Error, in one line with the path: missing, empty, truncated, not a raster, a Git LFS pointer, a photograph, several
+/// bands without a choice, rotated, infinite or all nodata, larger than the free memory, an option that does not apply
+/// to the file. Throws Interrupted if `progress` stops it. Prints nothing.
 Raster read_raster(const std::string& path, const RasterOptions& options, const Progress& progress = {});
 
 /// Reads several files and folders as one mosaic, placed by their georeference. A folder contributes all rasters in it,

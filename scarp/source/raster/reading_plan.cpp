@@ -45,15 +45,14 @@ SampleSpacing spacing(double begin, double count, int out) {
   return {begin + (step - 1) / 2, step};
 }
 
-// The extremes that the file states for the whole band.
+}  // namespace
+
 SampleEnds stated_ends(GDALRasterBand& band) {
   const char *low = band.GetMetadataItem("STATISTICS_MINIMUM"), *high = band.GetMetadataItem("STATISTICS_MAXIMUM");
   if (!low || !high) return {};
   const SampleEnds ends{std::strtod(low, nullptr), std::strtod(high, nullptr)};
   return std::isfinite(ends.low) && std::isfinite(ends.high) && ends.low <= ends.high ? ends : SampleEnds{};
 }
-
-}  // namespace
 
 ReadingPlan plan_reading(GDALRasterBand& band, const RasterWindow& window, const std::optional<Decimation>& decimation,
                          bool own_nodata) {

@@ -30,6 +30,9 @@ struct ReadingPlan {
   std::string note;  ///< empty if everything is read
 };
 
+/// Returns the extremes that the file states for the whole band, in samples; empty if it does not.
+SampleEnds stated_ends(GDALRasterBand& band);
+
 /// Plans to read a window of a band. `own_nodata`: whether holes are those that the file states. Throws Error without
 /// the file's name if there are too many samples even to reduce them.
 ReadingPlan plan_reading(GDALRasterBand& band, const RasterWindow& window, const std::optional<Decimation>& decimation,

@@ -14,6 +14,7 @@
 #include "scarp/source/raster/band_samples.h"
 #include "scarp/source/raster/decoded_dataset.h"
 #include "scarp/source/raster/gdal_dataset.h"
+#include "scarp/source/raster/gdal_raster.h"
 #include "scarp/source/raster/raster_place.h"
 #include "scarp/source/raster/raw_band.h"
 #include "scarp/source/raster/tile_layout.h"
