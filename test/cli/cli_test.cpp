@@ -463,7 +463,8 @@ TEST_F(Cli, SamplesKeepTheTypeOfTheFile) {
       {"i16le", "int16", 2, 4 + kEdges}, {"u16le", "uint16", 2, 4 + kEdges}, {"f32le", "float32", 4, 6 + kEdges}};
   for (const auto& c : cases) {
     const std::string file = write("heights.raw", std::string(static_cast<std::size_t>(kSide * kSide * c.bytes), '\0'));
-    const auto result = run({"info", "--json", file, "--raw", fmt::format("{0}x{0}:{1}", kSide, c.raw)});
+    const auto result =
+        run({"info", "--json", "--statistics", file, "--raw", fmt::format("{0}x{0}:{1}", kSide, c.raw)});
     ASSERT_EQ(result.status, 0) << result.err;
     const auto info = nlohmann::json::parse(result.out);
     EXPECT_EQ(info.at("sample_type"), c.type);
@@ -478,7 +479,7 @@ TEST_F(Cli, TilesAndGapsFormOneField) {
                                                 "ncols 2\nnrows 3\nxllcorner 60\nyllcorner 0\ncellsize 10\n"
                                                 "NODATA_value -9999\n1 2\n2 3\n3 9\n");
   for (const Names& inputs : {Names{west, east}, {scratch_.path("")}}) {
-    Names arguments{"info", "--json"};
+    Names arguments{"info", "--json", "--statistics"};
     arguments.insert(arguments.end(), inputs.begin(), inputs.end());
     const auto info = run(arguments);
     EXPECT_EQ(info.status, 0) << info.err;
@@ -493,10 +494,31 @@ TEST_F(Cli, TilesAndGapsFormOneField) {
 
 TEST_F(Cli, ReadsRawSamplesAsDeclared) {
   const std::string file = write("heights.raw", std::string("head\x01\x00\x02\x00\x03\x00\x00\x01", 12));
-  const auto info = run({"info", "--json", file, "--raw", "2x2:u16le+4", "--scale", "0.5,100"});
+  const auto info = run({"info", "--json", "--statistics", file, "--raw", "2x2:u16le+4", "--scale", "0.5,100"});
   EXPECT_EQ(info.status, 0) << info.err;
   EXPECT_NE(info.out.find("\"min_m\": 100.5,"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("\"max_m\": 228.0,"), std::string::npos) << info.out;
+}
+
+TEST_F(Cli, InfoReadsSamplesOnlyForStatistics) {
+  // The last of four heights is infinite.
+  const std::string file = write("heights.raw", std::string(14, '\0') + "\x80\x7f");
+  const Names words{"info", file, "--raw", "2x2:f32le"};
+  const auto with = [&](const char* option) {
+    Names more = words;
+    more.emplace_back(option);
+    return run(more);
+  };
+  const auto text = run(words);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("samples not read (--statistics"), std::string::npos) << text.out;
+  const auto json = nlohmann::json::parse(with("--json").out);
+  EXPECT_EQ(json.at("cols"), 2);
+  EXPECT_EQ(json.at("statistics"), "none");
+  EXPECT_TRUE(json.at("max_m").is_null());
+  const auto refused = with("--statistics");
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.err.find("infinite"), std::string::npos) << refused.err;
 }
 
 TEST_F(Cli, PrintsHelpAndVersion) {

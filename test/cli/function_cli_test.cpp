@@ -152,7 +152,7 @@ TEST_F(Functions, CanBeSampledIntoAnElevationModel) {
   const std::string dem = out("ramp.tif");
   const auto result = test::run({"generate", "--function", ramp(), "--size", "33x17", "--cell", "10", "-o", dem});
   ASSERT_EQ(result.status, 0) << result.err;
-  const Json info = Json::parse(test::run({"info", dem, "--json"}).out);
+  const Json info = Json::parse(test::run({"info", dem, "--json", "--statistics"}).out);
   EXPECT_EQ(info["cols"], 33);
   EXPECT_EQ(info["rows"], 17);
   EXPECT_NEAR(info["min_m"].get<double>(), 7 - 0.5 * 160, 1e-9);

@@ -23,7 +23,7 @@
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_raster.h"
 #include "scarp/source/raster/map_extent.h"
-#include "scarp/source/raster/read_raster.h"
+#include "scarp/source/raster/opened_raster.h"
 
 namespace scarp::cli {
 namespace {
@@ -32,6 +32,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoOptions : InputOptions {
   bool json = false;
+  bool statistics = false;
 };
 
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -48,11 +49,38 @@ Json extent_of(const Georeference& geo, int cols, int rows) {
           {"edges_lonlat", json_of(extent.edges_lonlat)}};
 }
 
+// The alternatives of Raster::samples have the order of SampleType.
+SampleType sample_type_of(const Raster& raster) { return static_cast<SampleType>(raster.samples.index()); }
+
+// Adds properties of the samples.
+void add_statistics(Json& info, Raster raster) {
+  std::vector<std::string> notes = std::move(raster.notes);
+  const HeightField field = height_field_from(std::move(raster));
+  stop_if_interrupted();
+  const double samples = static_cast<double>(field.cols()) * field.rows();
+  const double sample_bytes = field.sample_type() == SampleType::float32 ? 4 : 2;
+  info["nodata_count"] = field.nodata_count();
+  info["nodata_share"] = static_cast<double>(field.nodata_count()) / samples;
+  info["min_sample"] = field.min_sample();
+  info["max_sample"] = field.max_sample();
+  info["min_m"] = field.min_height();
+  info["max_m"] = field.max_height();
+  info["slope_bound"] = slope_bound(field);
+  info["sample_type"] = name_of(field.sample_type());
+  info["bytes_per_sample"] = sample_bytes + static_cast<double>(MaxPyramid(field).bytes()) / samples;
+  if (const std::string note = no_ground_note(field); !note.empty()) notes.push_back(note);
+  info["notes"] = notes;
+}
+
 // All information in one structure, from which the text and the JSON are generated.
 Json describe(const InfoOptions& options) {
-  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
+  const Progress progress = terminal_progress("read");
+  OpenedRaster file(options.inputs, options.raster, progress);
+  std::optional<Raster> read;
+  if (options.statistics) read = file.read(progress);
   stop_if_interrupted();
-  const Georeference geo = raster.georeference;
+  const Raster& raster = read ? *read : file.header();
+  const Georeference& geo = raster.georeference;
   Json info;
   info["path"] = raster.path;
   info["kind"] = name_of(InputKind::terrain);
@@ -70,26 +98,55 @@ Json describe(const InfoOptions& options) {
   info["scale"] = raster.scale;
   info["offset"] = raster.offset;
   info["nodata"] = raster.nodata ? Json(*raster.nodata) : Json();
-  std::vector<std::string> notes = std::move(raster.notes);
-
-  const HeightField field = height_field_from(std::move(raster));
-  stop_if_interrupted();
-  const double samples = static_cast<double>(field.cols()) * field.rows();
-  const double sample_bytes = field.sample_type() == SampleType::float32 ? 4 : 2;
-  info["nodata_count"] = field.nodata_count();
-  info["nodata_share"] = static_cast<double>(field.nodata_count()) / samples;
-  info["min_sample"] = field.min_sample();
-  info["max_sample"] = field.max_sample();
-  info["min_m"] = field.min_height();
-  info["max_m"] = field.max_height();
-  info["width_m"] = field.width();
-  info["depth_m"] = field.depth();
-  info["slope_bound"] = slope_bound(field);
-  info["sample_type"] = name_of(field.sample_type());
-  info["bytes_per_sample"] = sample_bytes + static_cast<double>(MaxPyramid(field).bytes()) / samples;
-  if (const std::string note = no_ground_note(field); !note.empty()) notes.push_back(note);
-  info["notes"] = notes;
+  info["width_m"] = (raster.cols - 1) * geo.cell_x_m;
+  info["depth_m"] = (raster.rows - 1) * geo.cell_y_m;
+  info["statistics"] = read ? "samples" : file.stated().low <= file.stated().high ? "file" : "none";
+  // Without samples these are unknown, unless the file states them.
+  for (const char* key : {"nodata_count", "nodata_share", "min_sample", "max_sample", "min_m", "max_m", "slope_bound"})
+    info[key] = Json();
+  info["sample_type"] = name_of(sample_type_of(raster));
+  info["bytes_per_sample"] = Json();
+  info["notes"] = raster.notes;
+  if (read) {
+    add_statistics(info, std::move(*read));
+  } else if (const SampleEnds& stated = file.stated(); stated.low <= stated.high) {
+    info["min_sample"] = stated.low;
+    info["max_sample"] = stated.high;
+    info["min_m"] = stated.low * raster.scale + raster.offset;
+    info["max_m"] = stated.high * raster.scale + raster.offset;
+  }
   return info;
+}
+
+// The lines about the samples.
+template <class Line>
+void add_sample_lines(const Json& info, const Line& line) {
+  const auto number = [&](const char* key) { return info[key].get<double>(); };
+  const auto text = [&](const char* key) { return info[key].get<std::string>(); };
+  const bool read = info["statistics"] == "samples", stated = info["statistics"] == "file";
+  const std::string mark = info["nodata"].is_null() ? "NaN" : fmt::format("{}", number("nodata")),
+                    types = fmt::format("{} (in the file {})", text("sample_type"), text("file_type"));
+  if (!read) {
+    line("nodata", !info["nodata"].is_null()          ? "marked by " + mark
+                   : info["sample_type"] == "float32" ? "marked by NaN"
+                                                      : "no holes, unless by a mask");
+  } else if (info["nodata_count"].get<std::int64_t>() == 0) {
+    line("nodata", "no holes");
+  } else {
+    line("nodata", fmt::format("{} samples ({:.3g} %), marked by {}", info["nodata_count"].get<std::int64_t>(),
+                               100 * number("nodata_share"), mark));
+  }
+  if (read || stated)
+    line("heights", fmt::format("{:.6g} to {:.6g} m (samples {:.8g} to {:.8g}{})", number("min_m"), number("max_m"),
+                                number("min_sample"), number("max_sample"), stated ? ", as the file states" : ""));
+  if (read) {
+    line("slope bound",
+         fmt::format("{:.4g} ({:.1f} degrees)", number("slope_bound"), std::atan(number("slope_bound")) * kDegrees));
+    line("type", fmt::format("{}, {:.2f} bytes each with the pyramid", types, number("bytes_per_sample")));
+  } else {
+    line("type", types);
+    line("statistics", "samples not read (--statistics: heights, holes, slopes)");
+  }
 }
 
 std::string text_of(const Json& info) {
@@ -124,17 +181,7 @@ std::string text_of(const Json& info) {
   }
   line("units", fmt::format("{}; metres = sample x {:.10g} + {:.10g}",
                             text("vertical_unit", "not stated, metres assumed"), number("scale"), number("offset")));
-  line("nodata", info["nodata_count"].get<std::int64_t>() == 0
-                     ? "no holes"
-                     : fmt::format("{} samples ({:.3g} %), marked by {}", info["nodata_count"].get<std::int64_t>(),
-                                   100 * number("nodata_share"),
-                                   info["nodata"].is_null() ? "NaN" : fmt::format("{}", number("nodata"))));
-  line("heights", fmt::format("{:.6g} to {:.6g} m (samples {:.8g} to {:.8g})", number("min_m"), number("max_m"),
-                              number("min_sample"), number("max_sample")));
-  line("slope bound",
-       fmt::format("{:.4g} ({:.1f} degrees)", number("slope_bound"), std::atan(number("slope_bound")) * kDegrees));
-  line("type", fmt::format("{} (in the file {}), {:.2f} bytes each with the pyramid", text("sample_type", ""),
-                           text("file_type", ""), number("bytes_per_sample")));
+  add_sample_lines(info, line);
   for (const Json& note : info["notes"]) line("note", note.get<std::string>());
   return out;
 }
@@ -167,11 +214,17 @@ void add_info(Program& program) {
   const auto options = std::make_shared<InfoOptions>();
   add_raster_inputs(command, options->inputs, kEveryFile, false);
   add_json_option(command, options->json);
+  command.add(&options->statistics, {.names = "--statistics",
+                                     .help = "read all samples: heights, holes, slopes, notes about them",
+                                     .common = true,
+                                     .inputs = {kTerrain, "other inputs are always read completely",
+                                                "their terrain is described file by file"}});
   add_function_option(command, options->function, "side of the examined ground about (0, 0)");
   add_raster_options(command, options->raster);
   add_vox_options(command, options->vox);
   add_mesh_up_option(command, options->mesh);
   command.example("scarp info dem.tif");
+  command.example("scarp info dem.tif --statistics");
   command.runs([options, &command] { run(*options, command); });
 }
 

@@ -96,7 +96,7 @@ std::string of_holes(const Scene& scene) {
   const double share =
       static_cast<double>(field->nodata_count()) / (static_cast<double>(field->cols()) * field->rows());
   if (share < kNearlyAll) return {};
-  return fmt::format("{:.6g} % of the samples are holes (see 'scarp info', --nodata)", 100 * share);
+  return fmt::format("{:.6g} % of the samples are holes (see 'scarp info --statistics', --nodata)", 100 * share);
 }
 
 std::string of_steepness(const Scene& scene) {
@@ -105,8 +105,9 @@ std::string of_steepness(const Scene& scene) {
   const double relief = field->max_height() - field->min_height(), side = longer_side(*field);
   if (!(relief > kTooSteep * side)) return {};
   return fmt::format(
-      "heights span {:.6g} m ({:.6g} to {:.6g}) over {:.6g} m of ground (see 'scarp info'; --nodata if one of these "
-      "marks holes, --height-range or --scale for the heights, --bounds and --crs for the ground, --exaggeration)",
+      "heights span {:.6g} m ({:.6g} to {:.6g}) over {:.6g} m of ground (see 'scarp info --statistics'; --nodata if "
+      "one of these marks holes, --height-range or --scale for the heights, --bounds and --crs for the ground, "
+      "--exaggeration)",
       relief, field->min_height(), field->max_height(), side);
 }
 
