@@ -15,9 +15,8 @@ namespace {
 
 SightEnd rounded(const HeightField& field, SightEnd end, std::string_view name) {
   const double last_col = field.cols() - 1, last_row = field.rows() - 1;
-  constexpr auto kSteps = static_cast<double>(kSubcells);
-  end.col = std::round(end.col * kSteps) / kSteps;
-  end.row = std::round(end.row * kSteps) / kSteps;
+  end.col = rounded_end(end.col);
+  end.row = rounded_end(end.row);
   if (!(end.col >= 0 && end.row >= 0 && end.col <= last_col && end.row <= last_row))
     throw Error(fmt::format("{}: column {:.10g}, row {:.10g} is outside the raster (columns 0 to {}, rows 0 to {})",
                             name, end.col, end.row, last_col, last_row));
@@ -40,6 +39,11 @@ double height_of(const SightGround& heights, const SightEnd& end, std::string_vi
 }
 
 }  // namespace
+
+double rounded_end(double position) {
+  constexpr auto kSteps = static_cast<double>(kSubcells);
+  return std::round(position * kSteps) / kSteps;
+}
 
 SightLine::SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to,
                      const SightCurvature& curvature)

@@ -19,6 +19,9 @@ struct SightEnd {
   HeightDatum datum = HeightDatum::ground;  ///< reference of `height`
 };
 
+/// Returns the column or row of an end as SightLine rounds it.
+double rounded_end(double position);
+
 /// Two ends of a line, ready for queries: checked, rounded, with heights.
 class SightLine {
  public:

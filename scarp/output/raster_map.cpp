@@ -3,6 +3,7 @@
 
 #include <cpl_string.h>
 #include <fmt/format.h>
+#include <gdal_vrt.h>
 #include <ogr_spatialref.h>
 
 #include <algorithm>
@@ -26,9 +27,9 @@ GDALDataType type_of(const MapBand& band) {
 }
 
 // Wraps the samples, without a copy, as an in-memory dataset.
-GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path) {
+GDALDatasetUniquePtr samples_of(const RasterMap& map, int cols, int rows) {
   auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-  GDALDatasetUniquePtr dataset(driver->Create("", map.cols, map.rows, 0, GDT_Byte, nullptr));
+  GDALDatasetUniquePtr dataset(driver->Create("", cols, rows, 0, GDT_Byte, nullptr));
   for (const MapBand& band : map.bands) {
     const auto add = [&](const auto& samples) {
       char address[64] = {};
@@ -39,7 +40,31 @@ GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path) {
       dataset->AddBand(type_of(band), options.List());
     };
     std::visit(add, band.samples);
-    GDALRasterBand& to = *dataset->GetRasterBand(dataset->GetRasterCount());
+  }
+  return dataset;
+}
+
+// Surrounds the samples of a part by nodata, which takes no memory.
+GDALDatasetUniquePtr surrounded(const RasterMap& map) {
+  const MapPart& part = *map.part;
+  auto* driver = GetGDALDriverManager()->GetDriverByName("VRT");
+  GDALDatasetUniquePtr dataset(driver->Create("", map.cols, map.rows, 0, GDT_Byte, nullptr));
+  for (const MapBand& band : map.bands) dataset->AddBand(type_of(band), nullptr);
+  if (part.rows == 0) return dataset;
+  GDALDatasetUniquePtr samples = samples_of(map, part.cols, part.rows);
+  for (int b = 1; b <= dataset->GetRasterCount(); ++b)
+    VRTAddSimpleSource(static_cast<VRTSourcedRasterBandH>(GDALRasterBand::ToHandle(dataset->GetRasterBand(b))),
+                       GDALRasterBand::ToHandle(samples->GetRasterBand(b)), 0, 0, part.cols, part.rows, part.col,
+                       part.row, part.cols, part.rows, nullptr, VRT_NODATA_UNSET);
+  samples.release()->ReleaseRef();  // the sources hold references
+  return dataset;
+}
+
+GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path) {
+  GDALDatasetUniquePtr dataset = map.part ? surrounded(map) : samples_of(map, map.cols, map.rows);
+  for (int b = 1; b <= dataset->GetRasterCount(); ++b) {
+    const MapBand& band = map.bands[static_cast<std::size_t>(b - 1)];
+    GDALRasterBand& to = *dataset->GetRasterBand(b);
     to.SetDescription(band.name.c_str());
     if (!band.unit.empty()) to.SetUnitType(band.unit.c_str());
     if (band.nodata) to.SetNoDataValue(*band.nodata);
@@ -81,6 +106,10 @@ CPLStringList options_of(const RasterMap& map) {
     for (const char* option : {"TILED=YES", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
     options.SetNameValue("PREDICTOR", floats ? "3" : "2");
+    // Some other programs do not read files that omit tiles, so small maps are complete.
+    constexpr double kLargestComplete = 1 << 26;
+    if (map.part && static_cast<double>(map.cols) * map.rows > kLargestComplete)
+      options.SetNameValue("SPARSE_OK", "TRUE");
   } else if (map.driver == "COG") {
     for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
@@ -200,6 +229,9 @@ void write_raster_map(const std::string& path, const RasterMap& map, const Progr
   if (!driver) throw Error(fmt::format("{}: GDAL has no driver '{}'", path, map.driver));
   const GDALDatasetUniquePtr source = dataset_of(map, path);
   SideFiles beside(file.temporary_path(), path);
+  // GDAL copies bands of rows of this many bytes. Its default takes as much memory again as the rest of the program.
+  std::optional<CPLConfigOptionSetter> swath;
+  if (map.part) swath.emplace("GDAL_SWATH_SIZE", "2000000", true);
   bool stopped = false;
   const Progress watched = [&](double done) {
     stopped = progress && !progress(done);

@@ -32,10 +32,18 @@ struct MapBand {
   std::vector<MapClass> classes{};  ///< colour table of Byte bands; empty: none
 };
 
+/// A rectangle of pixels of a map, in columns and rows.
+struct MapPart {
+  int col = 0, row = 0, cols = 0, rows = 0;
+};
+
 /// A map, and the format to write it in.
 struct RasterMap {
   int cols = 0, rows = 0;
   std::vector<MapBand> bands;  ///< at least one
+  /// The pixels that the bands' samples hold, inside the map, if not all. All others are nodata, which the bands must
+  /// have. May have no rows.
+  std::optional<MapPart> part{};
   std::optional<MapPlace> place{};
   std::vector<std::pair<std::string, std::string>> metadata{};  ///< of the dataset
   std::string driver = "GTiff";                                 ///< GDAL's short name

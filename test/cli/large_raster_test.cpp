@@ -2,8 +2,10 @@
 // Pictures of rasters with more samples than they show.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "cli/program.h"
 #include "output/read_png.h"
@@ -49,6 +51,38 @@ TEST(LargeRaster, IsAveragedUnlessFullIsGiven) {
     }
   }
   EXPECT_NE(a.pixel(60, 60)[0], a.pixel(4, 4)[0]) << "blank";
+}
+
+// 200,000 x 200,000 samples, 74 GiB, of which a picture-sized part has hills.
+std::string country(const test::Scratch& scratch) {
+  std::string text = "ncols 800\nnrows 800\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+  for (int i = 0; i < 800 * 800; ++i) text += std::to_string(300 + (i % 800 / 20 + i / 16000) % 7 * 30) + ' ';
+  scratch.write("hills.asc", text);
+  return scratch.write("country.vrt", R"(<VRTDataset rasterXSize="200000" rasterYSize="200000">
+<SRS>EPSG:32632</SRS><GeoTransform>0, 10, 0, 6000000, 0, -10</GeoTransform>
+<VRTRasterBand dataType="Int16" band="1"><NoDataValue>-32768</NoDataValue>
+<SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
+<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="800" ySize="800"/>
+<DstRect xOff="100000" yOff="100000" xSize="800" ySize="800"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+}
+
+TEST(LargeRaster, OfACountryIsReadOnlyWhereAQuestionNeedsIt) {
+  const test::Scratch scratch;
+  const std::string dem = country(scratch), out = scratch.path("seen.tif");
+  const std::vector<std::string> calls[] = {
+      {"info", dem},
+      {"los", dem, "--from", "1004000,4996000,2", "--to", "1004500,4996500,2"},
+      {"profile", dem, "--from", "1004000,4996000,2", "--to", "1004500,4996500,2"},
+      {"viewshed", dem, "--observer", "1004000,4996000,2", "--max-distance", "3000", "-o", out},
+      {"viewshed", dem, "--observer", "1004000,4996000,2", "--max-distance", "3000", "--crop", "-o", out},
+      {"viewshed", dem, "--observer", "1004000,4996000,2", "--dry-run", "-o", out},
+      {"shadow", dem, "--sun", "135,20", "--dry-run", "-o", out}};
+  for (const std::vector<std::string>& call : calls) {
+    const auto result = test::run(call);
+    EXPECT_EQ(result.status, 0) << call.front() << ": " << result.err;
+    constexpr std::uint64_t kMost = 100 << 20;
+    EXPECT_LT(result.peak, kMost) << call.front();
+  }
 }
 
 }  // namespace

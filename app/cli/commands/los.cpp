@@ -6,12 +6,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
+#include "app/cli/options/map_part.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
 #include "app/cli/progress.h"
@@ -70,7 +72,7 @@ std::string csv_of(const MapInput& input, const PlaceTable& table, const std::ve
                ? fmt::format("{:.10g},{:.10g}", line.clearance, line.clearance_along * line.distance)
                : ",";
     if (const auto& block = line.obstruction) {
-      const dvec2 at = input.place_of(block->col, block->row);
+      const dvec2 point = point_along(answers[i].ends, block->along), at = input.place_of(point.x, point.y);
       out += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g}\n", at.x, at.y, block->height, block->along * line.distance);
     } else {
       out += ",,,,\n";
@@ -107,7 +109,8 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const std
       continue;
     }
     const Obstruction& block = *line.obstruction;
-    const Json at = point(block.col, block.row, block.height);
+    const dvec2 blocked = point_along(ends, block.along);
+    const Json at = point(blocked.x, blocked.y, block.height);
     properties["block"] = at;
     properties["block_at"] = block.along * line.distance;
     if (!parts) {
@@ -115,7 +118,7 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const std
       continue;
     }
     // The line itself above or below the obstruction: straight between the ends.
-    const Json middle = point(block.col, block.row, line.eye + block.along * (line.target - line.eye));
+    const Json middle = point(blocked.x, blocked.y, line.eye + block.along * (line.target - line.eye));
     properties["part"] = "visible";
     add(from, middle, properties);
     properties["part"] = "blocked";
@@ -127,6 +130,94 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const std
 bool is_json(const std::string& output) {
   const std::string extension = extension_of(output);
   return extension == ".geojson" || extension == ".json";
+}
+
+// Tests lines over the part of the raster that was read.
+class Tester {
+ public:
+  // `many`: whether the lines are so many that structures over the whole part pay off.
+  Tester(const MapInput& input, const PlaceTable& table, bool many)
+      : input_(input), table_(table), many_(many), bilinear_(input.bilinear_ground(input.field())) {
+    if (many && !bilinear_) maxima_.emplace(input.field());
+  }
+
+  // Not thread-safe, because messages convert coordinates.
+  void require_ground_at(std::size_t i, const SightEnds& ends) const {
+    named(i, [&] {
+      require_ground(input_, ends.from, "observer");
+      require_ground(input_, ends.to, "target");
+    });
+  }
+
+  // Thread-safe. `field` is that of MapInput::field_at() for the line.
+  void test(std::size_t i, const HeightField& field, Answer& answer) const {
+    const SightEnd from = in_part(input_, answer.ends.from), to = in_part(input_, answer.ends.to);
+    named(i, [&] {
+      if (!bilinear_) {
+        answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr);
+      } else if (many_) {
+        answer.line = bilinear_->line_of_sight(from, to);
+      } else {
+        answer.line = BilinearGround(field, *bilinear_).line_of_sight(from, to);
+      }
+    });
+  }
+
+ private:
+  template <class Work>
+  void named(std::size_t i, const Work& work) const {
+    try {
+      work();
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", table_.rows[i].line > 0 ? table_.where(i) : input_.path(), error.what()));
+    }
+  }
+
+  const MapInput& input_;
+  const PlaceTable& table_;
+  bool many_;
+  std::optional<BilinearGround> bilinear_;
+  std::optional<BlockMaxima> maxima_;
+};
+
+// Tests every line on the plane of its own observer.
+void test_one_by_one(MapInput& input, const PlaceTable& table, std::vector<Answer>& answers,
+                     std::span<const RasterWindow> parts) {
+  const Progress progress = terminal_progress("los");
+  std::optional<Tester> tester;
+  if (parts.empty()) tester.emplace(input, table, false);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!parts.empty()) {
+      input.read(parts[i], {});
+      tester.emplace(input, table, false);
+    }
+    tester->require_ground_at(i, answers[i].ends);
+    const auto& [from, to] = answers[i].ends;
+    const dvec2 cells = {input.field().settings().cell_x, input.field().settings().cell_y};
+    const double reach = std::hypot((to.col - from.col) * cells.x, (to.row - from.row) * cells.y);
+    tester->test(i, input.field_at(from.col, from.row, reach), answers[i]);
+    if (!progress(static_cast<double>(i + 1) / static_cast<double>(answers.size()))) throw Interrupted();
+  }
+}
+
+void test_lines(MapInput& input, const PlaceTable& table, std::vector<Answer>& answers) {
+  std::vector<RasterWindow> parts;
+  for (const Answer& one : answers) parts.push_back(part_of_line(input, one.ends.from, one.ends.to));
+  if (parts.empty()) return;
+  if (are_scattered(parts)) return test_one_by_one(input, table, answers, parts);
+  input.read(union_of(parts), terminal_progress("read"));
+  input.close();
+  if (is_geographic(input.georeference())) return test_one_by_one(input, table, answers, {});
+  const Tester tester(input, table, true);
+  for (std::size_t i = 0; i < answers.size(); ++i) tester.require_ground_at(i, answers[i].ends);
+  constexpr std::int64_t kGrain = 64;
+  parallel_for(
+      static_cast<std::int64_t>(answers.size()), kGrain,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+          tester.test(i, input.field(), answers[i]);
+      },
+      terminal_progress("los"));
 }
 
 void run(LosOptions options, const Command& command) {
@@ -142,45 +233,9 @@ void run(LosOptions options, const Command& command) {
 
   std::vector<Answer> answers(table.rows.size());
   for (std::size_t i = 0; i < answers.size(); ++i) answers[i].ends = sight_ends(input, table, i, options.heights);
-  const SightCurvature curvature = input.curvature();
-  if (options.surface == "bilinear" && curvature.coefficient != 0)
+  if (options.surface == "bilinear" && input.curvature().coefficient != 0)
     throw Error("--surface bilinear: its rays are straight (add --cc 0)");
-  const std::optional<BilinearGround> bilinear = input.bilinear_ground(input.field());
-  const auto answer = [&](std::size_t i, const HeightField& field, const BlockMaxima* maxima) {
-    const auto& [from, to] = answers[i].ends;
-    try {
-      if (!bilinear) {
-        answers[i].line = line_of_sight(field, from, to, curvature, maxima);
-      } else if (maxima) {
-        answers[i].line = bilinear->line_of_sight(from, to);
-      } else {
-        answers[i].line = BilinearGround(field, *bilinear).line_of_sight(from, to);
-      }
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", table.rows[i].line > 0 ? table.where(i) : input.path(), error.what()));
-    }
-  };
-  const Progress progress = terminal_progress("los");
-  if (is_geographic(input.georeference())) {
-    // Each line is tested on the plane of its own observer.
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      const auto& [from, to] = answers[i].ends;
-      const double reach = std::hypot((to.col - from.col) * input.field().settings().cell_x,
-                                      (to.row - from.row) * input.field().settings().cell_y);
-      answer(i, input.field_at(from.col, from.row, reach), nullptr);
-      if (!progress(static_cast<double>(i + 1) / static_cast<double>(answers.size()))) throw Interrupted();
-    }
-  } else {
-    const BlockMaxima maxima(input.field());
-    constexpr std::int64_t kGrain = 64;
-    parallel_for(
-        static_cast<std::int64_t>(answers.size()), kGrain,
-        [&](std::int64_t begin, std::int64_t end) {
-          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            answer(i, input.field(), &maxima);
-        },
-        progress);
-  }
+  test_lines(input, table, answers);
   const std::string text =
       is_json(options.output) ? geojson_of(input, table, answers, options.parts) : csv_of(input, table, answers);
   if (options.output.empty()) {

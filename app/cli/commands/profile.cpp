@@ -14,8 +14,10 @@
 #include "app/cli/commands/profile_march.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
+#include "app/cli/options/map_part.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
+#include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
@@ -53,10 +55,10 @@ std::array<int, 2> size_of(const ProfileOptions& options, int height) {
   return {static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
-std::string csv_of(const MapInput& input, const std::vector<ProfilePoint>& points) {
+std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vector<ProfilePoint>& points) {
   std::string out = "distance,x,y,ground,drop,sight,visible\n";
   for (const ProfilePoint& p : points) {
-    const dvec2 at = input.place_of(p.col, p.row);
+    const dvec2 point = point_along(ends, p.along), at = input.place_of(point.x, point.y);
     out += fmt::format("{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:d}\n", p.distance, at.x, at.y,
                        std::isfinite(p.ground) ? fmt::format("{:.10g}", p.ground) : "", p.drop, p.sight, p.visible);
   }
@@ -64,15 +66,18 @@ std::string csv_of(const MapInput& input, const std::vector<ProfilePoint>& point
 }
 
 #ifdef SCARP_CAIRO
-void draw(const MapInput& input, const ProfileOptions& options, const SightLine& line,
+void draw(const MapInput& input, const ProfileOptions& options, const SightEnds& ends,
           const std::vector<ProfilePoint>& points, const LineOfSight& sight) {
   ProfileFigure figure;
   const auto [width, height] = size_of(options, kHeight);
   figure.width = width, figure.height = height;
   for (const ProfilePoint& p : points)
     figure.points.push_back({p.distance, p.ground, p.sight, p.visible, p.after_hole});
-  const dvec2 from = input.place_of(line.from().col, line.from().row),
-              to = input.place_of(line.to().col, line.to().row);
+  const auto place = [&](double along) {
+    const dvec2 point = point_along(ends, along);
+    return input.place_of(point.x, point.y);
+  };
+  const dvec2 from = place(0), to = place(1);
   figure.title = fmt::format("{:.10g}, {:.10g} to {:.10g}, {:.10g}: {}", from.x, from.y, to.x, to.y,
                              sight.visible ? "visible" : "blocked");
   figure.remark =
@@ -86,18 +91,25 @@ void draw(const MapInput& input, const ProfileOptions& options, const SightLine&
 }
 #endif
 
-// The typed line, and the field with the lengths of its cells at its start.
+// The typed line, its ends in the part that was read, and the field with the lengths of its cells at its start.
 struct ProfileLine {
-  SightEnds ends;
+  SightEnds ends, here;
   HeightField field;
 };
 
-ProfileLine line_of(MapInput& input, const PlaceTable& table, const SightHeights& heights) {
+// Reads the part of the raster that the line needs, or all of it: steps of marches depend on the whole pyramid.
+ProfileLine line_of(MapInput& input, const PlaceTable& table, const SightHeights& heights, bool all) {
   const SightEnds ends = sight_ends(input, table, 0, heights);
   const auto& [from, to] = ends;
+  input.read(all ? input.whole() : part_of_line(input, from, to), terminal_progress("read"));
+  input.close();
+  require_ground(input, from, "observer");
+  require_ground(input, to, "target");
   const HeightFieldSettings& cells = input.field().settings();
-  return {ends, input.field_at(from.col, from.row,
-                               std::hypot((to.col - from.col) * cells.cell_x, (to.row - from.row) * cells.cell_y))};
+  return {ends,
+          {in_part(input, from), in_part(input, to)},
+          input.field_at(from.col, from.row,
+                         std::hypot((to.col - from.col) * cells.cell_x, (to.row - from.row) * cells.cell_y))};
 }
 
 void run_marches(const ProfileOptions& options, const PlaceTable& table) {
@@ -106,12 +118,14 @@ void run_marches(const ProfileOptions& options, const PlaceTable& table) {
   keep_inputs(options.output, input.files());
   std::vector<std::string> lines;
   if (options.march.ray.empty()) {
-    const ProfileLine ends = line_of(input, table, options.heights);
-    const SightLine line(ends.field, ends.ends.from, ends.ends.to, {.coefficient = 0});
+    const ProfileLine ends = line_of(input, table, options.heights, true);
+    const SightLine line(ends.field, ends.here.from, ends.here.to, {.coefficient = 0});
     const std::string title = fmt::format("ray from {} to {}: {:.6g} m to {:.6g} m above sea", options.from, options.to,
                                           line.eye(), line.target());
     lines = draw_marches(options.march, ray_along(line), title, width, height, options.output);
   } else {
+    input.read(input.whole(), terminal_progress("read"));
+    input.close();
     lines = draw_marches(options.march, typed_ray(input, options.march.ray), "ray " + options.march.ray, width, height,
                          options.output);
   }
@@ -143,20 +157,20 @@ void run(ProfileOptions options, const Command& command) {
   if (!options.march.names.empty()) return run_marches(options, table);
   MapInput input(options);
   keep_inputs(options.output, input.files());
-  const ProfileLine ends = line_of(input, table, options.heights);
+  const ProfileLine ends = line_of(input, table, options.heights, false);
   const HeightField& field = ends.field;
-  const auto& [from, to] = ends.ends;
+  const auto& [from, to] = ends.here;
   const SightLine line(field, from, to, input.curvature());
   const std::vector<ProfilePoint> points = profile(line);
   const LineOfSight sight = line_of_sight(field, from, to, input.curvature());
   if (is_figure(options.output)) {
 #ifdef SCARP_CAIRO
-    draw(input, options, line, points, sight);
+    draw(input, options, ends.ends, points, sight);
 #endif
   } else if (options.output.empty()) {
-    fmt::print("{}", csv_of(input, points));
+    fmt::print("{}", csv_of(input, ends.ends, points));
   } else {
-    write_whole_file(options.output, csv_of(input, points));
+    write_whole_file(options.output, csv_of(input, ends.ends, points));
   }
   for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
   if (!options.output.empty())

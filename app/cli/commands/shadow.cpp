@@ -61,7 +61,7 @@ std::string place_text(double azimuth, double altitude) {
                      altitude * kDegreesPerRadian);
 }
 
-dvec2 centre_of(const MapInput& input) { return {(input.field().cols() - 1) / 2.0, (input.field().rows() - 1) / 2.0}; }
+dvec2 centre_of(const MapInput& input) { return {(input.cols() - 1) / 2.0, (input.rows() - 1) / 2.0}; }
 
 // Azimuth of grid north on the plane of the whole raster.
 double grid_north_of(MapInput& input) { return input.grid_north_at(centre_of(input).x, centre_of(input).y, HUGE_VAL); }
@@ -76,8 +76,10 @@ struct SunSpread {
 
 SunSpread sun_spread(const MapInput& input, const std::string& text, bool refraction) {
   const SunAtTime sky(parse_time(text));
-  const double last_col = input.field().cols() - 1, last_row = input.field().rows() - 1;
-  const double height = 0.5 * (input.field().min_height() + input.field().max_height());
+  const double last_col = input.cols() - 1, last_row = input.rows() - 1;
+  // A --dry-run reads no samples. Kilometres of height move the sun by less than a microradian.
+  const bool read = input.part() == input.whole();
+  const double height = read ? 0.5 * (input.field().min_height() + input.field().max_height()) : 0;
   const auto position = [&](double col, double row) {
     const auto at = input.lonlat_of(col, row);
     if (!at) throw Error(fmt::format("{}: --time needs a raster with a CRS (give --crs, or --sun)", input.path()));
@@ -118,8 +120,7 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
       suns.push_back({{azimuth - grid_north_of(input), altitude}, text, place_text(azimuth, altitude)});
       continue;
     }
-    if (!places)
-      places = std::make_shared<const NodePlaces>(input.georeference(), input.field().cols(), input.field().rows());
+    if (!places) places = std::make_shared<const NodePlaces>(input.georeference(), input.cols(), input.rows());
     suns.push_back(
         {{},
          text,
@@ -186,29 +187,35 @@ void run(ShadowOptions options, const Command& command) {
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
   keep_inputs(options.output, input.files());
+  const MapArea area = map_area(input, options.raster_output, input.whole(), input.whole());
+  const bool dry_run = options.raster_output.dry_run;
+  if (!dry_run) {
+    input.read(area.read, terminal_progress("read"));
+    input.close();
+  }
   double lowest = std::numbers::pi / 2;
   const std::vector<Sun> suns = suns_of(input, options, lowest);
-  // A single sun needs a plane for the whole raster; rays per cell need one only as far as a shadow reaches.
-  const double relief = input.field().max_height() - input.field().min_height();
-  const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
-  const HeightField field =
-      input.field_at(centre_of(input).x, centre_of(input).y, whole ? HUGE_VAL : relief / std::tan(lowest));
-  const RowBand rows = rows_of_part(input, options.raster_output);
-  const double nodes = static_cast<double>(field.cols()) * rows.rows();
-  if (options.raster_output.dry_run) {
+  const double nodes = static_cast<double>(area.computed.cols) * area.computed.rows;
+  if (dry_run) {
     const double kNode_s = options.per_cell ? 4e-6 : options.surface == "bilinear" ? 1e-6 : 1e-7;
-    print_dry_run(input, rows, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
+    print_dry_run(input, area, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
                   nodes * kNode_s * static_cast<double>(suns.size()) *
                       (!options.fraction  ? 1
                        : options.per_cell ? 2
                                           : 16));
     return;
   }
+  // A single sun needs a plane for the whole raster; rays per cell need one only as far as a shadow reaches.
+  const double relief = input.field().max_height() - input.field().min_height();
+  const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
+  const HeightField field =
+      input.field_at(centre_of(input).x, centre_of(input).y, whole ? HUGE_VAL : relief / std::tan(lowest));
+  const RowBand rows = area.rows();
   std::optional<MapPreview> preview;
   if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
-  RasterMap map = map_of(input, options.raster_output, rows, method_of(options), {{"SUN", places}});
+  RasterMap map = map_of(input, options.raster_output, area, method_of(options), {{"SUN", places}});
   const Progress progress = terminal_progress("shadow");
   const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
   const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
@@ -241,7 +248,7 @@ void run(ShadowOptions options, const Command& command) {
   }
   write_raster_map(options.output, map, terminal_progress("write"));
   if (preview) preview->write(map, rows, "grey");
-  print_map_summary(input, options.raster_output, rows, options.output,
+  print_map_summary(input, options.raster_output, area, options.output,
                     fmt::format("{}; {:.3g} % lit", places, with_sample > 0 ? 100 * lit / with_sample : 0), begin);
 }
 

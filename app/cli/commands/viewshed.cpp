@@ -16,6 +16,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
+#include "app/cli/options/map_part.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
 #include "app/cli/picture/map_preview.h"
@@ -56,10 +57,20 @@ struct ViewshedOptions : MapOptions {
   double min_distance = 0;
   std::optional<double> max_distance, nodata;
   int visible = 1, hidden = 0, out_of_range = -1;  // -1: nodata
+  bool crop = false;
   RasterOutput raster_output;
 };
 
-// An observer, with its own plane if the raster is in degrees.
+// The place of an observer, in columns and rows of the raster.
+struct Stand {
+  Node node;
+  ViewshedSettings settings;
+  double reach;  // metres
+  dvec2 at;
+  std::string what;  // for messages
+};
+
+// An observer over the part of the raster that was read, with its own plane if the raster is in degrees.
 struct Observer {
   Node node;
   ViewshedSettings settings;
@@ -109,9 +120,9 @@ void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, doub
   }
 }
 
-std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& options) {
+std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options) {
   const PlaceTable table = observer_table(options);
-  std::vector<Observer> observers;
+  std::vector<Stand> stands;
   double farthest = 0;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const PlaceRow& row = table.rows[i];
@@ -128,12 +139,7 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
     }
     const double reach = options.max_distance.value_or(std::numeric_limits<double>::infinity());
     set_limits(settings, options, options.azimuth.empty() ? 0 : input.grid_north_at(node.col, node.row, reach));
-    observers.push_back({node, settings, input.field_at(node.col, node.row, reach), snapped});
-    try {
-      const Viewpoint checked(observers.back().field, node, settings);
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", what, error.what()));
-    }
+    stands.push_back({node, settings, reach, snapped, what});
     // Measured in samples, which suits degrees and metres.
     const dvec2 typed = input.position_of(row.from, table.lonlat, what);
     farthest = std::max(farthest, std::hypot(typed.x - node.col, typed.y - node.row));
@@ -141,6 +147,23 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
   constexpr double kNoticed = 0.01;  // of a sample
   if (farthest > kNoticed)
     input.notes.push_back(fmt::format("observers stand on the nearest sample, up to {:.2g} samples away", farthest));
+  return stands;
+}
+
+std::vector<Observer> observers_of(MapInput& input, const std::vector<Stand>& stands) {
+  std::vector<Observer> observers;
+  for (const Stand& one : stands) {
+    const Node node = in_part(input, one.node);
+    observers.push_back({node, one.settings, input.field_at(one.node.col, one.node.row, one.reach), one.at});
+    try {
+      if (!one.settings.observer_z)
+        require_ground(input, {.col = static_cast<double>(one.node.col), .row = static_cast<double>(one.node.row)},
+                       "observer");
+      const Viewpoint checked(observers.back().field, node, one.settings);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", one.what, error.what()));
+    }
+  }
   return observers;
 }
 
@@ -185,6 +208,21 @@ PixelValues pixel_values(const ViewshedOptions& options) {
   require_other(values.nodata, "--nodata-value");
   require_other(values.out_of_range, "--out-of-range-value");
   return values;
+}
+
+// The nodes that the observers may see: all others are out of range.
+RasterWindow part_in_reach(MapInput& input, const std::vector<Stand>& stands) {
+  std::vector<RasterWindow> parts;
+  for (const Stand& one : stands) parts.push_back(part_around(input, one.node, one.reach));
+  return union_of(parts);
+}
+
+// The area of the map. If pixels out of range are not nodata, as holes are, all samples are read.
+MapArea area_of(MapInput& input, const ViewshedOptions& options, bool marks_range, const std::vector<Stand>& stands) {
+  const RasterWindow near = part_in_reach(input, stands);
+  if (options.crop) return map_area(input, options.raster_output, near, near);
+  const bool all = !options.raster_output.preview.empty() || marks_range;
+  return map_area(input, options.raster_output, input.whole(), all ? input.whole() : near);
 }
 
 std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
@@ -301,17 +339,19 @@ void run(ViewshedOptions options, const Command& command) {
   MapInput input(options);
   keep_inputs(options.output, input.files());
   const double number_nodata = options.nodata.value_or(kNoHeight);
-  const std::vector<Observer> observers = observers_of(input, options);
-
-  const RowBand rows = rows_of_part(input, options.raster_output);
-  const double nodes = static_cast<double>(input.field().cols()) * rows.rows();
+  const std::vector<Stand> stands = stands_of(input, options);
+  const MapArea area = area_of(input, options, values && values->out_of_range != values->nodata, stands);
   if (options.raster_output.dry_run) {
     // Time per node of one sweep per observer, on one thread.
     constexpr double kNode_s = 6e-8;
-    print_dry_run(input, rows, options.output, options.mode == "visible" || options.mode == "count" ? 3 : 12,
-                  static_cast<double>(observers.size()) * nodes * kNode_s);
+    print_dry_run(input, area, options.output, options.mode == "visible" || options.mode == "count" ? 3 : 12,
+                  static_cast<double>(stands.size()) * area.computed.cols * area.computed.rows * kNode_s);
     return;
   }
+  input.read(area.read, terminal_progress("read"));
+  input.close();
+  const std::vector<Observer> observers = observers_of(input, stands);
+  const RowBand rows = area.rows();
   std::optional<MapPreview> preview;
   if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
@@ -327,7 +367,7 @@ void run(ViewshedOptions options, const Command& command) {
                                             : fmt::format("{:.10g} m above ground", one.settings.observer_height));
   }
   const SightCurvature curvature = input.curvature();
-  RasterMap map = map_of(input, options.raster_output, rows, kMethod,
+  RasterMap map = map_of(input, options.raster_output, area, kMethod,
                          {{"MODE", options.mode},
                           {"OBSERVERS", places},
                           {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)},
@@ -339,22 +379,24 @@ void run(ViewshedOptions options, const Command& command) {
   std::vector<float> numbers;
   std::string what;
   if (values) {
-    seen = visible_pixels(observers, *values, rows, progress);
+    if (rows.rows() > 0) seen = visible_pixels(observers, *values, rows, progress);
     map.bands.push_back({"visible", "", std::span<const std::uint8_t>(seen.pixels), values->nodata, values->classes()});
     what = fmt::format("{:.3g} % visible",
                        share_of(static_cast<double>(seen.visible), static_cast<double>(seen.visible + seen.hidden)));
   } else if (options.mode == "count") {
-    counts = counted_pixels(observers, rows, progress);
+    if (rows.rows() > 0) counts = counted_pixels(observers, rows, progress);
     map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kCountHole});
     what = fmt::format("{} observers", observers.size());
   } else if (options.mode == "angle") {
-    numbers = angle_pixels(observers, rows, progress);
+    if (rows.rows() > 0) numbers = angle_pixels(observers, rows, progress);
     const std::size_t hidden = mark_nothing(numbers, number_nodata);
     map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), number_nodata});
-    what = fmt::format("{:.3g} % visible", share_of(nodes - static_cast<double>(hidden), nodes));
+    what = fmt::format("{:.3g} % visible", share_of(static_cast<double>(numbers.size() - hidden),
+                                                    static_cast<double>(map.cols) * map.rows));
   } else {
     const bool dem = options.mode == "dem";
-    numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress);
+    if (rows.rows() > 0)
+      numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress);
     mark_nothing(numbers, number_nodata);
     map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
                          std::span<const float>(numbers), number_nodata});
@@ -362,7 +404,7 @@ void run(ViewshedOptions options, const Command& command) {
   }
   write_raster_map(options.output, map, terminal_progress("write"));
   if (preview) preview->write(map, rows, "viridis");
-  print_map_summary(input, options.raster_output, rows, options.output,
+  print_map_summary(input, options.raster_output, area, options.output,
                     fmt::format("{}; {}", what, input.curvature_text()), begin);
 }
 
@@ -414,6 +456,10 @@ void add_viewshed(Program& program) {
                          .help = "field of view in degrees above horizontal",
                          .fallback = "-90,90",
                          .common = true});
+  command.add(&o.crop, {.names = "--crop",
+                        .help = "write only the pixels within --max-distance, not the extent of the input",
+                        .common = true,
+                        .rules = {needs("--max-distance M", [&o] { return o.max_distance.has_value(); })}});
   add_curvature_option(command, o.curvature);
   const Rule codes = needs("--mode visible", [&o] { return mode_of(o.mode) == "visible"; });
   command.add(

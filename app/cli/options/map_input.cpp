@@ -13,7 +13,6 @@
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/raster/read_raster.h"
 
 namespace scarp::cli {
 namespace {
@@ -26,8 +25,6 @@ HeightField with_cells(const HeightField& field, double cell_x, double cell_y) {
   return field.visit(
       [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
-
-Raster read(const MapOptions& options) { return read_tiles(options.inputs, options.raster, terminal_progress("read")); }
 
 }  // namespace
 
@@ -70,29 +67,48 @@ std::string_view surface_text(std::string_view surface) {
 }
 
 MapInput::MapInput(const MapOptions& options)
-    : options_(options), field_(HeightField::own(std::vector<float>{0}, 1, 1)) {
-  Raster raster = read(options);
-  path_ = raster.path;
-  files_ = raster.files;
-  georeference_ = raster.georeference;
-  notes = raster.notes;
+    : options_(options),
+      file_(std::in_place, options.inputs, options.raster, terminal_progress("read")),
+      header_(file_->header()),
+      field_(HeightField::own(std::vector<float>{0}, 1, 1)) {
   stop_if_interrupted();
-  field_ = height_field_from(std::move(raster));
-  if (field_.all_nodata())
-    throw Error(fmt::format("{}: all {} x {} samples are nodata (choose another --window or --nodata)", path_,
-                            field_.cols(), field_.rows()));
+  const Georeference& geo = georeference();
   try {
-    body_ = body_of(georeference_);
-    geographic_ = is_geographic(georeference_);
+    body_ = body_of(geo);
+    geographic_ = is_geographic(geo);
     const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
-                                    : georeference_.present      ? Coordinates::map
+                                    : geo.present                ? Coordinates::map
                                                                  : Coordinates::local;
-    frame_.emplace(georeference_, field_.cols(), field_.rows(), coordinates);
-    if (!georeference_.crs_wkt.empty())
-      lonlat_.emplace(georeference_, field_.cols(), field_.rows(), Coordinates::lonlat);
+    frame_.emplace(geo, cols(), rows(), coordinates);
+    if (!geo.crs_wkt.empty()) lonlat_.emplace(geo, cols(), rows(), Coordinates::lonlat);
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path_, error.what()));
+    throw Error(fmt::format("{}: {}", path(), error.what()));
   }
+}
+
+void MapInput::read(const RasterWindow& part, const Progress& progress) {
+  const bool all = part == whole();
+  Raster raster = all ? file_->read(progress) : file_->read(part, progress);
+  stop_if_interrupted();
+  for (const std::string& note : raster.notes) {
+    const auto end = notes.begin() + static_cast<std::ptrdiff_t>(notes_of_file_);
+    if (std::find(notes.begin(), end, note) != end) continue;
+    notes.insert(end, note);
+    ++notes_of_file_;
+  }
+  field_ = height_field_from(std::move(raster));
+  part_ = part;
+  if (all && field_.all_nodata())
+    throw Error(fmt::format("{}: all {} x {} samples are nodata (choose another --window or --nodata)", path(), cols(),
+                            rows()));
+}
+
+Georeference MapInput::georeference_of(const RasterWindow& part) const {
+  Georeference geo = georeference();
+  auto& map = geo.map_from_node;
+  map[0] += part.col * map[1] + part.row * map[2];
+  map[3] += part.col * map[4] + part.row * map[5];
+  return geo;
 }
 
 SightCurvature MapInput::curvature() const {
@@ -107,25 +123,25 @@ std::string MapInput::curvature_text() const {
 
 dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   if (lonlat && !lonlat_)
-    throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--crs)", path_, what));
+    throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--crs)", path(), what));
   std::array points{dvec3(place.x, place.y, 0)};
   if ((lonlat ? *lonlat_ : *frame_).to_local(points))
     throw Error(fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS", what, place.x, place.y));
-  return {points[0].x / georeference_.cell_x_m, field_.rows() - 1 - points[0].y / georeference_.cell_y_m};
+  return {points[0].x / georeference().cell_x_m, rows() - 1 - points[0].y / georeference().cell_y_m};
 }
 
 dvec3 MapInput::direction_of(const dvec3& typed) const { return frame_->direction_to_local(typed); }
 
 void MapInput::refuse_outside(const TablePlace& place, std::string_view what, double beyond) const {
-  const dvec2 low = place_of(-beyond, field_.rows() - 1 + beyond), high = place_of(field_.cols() - 1 + beyond, -beyond);
+  const dvec2 low = place_of(-beyond, rows() - 1 + beyond), high = place_of(cols() - 1 + beyond, -beyond);
   throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--coords)",
-                          what, place.x, place.y, path_, low.x, high.x, low.y, high.y));
+                          what, place.x, place.y, path(), low.x, high.x, low.y, high.y));
 }
 
 dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   dvec2 at = position_of(place, lonlat, what);
   // Rounding may put places on the border outside.
-  const double last_col = field_.cols() - 1, last_row = field_.rows() - 1, rounding = 0.5 / kSubcells;
+  const double last_col = cols() - 1, last_row = rows() - 1, rounding = 0.5 / kSubcells;
   if (!(at.x >= -rounding && at.y >= -rounding && at.x <= last_col + rounding && at.y <= last_row + rounding))
     refuse_outside(place, what, 0);
   return {std::clamp(at.x, 0.0, last_col), std::clamp(at.y, 0.0, last_row)};
@@ -135,26 +151,26 @@ Node MapInput::node_of(const TablePlace& place, bool lonlat, std::string_view wh
   const dvec2 at = position_of(place, lonlat, what);
   // Pixels are half open, as in GDAL.
   const double col = std::floor(at.x + 0.5), row = std::floor(at.y + 0.5);
-  if (!(col >= 0 && row >= 0 && col < field_.cols() && row < field_.rows())) refuse_outside(place, what, 0.5);
+  if (!(col >= 0 && row >= 0 && col < cols() && row < rows())) refuse_outside(place, what, 0.5);
   return {static_cast<int>(col), static_cast<int>(row)};
 }
 
 dvec2 MapInput::place_of(double col, double row) const {
-  std::array points{dvec3(col * georeference_.cell_x_m, (field_.rows() - 1 - row) * georeference_.cell_y_m, 0)};
+  std::array points{dvec3(col * georeference().cell_x_m, (rows() - 1 - row) * georeference().cell_y_m, 0)};
   frame_->from_local(points);
   return {points[0].x, points[0].y};
 }
 
 std::optional<dvec2> MapInput::lonlat_of(double col, double row) const {
   if (!lonlat_) return std::nullopt;
-  std::array points{dvec3(col * georeference_.cell_x_m, (field_.rows() - 1 - row) * georeference_.cell_y_m, 0)};
+  std::array points{dvec3(col * georeference().cell_x_m, (rows() - 1 - row) * georeference().cell_y_m, 0)};
   if (lonlat_->from_local(points)) return std::nullopt;
   return dvec2(points[0].x, points[0].y);
 }
 
 const MetricPlane& MapInput::plane_at(double col, double row, double reach) {
   if (last_ && last_->col == col && last_->row == row && last_->reach >= reach) return last_->plane;
-  last_ = Plane{col, row, reach, metric_plane(georeference_, field_.cols(), field_.rows(), col, row, reach)};
+  last_ = Plane{col, row, reach, metric_plane(georeference(), cols(), rows(), col, row, reach)};
   const double error = last_->plane.error_cells;
   if (error > options_.plane_error) {
     const dvec2 at = lonlat_of(col, row).value_or(dvec2(0, 0));
@@ -163,7 +179,7 @@ const MetricPlane& MapInput::plane_at(double col, double row, double reach) {
         fmt::format("{}: degrees: samples are up to {:.2g} cells off the metric plane, limit {} (first: gdalwarp "
                     "-t_srs EPSG:{}{:02} "
                     "-r bilinear {} utm.tif; or set a distance limit; or raise --plane-error)",
-                    path_, error, options_.plane_error, at.y < 0 ? 327 : 326, zone, path_));
+                    path(), error, options_.plane_error, at.y < 0 ? 327 : 326, zone, path()));
   }
   return last_->plane;
 }
@@ -184,12 +200,18 @@ std::optional<BilinearGround> MapInput::bilinear_ground(const HeightField& field
   try {
     return BilinearGround(field);
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path_, error.what()));
+    throw Error(fmt::format("{}: {}", path(), error.what()));
   }
 }
 
+dvec2 MapInput::cells_at(double col, double row, double reach) {
+  if (!geographic_) return {georeference().cell_x_m, georeference().cell_y_m};
+  const MetricPlane& plane = plane_at(col, row, reach);
+  return {plane.cell_x, plane.cell_y};
+}
+
 double MapInput::grid_north_at(double col, double row, double reach) {
-  return geographic_ ? plane_at(col, row, reach).grid_north_azimuth : georeference_.grid_north_azimuth;
+  return geographic_ ? plane_at(col, row, reach).grid_north_azimuth : georeference().grid_north_azimuth;
 }
 
 }  // namespace scarp::cli

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The input of subcommands that compute maps: one elevation model, points on it, and a plane in metres around a point.
+// Samples are read in parts (map_part.h). Positions count from the raster's north-west sample, whatever part is read.
 #pragma once
 
 #include <optional>
@@ -13,6 +14,7 @@
 #include "scarp/base/georeference.h"
 #include "scarp/field/height_field.h"
 #include "scarp/source/raster/metric_plane.h"
+#include "scarp/source/raster/opened_raster.h"
 #include "scarp/source/raster/raster_options.h"
 #include "scarp/source/table/place_table.h"
 
@@ -43,13 +45,28 @@ std::string_view surface_text(std::string_view surface);
 
 class MapInput {
  public:
-  /// Reads the raster. Throws Error naming the file.
+  /// Opens the raster without reading samples. Throws Error naming the file.
   explicit MapInput(const MapOptions& options);
 
+  int cols() const { return header_.cols; }
+  int rows() const { return header_.rows; }
+  RasterWindow whole() const { return {0, 0, cols(), rows()}; }
+  const Georeference& georeference() const { return header_.georeference; }
+  /// The georeference of a part of the raster, with the cell lengths and azimuth of the whole.
+  Georeference georeference_of(const RasterWindow& part) const;
+  SampleType sample_type() const { return static_cast<SampleType>(header_.samples.index()); }
+  const std::string& path() const { return header_.path; }
+  const std::vector<std::string>& files() const { return header_.files; }
+
+  /// Reads a part, which replaces the one read before. Throws Error naming the file, also if the whole raster is read
+  /// and is all nodata.
+  void read(const RasterWindow& part, const Progress& progress);
+  /// Closes the file, which frees the blocks that GDAL keeps. The samples stay.
+  void close() { file_.reset(); }
+  /// The part that was read; no samples before the first read().
+  const RasterWindow& part() const { return part_; }
+  /// The samples of part().
   const HeightField& field() const { return field_; }
-  const Georeference& georeference() const { return georeference_; }
-  const std::string& path() const { return path_; }
-  const std::vector<std::string>& files() const { return files_; }
   /// Notes for users, printed last.
   std::vector<std::string> notes;
 
@@ -70,7 +87,7 @@ class MapInput {
   /// Longitude and latitude in degrees; nullopt without a CRS.
   std::optional<dvec2> lonlat_of(double col, double row) const;
 
-  /// The field with the cell lengths at a place, for geographic rasters; other rasters keep those at their centre.
+  /// field() with the cell lengths at a place, for geographic rasters; other rasters keep those at their centre.
   /// Throws Error if samples within `reach` metres are displaced by more than --plane-error allows.
   HeightField field_at(double col, double row, double reach);
   /// The ground of --surface bilinear; nullopt for `crossings`. `field` is one of field_at(). Throws Error naming the
@@ -78,16 +95,19 @@ class MapInput {
   std::optional<BilinearGround> bilinear_ground(const HeightField& field) const;
   /// Azimuth of grid north at a place, in radians.
   double grid_north_at(double col, double row, double reach);
+  /// Lengths in metres of a column and a row step, as those of field_at().
+  dvec2 cells_at(double col, double row, double reach);
 
  private:
   [[noreturn]] void refuse_outside(const TablePlace& place, std::string_view what, double beyond) const;
   const MetricPlane& plane_at(double col, double row, double reach);
 
   const MapOptions& options_;
+  std::optional<OpenedRaster> file_;
+  Raster header_;  // without samples
+  RasterWindow part_;
   HeightField field_;
-  Georeference georeference_;
-  std::string path_;
-  std::vector<std::string> files_;
+  std::size_t notes_of_file_ = 0;  // those in front of `notes`
   Body body_;
   bool geographic_ = false;
   std::optional<CoordinateFrame> frame_, lonlat_;

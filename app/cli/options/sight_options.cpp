@@ -63,6 +63,14 @@ PlaceTable sight_places(const SightPlaces& places) {
   return table;
 }
 
+dvec2 point_along(const SightEnds& ends, double along) {
+  // As SightLine::col(), but with the whole raster's columns: rounding does not depend on the part that was read.
+  const auto at = [&](double from, double to) {
+    return rounded_end(from) + along * (rounded_end(to) - rounded_end(from));
+  };
+  return {at(ends.from.col, ends.to.col), at(ends.from.row, ends.to.row)};
+}
+
 SightEnds sight_ends(const MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights) {
   const PlaceRow& one = table.rows[row];
   const auto end = [&](const TablePlace& place, double height, std::string_view option) {

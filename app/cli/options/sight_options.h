@@ -39,6 +39,9 @@ PlaceTable sight_places(const SightPlaces& places);
 struct SightEnds {
   SightEnd from, to;
 };
+/// Returns the point of a line at `along`, 0 to 1, in columns and rows.
+dvec2 point_along(const SightEnds& ends, double along);
+/// Positions count from the raster's north-west sample.
 SightEnds sight_ends(const MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights);
 
 }  // namespace scarp::cli

@@ -180,8 +180,8 @@ void MapPreview::write(const RasterMap& map, const RowBand& rows, const std::str
   picture_.ground.drape = std::make_shared<Drape>(drape_of(paint, input_, rows, picture_.width));
   const Camera camera = Camera::top(picture_box(scene_), picture_.width, picture_.height);
   const std::optional<SolidRange> no_numbers;
-  const FigureSubject subject{
-      scene_, camera, true, no_numbers, input_.georeference(), input_.field().cols(), input_.field().rows()};
+  const Georeference geo = input_.georeference_of(input_.part());
+  const FigureSubject subject{scene_, camera, true, no_numbers, geo, input_.field().cols(), input_.field().rows()};
   std::optional<Figure> figure = figure_of(figure_options(), picture_, subject);
   figure->key = std::move(paint.key);
   figure->legend = std::move(paint.legend);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -62,29 +63,41 @@ void settle_output(RasterOutput& options, const MapOptions& map) {
   keep_inputs(options.preview, others);
 }
 
-RowBand rows_of_part(const MapInput& input, const RasterOutput& options) {
-  const int rows = input.field().rows();
-  if (options.part.empty()) return {0, rows};
-  constexpr std::string_view kForm = "I/N, whole numbers with 1 <= I <= N, for example 3/16";
-  const auto n = numbers_from(options.part, '/', 2, 2, "--part", kForm);
-  if (!(n[0] >= 1 && n[0] <= n[1] && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1])))
-    throw Error(fmt::format("--part '{}': expected {}", options.part, kForm));
-  if (n[1] > rows) throw Error(fmt::format("--part '{}': {} has only {} rows", options.part, input.path(), rows));
-  return row_band(rows, static_cast<int>(n[0]), static_cast<int>(n[1]));
+MapArea map_area(const MapInput& input, const RasterOutput& options, const RasterWindow& whole,
+                 const RasterWindow& read) {
+  MapArea area{whole, read, {}};
+  if (!options.part.empty()) {
+    constexpr std::string_view kForm = "I/N, whole numbers with 1 <= I <= N, for example 3/16";
+    const auto n = numbers_from(options.part, '/', 2, 2, "--part", kForm);
+    if (!(n[0] >= 1 && n[0] <= n[1] && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1])))
+      throw Error(fmt::format("--part '{}': expected {}", options.part, kForm));
+    if (n[1] > whole.rows)
+      throw Error(fmt::format("--part '{}': {} has only {} rows", options.part, input.path(), whole.rows));
+    const RowBand rows = row_band(whole.rows, static_cast<int>(n[0]), static_cast<int>(n[1]));
+    area.output.row += rows.first;
+    area.output.rows = rows.rows();
+  }
+  const int north = std::max(area.output.row, read.row),
+            south = std::min(area.output.row + area.output.rows, read.row + read.rows);
+  area.computed = north < south ? RasterWindow{read.col, north, read.cols, south - north}
+                                : RasterWindow{read.col, read.row, read.cols, 0};
+  return area;
 }
 
-RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBand& rows, const std::string& method,
+RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapArea& area, const std::string& method,
                  std::vector<std::pair<std::string, std::string>> metadata) {
+  const RasterWindow &output = area.output, &computed = area.computed;
   RasterMap map;
-  map.cols = input.field().cols();
-  map.rows = rows.rows();
-  const Georeference& geo = input.georeference();
+  map.cols = output.cols;
+  map.rows = output.rows;
+  if (computed != output)
+    map.part = MapPart{computed.col - output.col, computed.row - output.row, computed.cols, computed.rows};
+  const Georeference geo = input.georeference_of(output);
   if (geo.present) {
     // GDAL's transform refers to pixel corners; nodes are at pixel centres.
     auto m = geo.map_from_node;
-    const double north = rows.first - 0.5;
-    m[0] += -0.5 * m[1] + north * m[2];
-    m[3] += -0.5 * m[4] + north * m[5];
+    m[0] -= 0.5 * (m[1] + m[2]);
+    m[3] -= 0.5 * (m[4] + m[5]);
     map.place = MapPlace{m, geo.crs_wkt};
   }
   map.driver = options.driver;
@@ -92,27 +105,33 @@ RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBa
   map.metadata = std::move(metadata);
   map.metadata.insert(map.metadata.begin(),
                       {{"SCARP_VERSION", SCARP_VERSION}, {"METHOD", method}, {"SOURCE", input.path()}});
-  if (!options.part.empty())
+  if (output.cols != input.cols() || (options.part.empty() && output.rows != input.rows()))
     map.metadata.emplace_back(
-        "PART", fmt::format("{}: rows {} to {} of {}", options.part, rows.first, rows.last - 1, input.field().rows()));
+        "WINDOW", fmt::format("columns {} to {}, rows {} to {} of {} x {}", output.col, output.col + output.cols - 1,
+                              output.row, output.row + output.rows - 1, input.cols(), input.rows()));
+  if (!options.part.empty())
+    map.metadata.emplace_back("PART", fmt::format("{}: rows {} to {} of {}", options.part, output.row,
+                                                  output.row + output.rows - 1, input.rows()));
   return map;
 }
 
-void print_dry_run(const MapInput& input, const RowBand& rows, const std::string& output, double bytes_per_node,
+void print_dry_run(const MapInput& input, const MapArea& area, const std::string& output, double bytes_per_node,
                    double seconds) {
-  const double cols = input.field().cols(), all = cols * input.field().rows(), nodes = cols * rows.rows();
-  const double samples = input.field().sample_type() == SampleType::float32 ? 4 : 2;
+  const double read = static_cast<double>(area.read.cols) * area.read.rows,
+               computed = static_cast<double>(area.computed.cols) * area.computed.rows;
+  const double samples = input.sample_type() == SampleType::float32 ? 4 : 2;
   constexpr double kMebi = 1 << 20;
   fmt::print("{}: {} x {} pixels; about {:.0f} MiB of memory and {:.1f} s; nothing written (--dry-run)\n", output,
-             input.field().cols(), rows.rows(), std::ceil((all * samples + nodes * bytes_per_node) / kMebi), seconds);
+             area.output.cols, area.output.rows, std::ceil((read * samples + computed * bytes_per_node) / kMebi),
+             seconds);
 }
 
-void print_map_summary(const MapInput& input, const RasterOutput& options, const RowBand& rows,
+void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
                        const std::string& output, const std::string& what,
                        std::chrono::steady_clock::time_point begin) {
   for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
   if (options.quiet) return;
-  fmt::print("{}: {} x {} pixels, {}; {:.2f} s\n", output, input.field().cols(), rows.rows(), what,
+  fmt::print("{}: {} x {} pixels, {}; {:.2f} s\n", output, area.output.cols, area.output.rows, what,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }
 

@@ -29,20 +29,31 @@ void add_raster_output_options(Command& command, RasterOutput& options);
 /// the driver.
 void settle_output(RasterOutput& options, const MapOptions& map);
 
-/// Returns the rows of --part. Throws Error.
-RowBand rows_of_part(const MapInput& input, const RasterOutput& options);
+/// The nodes that an output covers.
+struct MapArea {
+  RasterWindow output;    ///< pixels of the output, in columns and rows of the raster
+  RasterWindow read;      ///< samples to read
+  RasterWindow computed;  ///< pixels to compute, in both; all others are nodata; no rows if there are none
 
-/// Returns a map of these rows with the input's georeference, without bands. `method` and the pairs are written to the
-/// metadata.
-RasterMap map_of(const MapInput& input, const RasterOutput& options, const RowBand& rows, const std::string& method,
+  /// The computed rows of the samples that are read.
+  RowBand rows() const { return {computed.row - read.row, computed.row - read.row + computed.rows}; }
+};
+
+/// Returns the area of --part of an output that covers `whole`, or all of the raster, if `read` is read. Throws Error.
+MapArea map_area(const MapInput& input, const RasterOutput& options, const RasterWindow& whole,
+                 const RasterWindow& read);
+
+/// Returns a map with the input's georeference, without bands, whose samples are those of the computed area. `method`
+/// and the pairs are written to the metadata.
+RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapArea& area, const std::string& method,
                  std::vector<std::pair<std::string, std::string>> metadata);
 
 /// Prints the requirements of a run: size of the output, memory, seconds.
-void print_dry_run(const MapInput& input, const RowBand& rows, const std::string& output, double bytes_per_node,
+void print_dry_run(const MapInput& input, const MapArea& area, const std::string& output, double bytes_per_node,
                    double seconds);
 
 /// Prints the notes, and unless quiet the last line: output, size, `what`, seconds.
-void print_map_summary(const MapInput& input, const RasterOutput& options, const RowBand& rows,
+void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
                        const std::string& output, const std::string& what, std::chrono::steady_clock::time_point begin);
 
 }  // namespace scarp::cli

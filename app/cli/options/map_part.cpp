@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/options/map_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+namespace {
+
+// Nodes [first, last] x [first, last], as far as they are in the raster.
+RasterWindow clipped(const MapInput& input, double first_col, double first_row, double last_col, double last_row) {
+  const auto clamp = [](double at, int side) { return static_cast<int>(std::clamp(at, 0.0, side - 1.0)); };
+  const int col = clamp(first_col, input.cols()), row = clamp(first_row, input.rows());
+  return {col, row, clamp(last_col, input.cols()) - col + 1, clamp(last_row, input.rows()) - row + 1};
+}
+
+double area(const RasterWindow& part) { return static_cast<double>(part.cols) * part.rows; }
+
+}  // namespace
+
+RasterWindow part_around(MapInput& input, const Node& node, double distance) {
+  if (!std::isfinite(distance)) return input.whole();
+  const dvec2 cells = input.cells_at(node.col, node.row, distance);
+  // One more than needed: quotients are rounded.
+  const double cols = std::floor(distance / cells.x) + 1, rows = std::floor(distance / cells.y) + 1;
+  return clipped(input, node.col - cols, node.row - rows, node.col + cols, node.row + rows);
+}
+
+RasterWindow part_of_line(const MapInput& input, const SightEnd& from, const SightEnd& to) {
+  constexpr double kBeside = 1;  // cells
+  return clipped(input, std::floor(std::min(from.col, to.col)) - kBeside,
+                 std::floor(std::min(from.row, to.row)) - kBeside, std::ceil(std::max(from.col, to.col)) + kBeside,
+                 std::ceil(std::max(from.row, to.row)) + kBeside);
+}
+
+RasterWindow union_of(std::span<const RasterWindow> parts) {
+  RasterWindow all = parts.front();
+  for (const RasterWindow& part : parts) {
+    const int col = std::min(all.col, part.col), row = std::min(all.row, part.row);
+    all = {col, row, std::max(all.col + all.cols, part.col + part.cols) - col,
+           std::max(all.row + all.rows, part.row + part.rows) - row};
+  }
+  return all;
+}
+
+bool are_scattered(std::span<const RasterWindow> parts) {
+  // Reading a part costs at least about as much as this many samples: a call, and blocks at its border.
+  constexpr double kCall = 1 << 16;
+  double sum = 0;
+  for (const RasterWindow& part : parts) sum += area(part) + kCall;
+  return area(union_of(parts)) > sum;
+}
+
+void require_ground(const MapInput& input, const SightEnd& end, std::string_view who) {
+  if (end.datum == HeightDatum::sea) return;
+  const SightEnd here = in_part(input, end);
+  if (SightGround(input.field()).height_at(rounded_end(here.col), rounded_end(here.row))) return;
+  const dvec2 at = input.place_of(end.col, end.row);
+  throw Error(
+      fmt::format("{}: {:.10g},{:.10g} is on nodata (give its height above sea: --heights sea)", who, at.x, at.y));
+}
+
+SightEnd in_part(const MapInput& input, SightEnd end) {
+  end.col -= input.part().col;
+  end.row -= input.part().row;
+  return end;
+}
+
+Node in_part(const MapInput& input, const Node& node) {
+  return {node.col - input.part().col, node.row - input.part().row};
+}
+
+}  // namespace scarp::cli
