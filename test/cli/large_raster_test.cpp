@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/csv_rows.h"
 #include "cli/program.h"
 #include "output/read_png.h"
 
@@ -82,6 +83,47 @@ TEST(LargeRaster, OfACountryIsReadOnlyWhereAQuestionNeedsIt) {
     EXPECT_EQ(result.status, 0) << call.front() << ": " << result.err;
     constexpr std::uint64_t kMost = 100 << 20;
     EXPECT_LT(result.peak, kMost) << call.front();
+  }
+}
+
+// 9000 x 9000 samples, of which a part has hills.
+std::string county(const test::Scratch& scratch) {
+  std::string text = "ncols 300\nnrows 300\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+  for (int i = 0; i < 300 * 300; ++i) text += std::to_string(300 + i * 7919 % 101) + ' ';
+  scratch.write("hills.asc", text);
+  return scratch.write("county.vrt", R"(<VRTDataset rasterXSize="9000" rasterYSize="9000">
+<SRS>EPSG:32632</SRS><GeoTransform>450000, 10, 0, 5000000, 0, -10</GeoTransform>
+<VRTRasterBand dataType="Int16" band="1">
+<SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
+<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="300" ySize="300"/>
+<DstRect xOff="4000" yOff="5000" xSize="300" ySize="300"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+}
+
+TEST(LargeRaster, IsReadWhereRaysEndAndHitAtTheSamePlaces) {
+  const test::Scratch scratch;
+  const std::string dem = county(scratch);
+  for (const std::string coordinates : {"map", "local"}) {
+    const int west = coordinates == "map" ? 490200 : 40200, north = coordinates == "map" ? 4949000 : 39000;
+    std::string rays = "x,y,z,dx,dy,dz,t_min,t_max\n";
+    for (int i = 0; i < 40; ++i)
+      rays += std::to_string(west + i * 61) + "," + std::to_string(north - i * 53) + ",500," +
+              std::to_string(i % 5 - 2) + ",1." + std::to_string(i) + ",-0.7,0," + (i % 9 == 0 ? "40" : "900") + "\n";
+    const auto cast = [&](const std::string& table) {
+      return test::run({"cast", dem, "--coords", coordinates, "--rays", scratch.write("rays.csv", table)});
+    };
+    // A ray that never ends needs the whole raster.
+    const auto part = cast(rays), whole = cast(rays + "0,0,99999,0,0,1,0,\n");
+    ASSERT_EQ(part.status, 0) << part.err;
+    ASSERT_EQ(whole.status, 0) << whole.err;
+    EXPECT_LT(part.peak + (100 << 20), whole.peak) << "the whole raster was read";
+    const std::vector<test::Row> here = test::rows_of(part.out), all = test::rows_of(whole.out);
+    ASSERT_EQ(here.size() + 1, all.size());
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      for (const char* same : {"ray", "status", "col", "row"}) EXPECT_EQ(here[i].at(same), all[i].at(same)) << i;
+      // Rounding of coordinates up to 5e6, a few hundred metres along a ray that is not steep.
+      for (const char* close : {"t", "x", "y", "z", "u", "v"})
+        EXPECT_NEAR(test::number(here[i], close), test::number(all[i], close), 1e-6) << i << ' ' << close;
+    }
   }
 }
 

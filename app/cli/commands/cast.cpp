@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/cast_part.h"
 #include "app/cli/commands/cast_samples.h"
 #include "app/cli/commands/scan.h"
 #include "app/cli/options/device_option.h"
@@ -92,10 +93,11 @@ const HeightMarchEntry* all_hits_of(const CastOptions& options) {
 }
 
 // Only rasters have a georeference. z of rays and hits is that of the field, exaggerated in all coordinates.
-Places places_of(const CastOptions& options, const OpenedInput& input) {
+Places places_of(const CastOptions& options, const OpenedInput& input, const std::optional<CastPart>& part) {
   const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
                                   : input.georeference.present ? Coordinates::map
                                                                : Coordinates::local;
+  if (part) return {part->raster, coordinates, 1};
   return {{input.path, input.georeference, input.cols, input.rows}, coordinates, 1};
 }
 
@@ -176,8 +178,8 @@ class Caster {
   // `all` finds all hits and needs a scene of one height field; null: nearest hits only. `materials`: number of
   // materials of the scene file.
   Caster(const HeightMarchEntry* all, const Scene& scene, std::size_t materials, const CoordinateFrame& frame,
-         const RayTable& table, HitTable& out)
-      : scene_(scene), frame_(frame), table_(table), out_(out), all_(all), materials_(materials) {
+         const RayTable& table, HitTable& out, const std::optional<CastPart>& part)
+      : scene_(scene), frame_(frame), table_(table), out_(out), all_(all), materials_(materials), part_(part) {
     if (all_ && all_->needs_pyramid) pyramid_.emplace(*scene.only_heights());
   }
 
@@ -254,10 +256,12 @@ class Caster {
         ++hits_;
         const SceneSurface surface = scene_.surface(rays[i], hit);
         row.normal = frame_.normal_from_local(surface.normal);
+        if (part_) row.hit.cell = {hit.cell.col + part_->part.col, hit.cell.row + part_->part.row};
         row.kind = *find_hit_kind(scene_.field_of(hit.object).kind());
         row.hit.voxel = file_voxel(scene_, hit).value_or(hit.voxel);
         if (surface.material < materials_) row.material = surface.material;
         dvec3& at = positions.emplace_back(rays[i].at(hit.t));
+        if (part_) at = at + part_->origin;
         if (scene_.only_field() && row.kind != HitKind::voxels) at.z = hit.height;
       }
     }
@@ -280,14 +284,15 @@ class Caster {
   HitTable& out_;
   const HeightMarchEntry* all_;
   std::size_t materials_;
+  const std::optional<CastPart>& part_;
   std::optional<MaxPyramid> pyramid_;  // for all hits
   std::size_t hits_ = 0, below_ = 0;
   double seconds_ = 0;
 };
 
-// A note about the results; empty if they need none.
+// A note about the results; empty if they need none. Rays over a `part` of a raster pass over the raster.
 std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays, const Scene& scene,
-                       const Places& places) {
+                       const Places& places, bool part) {
   if (rays.empty()) return "the table of rays has a header alone: 0 rays, and no rows in the output";
   if (any && caster.below() > 0) {
     return fmt::format(
@@ -304,7 +309,7 @@ std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays
     below = static_cast<std::size_t>(
         std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.status == HitStatus::below; }));
   }
-  if (below == 0) return place_of(scene, rays, places);
+  if (below == 0) return part ? "" : place_of(scene, rays, places);
   return fmt::format(
       "nothing was hit: {} of {} rays start below ground, or enter it through its border, and never emerge; check "
       "their "
@@ -320,12 +325,12 @@ struct WholeInput {
   std::vector<std::string> notes;
 };
 
-WholeInput open_whole(const CastOptions& options, InputKind kind) {
+WholeInput open_whole(const CastOptions& options, InputKind kind, const std::optional<CastPart>& part) {
   const MeshInput mesh(options.mesh);
   OpenedInput input = open_input(kind, options);
   keep_inputs(options.output, input.files);
   std::vector<std::string> notes = input.notes;
-  Places places = places_of(options, input);
+  Places places = places_of(options, input, part);
   if (kind == InputKind::terrain) {
     if (const std::string note = no_ground_note(*input.scene.only_heights()); !note.empty()) notes.push_back(note);
   }
@@ -345,11 +350,17 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
                table.carried);
   std::optional<TraceTable> samples;
   if (!options.samples.empty()) samples.emplace(options.samples);
-  WholeInput whole = open_whole(options, kind);
+  std::optional<CastPart> part;
+  if (terrain && options.samples.empty()) part = part_of_rays(options, table, options.coordinates);
+  CastOptions of_part = options;
+  if (part) of_part.part = part->part;
+  WholeInput whole = open_whole(of_part, kind, part);
   std::vector<std::string>& notes = whole.notes;
   const Places& places = whole.places;
   const CoordinateFrame& frame = places.frame();
   std::vector<Ray> rays = rays_in_local(table, frame);
+  if (part)
+    for (Ray& ray : rays) ray.origin = ray.origin - part->origin;
   if (std::string note = check(table, rays, whole.scene); !note.empty()) notes.push_back(std::move(note));
   stop_if_interrupted();
 
@@ -357,7 +368,7 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
   const SceneOnDevice there = scene_on_device(options.device, whole.scene);
   const Scene& scene = there.scene;
   const std::string& device = there.device;
-  Caster caster(all, scene, whole.input.document ? whole.input.document->materials.size() : 0, frame, table, out);
+  Caster caster(all, scene, whole.input.document ? whole.input.document->materials.size() : 0, frame, table, out, part);
   const Progress progress = terminal_progress("cast");
   for (std::size_t first = 0; first < rays.size(); first += kPiece) {
     const std::size_t count = std::min(kPiece, rays.size() - first);
@@ -373,7 +384,7 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
   if (samples) write_samples(*samples, scene, rays, frame);
   // Last: on failure only one line is printed.
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-  if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
+  if (const std::string note = finding_of(caster, options.any, rays, scene, places, part.has_value()); !note.empty())
     fmt::print(stderr, "note: {}\n", note);
   if (::isatty(STDERR_FILENO) != 0) {
     constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
@@ -388,7 +399,7 @@ void run_scanner(const CastOptions& options, InputKind kind) {
   check_scan_output(options.scan, options.output);
   ScannerFile scanner = read_scanner(options.scan.scanner);
   keep_inputs(options.output, scanner.files);
-  const WholeInput whole = open_whole(options, kind);
+  const WholeInput whole = open_whole(options, kind, {});
   const SceneOnDevice there = scene_on_device(options.device, whole.scene);
   run_scan(options.scan, std::move(scanner), {there.scene, whole.places, whole.input.georeference}, options.output,
            whole.notes, there.device);

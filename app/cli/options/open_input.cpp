@@ -17,7 +17,7 @@
 #include "scarp/march/shape/shape_table.h"
 #include "scarp/march/voxel/voxel_table.h"
 #include "scarp/scene/file/example_functions.h"
-#include "scarp/source/raster/read_raster.h"
+#include "scarp/source/raster/opened_raster.h"
 
 namespace scarp::cli {
 namespace {
@@ -58,11 +58,17 @@ void require_march_of(const Table& table, std::string_view inputs, const std::st
   throw Error(fmt::format("march '{}': is not for {} (available: {})", march, inputs, names));
 }
 
+Raster read_samples(const InputOptions& options) {
+  const Progress progress = terminal_progress("read");
+  OpenedRaster file(options.inputs, options.raster, progress);
+  return options.part ? file.read(*options.part, progress) : file.read(progress);
+}
+
 OpenedInput terrain(const InputOptions& options) {
   require_march_of(height_marches(), "terrain", options.march);
   const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
   require_device_march(options.device, march);
-  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
+  Raster raster = read_samples(options);
   stop_if_interrupted();
   OpenedInput opened;
   opened.notes = raster.notes, opened.files = raster.files, opened.path = raster.path;

@@ -29,6 +29,7 @@ constexpr const char* kTerrainMarch = "max-mip";
 struct InputOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
+  std::optional<RasterWindow> part;  ///< of the raster, with its cell lengths (source/raster/opened_raster.h)
   FieldOptions field;
   Exaggeration exaggeration;
   VoxOptions vox;

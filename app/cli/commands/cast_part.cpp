@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/commands/cast_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "scarp/source/raster/opened_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+// Smaller rasters are read whole, as for pictures.
+constexpr double kLargestReadWhole = 64e6;  // samples
+
+// The range of columns or rows that rays reach.
+struct Reach {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+
+  void add(double at) {
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  // First and last node, with two more cells on each side: touched lines belong to both of their cells, and positions
+  // are rounded. Nothing if the rays pass beside the raster.
+  std::optional<std::pair<int, int>> nodes(int side) const {
+    constexpr double kBeside = 2;
+    const double first = std::max(std::floor(low) - kBeside, 0.0),
+                 last = std::min(std::ceil(high) + kBeside, side - 1.0);
+    if (!(first < last)) return {};
+    return std::pair(static_cast<int>(first), static_cast<int>(last));
+  }
+};
+
+bool depends_on_whole(const InputOptions& options) {
+  return options.field.wrap != Wrap::none || options.field.mirror || options.exaggeration.chosen ||
+         !options.device.empty() || !options.mesh.file.empty() ||
+         !(options.march.empty() || options.march == kTerrainMarch);
+}
+
+}  // namespace
+
+std::optional<CastPart> part_of_rays(const InputOptions& options, const RayTable& table,
+                                     const std::string& coordinates) {
+  if (depends_on_whole(options) || table.rows.empty()) return {};
+  const OpenedRaster file(options.inputs, options.raster);
+  const Raster& header = file.header();
+  if (static_cast<double>(header.cols) * header.rows <= kLargestReadWhole) return {};
+  const Georeference& geo = header.georeference;
+  CastPart found{{}, {header.path, geo, header.cols, header.rows}, {}};
+  const Coordinates kind = !coordinates.empty() ? find_coordinates(coordinates)
+                           : geo.present        ? Coordinates::map
+                                                : Coordinates::local;
+  const Places places(found.raster, kind, 1);
+  Reach cols, rows;
+  for (const Ray& ray : rays_in_local(table, places.frame())) {
+    if (!std::isfinite(ray.t_max) || ray.start != RayStart::free) return {};
+    for (const double t : {ray.t_min, ray.t_max}) {
+      const dvec3 at = ray.at(t);
+      cols.add(at.x / geo.cell_x_m);
+      rows.add(header.rows - 1 - at.y / geo.cell_y_m);
+    }
+  }
+  const auto across = cols.nodes(header.cols), down = rows.nodes(header.rows);
+  if (!across || !down) return {};
+  found.part = {across->first, down->first, across->second - across->first + 1, down->second - down->first + 1};
+  found.origin = {across->first * geo.cell_x_m, (header.rows - 1 - down->second) * geo.cell_y_m, 0};
+  return found;
+}
+
+}  // namespace scarp::cli
