@@ -51,7 +51,7 @@ void OutputFile::add(std::string_view bytes) {
 void OutputFile::commit(std::string_view header) {
   write(waiting_);
   waiting_.clear();
-  if (!header.empty()) {
+  if (!header.empty() && place_) {
     if (std::fseek(file_.get(), 0, SEEK_SET) != 0) refuse(std::strerror(errno));
     write(header);
   }

@@ -21,7 +21,8 @@ class OutputFile {
   /// calls below.
   void add(std::string_view bytes);
   /// Writes the remaining bytes, then overwrites the beginning of the file with `header` unless it is empty, and
-  /// renames the file.
+  /// renames the file. Standard output keeps its beginning: a pipe has none to go back to, and in a file there may be
+  /// something before it. Only formats whose header never changes go there.
   void commit(std::string_view header = {});
 
   /// Throws Error "PATH: WHAT".

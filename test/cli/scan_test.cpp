@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <numbers>
@@ -117,6 +118,20 @@ TEST_F(Scan, MeasuresAPlain) {
     EXPECT_NEAR(number(row, "z"), 100, off);
     EXPECT_EQ(row.at("object"), "0");
   }
+}
+
+// Neither a pipe nor what a file already has in it is overwritten.
+TEST_F(Scan, StandardOutputIsNeverRewound) {
+  const std::string words = fmt::format("{} cast '{}' --crs none --scanner '{}'", SCARP_PROGRAM, flat(), still());
+  const auto said = [&](const std::string& command) {
+    const std::string out = path("said");
+    EXPECT_EQ(std::system(fmt::format("({}) >'{}'", command, out).c_str()), 0) << command;
+    return test::text_of(out);
+  };
+  const std::string points = cast({flat(), "--scanner", still()}).out;
+  EXPECT_GT(points.size(), 1000u);
+  EXPECT_EQ(said("{ " + words + "; echo status $?; } | cat"), points + "status 0\n");
+  EXPECT_EQ(said("echo before; " + words + "; " + words), "before\n" + points + points);
 }
 
 TEST_F(Scan, MissesAreWrittenOnRequest) {
