@@ -100,8 +100,10 @@ FanHits FanAnswers::hits() {
 
 void cast_from(const Terrain& terrain, const PinholeCamera& camera, FanAnswers& answers) {
   const dvec3 side = cross(camera.forward, camera.up);
-  if (!finite(camera.forward) || !finite(side) || side == dvec3(0.0) || !std::isfinite(camera.tan_half_width))
+  if (!finite(camera.forward) || !finite(side) || side == dvec3(0.0))
     throw Error("camera: its directions are not finite, or `forward` is zero or along `up`");
+  if (!(camera.tan_half_width > 0) || std::isinf(camera.tan_half_width))
+    throw Error(fmt::format("camera: tan_half_width is {}; it must be above 0 and finite", camera.tan_half_width));
   const dvec3 forward = normalize(camera.forward), right = normalize(side), up = cross(right, forward);
   Fan fan;
   fan.origin = camera.eye;
@@ -119,6 +121,10 @@ void cast_from(const Terrain& terrain, const Scanner& scanner, FanAnswers& answe
   fan.origin = scanner.eye;
   fan.columns = scanner.columns, fan.rows = static_cast<int>(scanner.elevations.size());
   fan.t_min = scanner.t_min, fan.t_max = scanner.t_max;
+  const auto is_finite = [](double angle) { return std::isfinite(angle); };
+  if (!is_finite(scanner.first_azimuth) || !is_finite(scanner.azimuth_step) ||
+      !std::all_of(scanner.elevations.begin(), scanner.elevations.end(), is_finite))
+    throw Error("scanner: its angles are not finite");
   std::vector<dvec2> turns, tilts;  // sine and cosine
   for (int column = 0; column < scanner.columns; ++column) {
     const double azimuth = scanner.first_azimuth + column * scanner.azimuth_step;

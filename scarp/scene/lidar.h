@@ -103,9 +103,9 @@ class LidarScan {
   /// Time of a column, without the offset of a channel.
   double time_of(std::int64_t column) const;
 
-  /// Sets returns[i * channels + channel] to the answer of column first + i, on all threads. Results depend on neither
-  /// the pieces nor the threads. Throws Error for columns that do not exist, more than 2^30 at once, and where the
-  /// ground ends below the path.
+  /// Sets returns[i * channels + channel] to the answer of column first + i, on all threads. Results depend on no
+  /// thread. Fans start again with each piece: their ranges depend on the pieces, within the tolerance of fans. Throws
+  /// Error for columns that do not exist, more than 2^30 at once, and where the ground ends below the path.
   void cast(std::int64_t first, std::int64_t count, std::vector<LidarReturn>& returns) const;
 
  private:

@@ -77,8 +77,9 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       lighting_(light_of(settings), ao_distance_of(scene, settings), scene.wraps() ? ceiling_ : std::nullopt),
       colours_(settings.materials),
       paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
-      wall_light_(sky().scatters() ? sky().skylight() + sky().sunlight() * static_cast<float>(std::max(0.0, lighting_.to_sun().z))
-                                   : vec3(1.0f)),
+      wall_light_(sky().scatters()
+                      ? sky().skylight() + sky().sunlight() * static_cast<float>(std::max(0.0, lighting_.to_sun().z))
+                      : vec3(1.0f)),
       fog_(settings.fog, sky()),
       haze_(haze_of(scene, camera, settings)),
       step_march_(step_march_of(scene, camera, settings)) {
