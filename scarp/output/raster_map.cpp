@@ -179,7 +179,8 @@ class SideFiles {
 
 }  // namespace
 
-void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options) {
+void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options,
+                           std::string_view sample_type) {
   const GdalWriting writing;
   GDALDriver* found = GetGDALDriverManager()->GetDriverByName(driver.c_str());
   if (!found) throw Error(fmt::format("format '{}': unknown (see gdalinfo --formats)", driver));
@@ -187,6 +188,11 @@ void require_raster_driver(const std::string& driver, const std::vector<std::str
   const bool writes = CPLFetchBool(found->GetMetadata(), GDAL_DCAP_CREATECOPY, false) ||
                       CPLFetchBool(found->GetMetadata(), GDAL_DCAP_CREATE, false);
   if (!raster || !writes) throw Error(fmt::format("format '{}': GDAL cannot write it as a raster", driver));
+  // Others would be rounded to those it has, without an error.
+  const char* types = found->GetMetadataItem(GDAL_DMD_CREATIONDATATYPES);
+  const CPLStringList known(CSLTokenizeString(types ? types : ""));
+  if (types && known.FindString(std::string(sample_type).c_str()) < 0)
+    throw Error(fmt::format("format '{}': cannot store {} samples (name the output *.tif)", driver, sample_type));
   CPLStringList options;
   for (const std::string& option : creation_options)
     options.SetNameValue(name_of_option(option).c_str(), option.c_str() + option.find('=') + 1);

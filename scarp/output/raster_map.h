@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -50,9 +51,11 @@ struct RasterMap {
   std::vector<std::string> creation_options{};                  ///< NAME=VALUE; override the defaults
 };
 
-/// Throws Error without a file's name if GDAL lacks the driver, or if the driver cannot write rasters or does not
-/// accept one of the creation options NAME=VALUE. For programs with long computations before they write.
-void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options = {});
+/// Throws Error without a file's name if GDAL lacks the driver, or if the driver cannot write rasters, or samples of this
+/// type ("Float32"), or does not accept one of the creation options NAME=VALUE. For programs with long computations
+/// before they write.
+void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options = {},
+                           std::string_view sample_type = "Byte");
 
 /// Returns the driver for a file name: GTiff for .tif, otherwise the driver for the extension. Throws Error naming the
 /// file if there is none.

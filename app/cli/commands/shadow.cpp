@@ -182,7 +182,7 @@ std::string method_of(const ShadowOptions& options) {
 
 void run(ShadowOptions options, const Command& command) {
   command.require_effect({});
-  settle_output(options.raster_output, options);
+  settle_output(options.raster_output, options, options.fraction ? "Float32" : "Byte");
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);

@@ -184,7 +184,7 @@ void add_section(Program& program) {
                          .excludes = {"--ray"}});
   command.add(&o.ray, {.names = "--ray",
                        .value = "X,Y,Z,DX,DY,DZ",
-                       .help = "ray in a layer, with the steps of --march, in the voxels of --at",
+                       .help = "ray in a layer, with the steps of --march, in voxels",
                        .note = "one of DX, DY and DZ is 0",
                        .fallback = "none: radii",
                        .excludes = {"--at"}});

@@ -67,7 +67,7 @@ void print_findings(const Picture& picture) {
   const ErrorCounts& errors = *picture.errors;
   for (const std::string& caveat : errors.caveats) fmt::print("{}\n", caveat);
   fmt::print("judged by {}; tolerance {} along the ray; pixels:\n", errors.judges,
-             errors.tolerance_m > 0 ? fmt::format("{:.3g} m", errors.tolerance_m)
+             errors.share == 0 ? fmt::format("{:.3g} m", errors.tolerance_m)
                                     : fmt::format("{:.3g} % of the distance", 100 * errors.share));
   for (int i = 0; i < kVerdicts; ++i) {
     const auto verdict = static_cast<Verdict>(i);

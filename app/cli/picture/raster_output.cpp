@@ -48,9 +48,9 @@ void add_raster_output_options(Command& command, RasterOutput& options) {
   command.add(&options.quiet, {.names = "--quiet", .help = "no summary", .common = true});
 }
 
-void settle_output(RasterOutput& options, const MapOptions& map) {
+void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type) {
   if (options.driver.empty()) options.driver = raster_driver_of(map.output);
-  require_raster_driver(options.driver, options.creation);
+  require_raster_driver(options.driver, options.creation, sample_type);
   keep_inputs(map.output, map.typed);
   // Only a check: formats choose their own temporary files.
   if (!options.dry_run) const ReplaceFile writable(map.output);

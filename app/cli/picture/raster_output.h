@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,9 +26,9 @@ struct RasterOutput {
 /// Declares --of, --co, --part, --preview, --dry-run and --quiet.
 void add_raster_output_options(Command& command, RasterOutput& options);
 
-/// Throws Error, before hours of work, for formats and files that cannot be written and for files that are inputs. Sets
-/// the driver.
-void settle_output(RasterOutput& options, const MapOptions& map);
+/// Throws Error, before hours of work, for formats and files that cannot be written, formats that cannot store samples
+/// of this type ("Float32"), and for files that are inputs. Sets the driver.
+void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type);
 
 /// The nodes that an output covers.
 struct MapArea {
