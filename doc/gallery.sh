@@ -19,7 +19,7 @@ wanted() { [[ "$which" == all || ! "$*" =~ --samples|--look\ error|--contours ]]
 
 while IFS= read -r line; do
   line=${line#"${line%%[! ]*}"}
-  [[ "$line" =~ ^scarp\ (render|viewshed|shadow|profile)\ jacksboro_fault_dem.npz\  ]] || continue
+  [[ "$line" =~ ^scarp\ (render|viewshed|shadow|skyview|sunhours|profile)\ jacksboro_fault_dem.npz\  ]] || continue
   subcommand=${BASH_REMATCH[1]}
   line=${line#"${BASH_REMATCH[0]}"}
   line=${line//..\/..\/examples/$root/examples}  # from doc/images
@@ -27,8 +27,8 @@ while IFS= read -r line; do
   mapfile -t words < <(xargs -n 1 printf '%s\n' <<<"$line")  # knows quotes
   "$program" "$subcommand" "$dem" "${words[@]}"
   made=$((made + 1))
-done < <(sed -e ':join' -e '/\\$/{N;s/\\\n//;bjoin' -e '}' "$root"/doc/user/{comanche,meshes,pictures,profile,shadow,viewshed}.md)
-rm -f seen.tif shadow.tif  # which viewshed.png and shadow.png show
+done < <(sed -e ':join' -e '/\\$/{N;s/\\\n//;bjoin' -e '}' "$root"/doc/user/{comanche,horizon,meshes,pictures,profile,shadow,viewshed}.md)
+rm -f seen.tif shadow.tif sky.tif sun.tif  # which viewshed.png, shadow.png, skyview.png and sunhours.png show
 ((made > 0))  # otherwise no page has such a command any more
 
 scratch=$(mktemp -d)

@@ -56,6 +56,11 @@ Program scarp_program() {
   add_composite(program);
   add_viewshed(program);
   add_shadow(program);
+  add_horizon(program);
+  add_skyview(program);
+#ifdef SCARP_ERFA
+  add_sunhours(program);
+#endif
   add_los(program);
   add_profile(program);
   add_info(program);

@@ -9,6 +9,7 @@ namespace scarp::cli {
 void add_render(Program& program);
 void add_cast(Program& program);
 void add_composite(Program& program);
+void add_horizon(Program& program);
 void add_info(Program& program);
 void add_los(Program& program);
 void add_generate(Program& program);
@@ -17,7 +18,9 @@ void add_profile(Program& program);
 void add_replay(Program& program);
 void add_section(Program& program);
 void add_shadow(Program& program);
-void add_view(Program& program);  // with SCARP_VIEWER
+void add_skyview(Program& program);
+void add_sunhours(Program& program);  // with SCARP_ERFA
+void add_view(Program& program);      // with SCARP_VIEWER
 void add_viewshed(Program& program);
 void add_voxelise(Program& program);
 void add_devices(Program& program);  // with SCARP_VULKAN

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Horizons: for every node of a field and an azimuth, the elevation angle up to which the ground hides the sky.
+//
+//   const scarp::Horizons horizons(field);
+//   const auto south = horizons.rows(scarp::radians(180), 0, field.rows());     // radians, rows from north to south
+//
+// horizon_crossings.h has the definition: the ground is linear where the line of sight crosses a grid line (`crossings`
+// of sight.h), and the horizon is the largest slope over all crossings, in floats by one expression. Angles below zero
+// are kept: a node on a summit sees down to them. The results depend on no thread, vector width or band of rows.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scarp/analysis/sight.h"
+#include "scarp/base/progress.h"
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+struct HorizonSettings {
+  double eye_height = 0;                                          ///< metres above the ground, >= 0, finite
+  double max_distance = std::numeric_limits<double>::infinity();  ///< metres; ground farther away does not count; > 0
+  SightCurvature curvature{};
+};
+
+/// Horizons of nodes, rows from north to south.
+struct HorizonRows {
+  /// Radians above the horizontal, -pi/2 to pi/2. NaN on a hole; -pi/2 where the line meets no ground within the field
+  /// and the distance.
+  std::vector<float> angle;
+  /// Metres to the ground that is the horizon; NaN on a hole and without ground. Empty unless requested.
+  std::vector<float> distance;
+};
+
+class Horizons {
+ public:
+  /// Copies the heights, as floats, and builds maxima over them: about 9 bytes per node. Throws Error for a wrapped
+  /// field, a side above kMaxSightSide or a setting out of range; Interrupted.
+  explicit Horizons(const HeightField& field, const HorizonSettings& settings = {}, const Progress& progress = {});
+
+  /// Rows [first, last) for an azimuth in radians clockwise from grid north, finite. Runs on all threads. Throws Error
+  /// for rows outside the field; Interrupted.
+  HorizonRows rows(double azimuth, int first, int last, bool distances = false, const Progress& progress = {}) const;
+
+ private:
+  struct State;
+  friend const State& state_of(const Horizons& horizons);
+  std::shared_ptr<const State> state_;
+};
+
+/// The horizon of one place.
+struct HorizonView {
+  double angle = 0;                ///< radians, as in HorizonRows
+  std::optional<double> distance;  ///< metres to the ground that is the horizon; nullopt without ground
+};
+
+/// The horizon seen from a place, `col` and `row` in cells, for an azimuth in radians clockwise from grid north: every
+/// crossing, one after another, in double. The eye is above the bilinear ground. nullopt outside the field and over
+/// holes. Throws Error as Horizons does.
+std::optional<HorizonView> horizon_from(const HeightField& field, double col, double row, double azimuth,
+                                        const HorizonSettings& settings = {});
+
+/// Throws Error if a member is out of range.
+void validate(const HorizonSettings& settings);
+
+}  // namespace scarp

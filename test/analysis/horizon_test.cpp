@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+// Horizons and sky view: the engine against every crossing by the same expression, to the bit; against crossings found
+// in long double without the table; and shapes whose answer is known.
+#include "scarp/analysis/horizon.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "scarp/analysis/horizon_scan.h"
+#include "scarp/analysis/shadow.h"
+#include "scarp/analysis/sky_view.h"
+#include "scarp/analysis/sun_hours.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+struct Shape {
+  HeightField field;
+  float eye;
+  HorizonSettings settings;
+};
+
+// Fields that tempt a march to skip too much or too little.
+Shape shape(int number) {
+  std::mt19937 random(static_cast<unsigned>(number) + 1);
+  const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
+  const int cols = 1 + below(90), rows = number % 9 == 8 ? 1 : 1 + below(90);
+  std::vector<float> heights;
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const float noise = static_cast<float>(below(65536)) / 65536;
+      const std::array<float, 8> kinds{
+          50 * noise,
+          7,
+          col > cols / 2 ? 300.0f : 0.0f,
+          static_cast<float>(30 * std::abs(row - rows / 2)),
+          1e6f + noise,
+          below(37) == 0 ? 4000.0f : 0.0f,
+          std::ldexp(below(2) ? 1.0f : -1.0f, below(40) - 20),
+          30 * std::sin(0.2f * static_cast<float>(col)) * std::cos(0.13f * static_cast<float>(row))};
+      const bool hole = number % 3 == 1 && below(14) == 0;
+      heights.push_back(hole ? kHole : kinds[static_cast<std::size_t>(number % 8)]);
+    }
+  }
+  HeightFieldSettings settings{.cell_x = 25, .cell_y = 25};
+  if (number % 2 == 1) settings.cell_x = 10 + below(30), settings.cell_y = 10 + below(30);
+  Shape made{HeightField::own(std::move(heights), cols, rows, settings), number % 5 == 0 ? 2.0f : 0.0f, {}};
+  made.settings.eye_height = static_cast<double>(made.eye);
+  if (number % 7 == 6) made.settings.max_distance = 400;
+  if (number % 4 == 3) made.settings.curvature.coefficient = 0.5, made.settings.curvature.diameter = 1e4;
+  if (number % 4 == 1) made.settings.curvature.coefficient = 0;
+  return made;
+}
+
+// Axes, diagonals, beside them, and between.
+double azimuth(int number) {
+  if (number < 8) return number * kPi / 4;
+  if (number < 12) return (number - 8) * kPi / 4 + 1e-7;
+  if (number == 12) return std::atan(0.5);
+  std::mt19937 random(static_cast<unsigned>(number));
+  return static_cast<double>(random()) / 4294967296.0 * 2 * kPi;
+}
+
+TEST(Horizons, EqualEveryCrossingToTheBit) {
+  int differences = 0;
+  for (int s = 0; s < 48; ++s) {
+    const Shape made = shape(s);
+    const HorizonGround ground(made.field, 1, made.eye);
+    const NodeRect all{0, 0, made.field.cols(), made.field.rows()};
+    const auto nodes = static_cast<std::size_t>(all.col_end) * static_cast<std::size_t>(all.row_end);
+    for (int a = 0; a < 20; ++a) {
+      const HorizonTable table(
+          ground, HorizonCrossings(made.field, azimuth(a), made.settings.max_distance, made.settings.curvature));
+      std::vector<float> fast(nodes), slow(nodes);
+      std::vector<std::int32_t> fast_entry(nodes), slow_entry(nodes);
+      scan_horizon(ground, table, made.eye, all, fast.data(), fast_entry.data(), all.col_end);
+      scan_horizon_by_all(ground, table, made.eye, all, slow.data(), slow_entry.data(), all.col_end);
+      for (std::size_t i = 0; i < nodes; ++i) {
+        if (std::isnan(slow[i]) && std::isnan(fast[i])) continue;
+        differences += std::bit_cast<std::uint32_t>(fast[i]) != std::bit_cast<std::uint32_t>(slow[i]) ||
+                       fast_entry[i] != slow_entry[i];
+      }
+    }
+  }
+  EXPECT_EQ(differences, 0);
+}
+
+// The horizon slope of a node by every grid line that the line of sight crosses, in long double, and the largest error
+// that the floats of the definition may have.
+struct Judged {
+  long double slope = -std::numeric_limits<long double>::infinity(), error = 0;
+};
+Judged judge(const Shape& made, int col, int row, double direction) {
+  const HeightFieldSettings& cells = made.field.settings();
+  const SightGround ground(made.field);
+  const auto z = ground.height({col, row});
+  const long double east = std::sin(static_cast<long double>(direction)) / cells.cell_x;
+  const long double south = -std::cos(static_cast<long double>(direction)) / cells.cell_y;
+  Judged judged;
+  for (const bool by_column : {true, false}) {
+    const long double ahead = by_column ? east : south, aside = by_column ? south : east;
+    // A double's azimuth of a quarter turn is off by less.
+    if (std::abs(ahead) < 0x1p-45L * std::abs(aside)) continue;
+    const int lines = by_column ? made.field.cols() : made.field.rows();
+    for (int line = 0; line < lines; ++line) {
+      const long double distance = (line - (by_column ? col : row)) / ahead;
+      if (!(distance > 0) || distance > made.settings.max_distance) continue;
+      long double place = (by_column ? row : col) + aside * distance;
+      if (std::abs(place - std::round(place)) < 0x1p-36L) place = std::round(place);
+      const int low = static_cast<int>(std::floor(place)), across = by_column ? made.field.rows() : made.field.cols();
+      const long double w = place - low;
+      if (low < 0 || low + (w > 0) >= across) continue;
+      const auto height = [&](int at) { return ground.height(by_column ? Node{line, at} : Node{at, line}); };
+      const auto first = height(low), second = w > 0 ? height(low + 1) : first;
+      if (!first || !second) continue;
+      const long double side = by_column ? cells.cell_y : cells.cell_x, c = made.settings.curvature.per_square_metre();
+      const long double drop = c * (distance * distance + w * (1 - w) * side * side) / distance;
+      const long double eye = *z + static_cast<long double>(made.eye);
+      const long double slope = (*first + w * (*second - *first) - eye) / distance - drop;
+      judged.slope = std::max(judged.slope, slope);
+      // Heights, the eye and w round once each (w also by 2^-36 of a cell), the differences and the sum once more, 1/D
+      // and the drop once, the slope once.
+      const long double unit = 0x1p-24L, tall = std::abs(*first) + std::abs(*second) + std::abs(eye);
+      const long double of_ground = 4 * unit * tall + (unit + 0x1p-36L) * std::abs(*second - *first);
+      judged.error = std::max(judged.error, of_ground / distance + 3 * unit * (std::abs(slope) + drop));
+    }
+  }
+  return judged;
+}
+
+TEST(Horizons, EqualCrossingsInLongDouble) {
+  int judged = 0;
+  for (int s = 0; s < 48; ++s) {
+    const Shape made = shape(s);
+    const Horizons horizons(made.field, made.settings);
+    std::mt19937 random(static_cast<unsigned>(s));
+    for (int a = 0; a < 20; ++a) {
+      const HorizonRows found = horizons.rows(azimuth(a), 0, made.field.rows());
+      for (int i = 0; i < 12; ++i) {
+        const int col = static_cast<int>(random() % static_cast<unsigned>(made.field.cols()));
+        const int row = static_cast<int>(random() % static_cast<unsigned>(made.field.rows()));
+        const float angle = found.angle[static_cast<std::size_t>(row) * static_cast<std::size_t>(made.field.cols()) +
+                                        static_cast<std::size_t>(col)];
+        if (!SightGround(made.field).height({col, row})) {
+          EXPECT_TRUE(std::isnan(angle));
+          continue;
+        }
+        const Judged truth = judge(made, col, row, azimuth(a));
+        ++judged;
+        if (std::isinf(truth.slope)) {
+          EXPECT_EQ(angle, static_cast<float>(-kPi / 2));
+          continue;
+        }
+        // An angle moves by no more than its slope; rounding of the angle itself.
+        const double allowed = static_cast<double>(truth.error) + 0x1p-22;
+        EXPECT_NEAR(static_cast<double>(angle), static_cast<double>(std::atan(truth.slope)), allowed)
+            << "shape " << s << ", azimuth " << azimuth(a) << ", node " << col << ", " << row;
+        const auto view = horizon_from(made.field, col, row, azimuth(a), made.settings);
+        ASSERT_TRUE(view);
+        EXPECT_NEAR(view->angle, static_cast<double>(std::atan(truth.slope)), allowed);
+      }
+    }
+  }
+  EXPECT_GT(judged, 5000);
+}
+
+// Also equal where both are NaN.
+std::vector<std::uint32_t> bits(const std::vector<float>& values) {
+  std::vector<std::uint32_t> all;
+  for (const float value : values) all.push_back(std::isnan(value) ? 0x7fc00000u : std::bit_cast<std::uint32_t>(value));
+  return all;
+}
+
+TEST(Horizons, DependOnNoBandAndNoThread) {
+  const Shape made = shape(7);
+  const Horizons horizons(made.field, made.settings);
+  const HorizonRows whole = horizons.rows(1.2345, 0, made.field.rows(), true);
+  const ThreadLimit one(1);
+  HorizonRows parts;
+  for (int row = 0; row < made.field.rows(); row += 3) {
+    const HorizonRows part = horizons.rows(1.2345, row, std::min(row + 3, made.field.rows()), true);
+    parts.angle.insert(parts.angle.end(), part.angle.begin(), part.angle.end());
+    parts.distance.insert(parts.distance.end(), part.distance.begin(), part.distance.end());
+  }
+  EXPECT_EQ(bits(parts.angle), bits(whole.angle));
+  EXPECT_EQ(bits(parts.distance), bits(whole.distance));
+}
+
+TEST(Horizons, AzimuthsOfAFullTurnAreEqual) {
+  const Shape made = shape(16);
+  const Horizons horizons(made.field, made.settings);
+  for (const double turn : {0.0, kPi / 2, kPi}) {
+    EXPECT_EQ(bits(horizons.rows(turn, 0, made.field.rows()).angle),
+              bits(horizons.rows(turn + 2 * kPi, 0, made.field.rows()).angle));
+  }
+}
+
+// A wall 100 m high, 400 m east of a flat plain.
+TEST(Horizons, MeasureAWall) {
+  std::vector<float> heights(101 * 101, 0);
+  for (std::size_t row = 0; row < 101; ++row) heights[row * 101 + 90] = 100;
+  const HeightField field = HeightField::own(std::move(heights), 101, 101, {.cell_x = 10, .cell_y = 10});
+  HorizonSettings settings;
+  settings.curvature.coefficient = 0;
+  const HorizonRows east = Horizons(field, settings).rows(kPi / 2, 50, 51, true);
+  EXPECT_FLOAT_EQ(east.angle[50], static_cast<float>(std::atan(100.0 / 400)));
+  EXPECT_FLOAT_EQ(east.distance[50], 400);
+  settings.max_distance = 399;
+  EXPECT_FLOAT_EQ(Horizons(field, settings).rows(kPi / 2, 50, 51).angle[50], 0);
+}
+
+HeightField plane(double slope, double aspect) {
+  constexpr int kSide = 161;
+  std::vector<float> heights;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      heights.push_back(
+          static_cast<float>(-std::tan(slope) * 10 * (std::sin(aspect) * (col - 80) + std::cos(aspect) * (80 - row))));
+    }
+  }
+  return HeightField::own(std::move(heights), kSide, kSide, {.cell_x = 10, .cell_y = 10});
+}
+
+// The middle of a plane sees (1 + cos b) / 2 of the radiation; the solid angle is 1 - sin of atan(tan b cos) averaged
+// over the uphill half: 1 - b / pi. Floats: heights up to 2^11 m round by 2^-13 m over 10 m or more.
+TEST(SkyView, OfPlanesIsKnown) {
+  constexpr std::array measures{SkyMeasure::sky_fraction, SkyMeasure::sky_view_factor, SkyMeasure::positive_openness,
+                                SkyMeasure::negative_openness};
+  constexpr double kFloats = 0x1p-13 / 10 * 4;
+  HorizonSettings settings;
+  settings.curvature.coefficient = 0;
+  for (const double degrees : {0.0, 10.0, 30.0, 45.0, 60.0}) {
+    for (const double aspect : {0.0, kPi / 2, 0.5, 4.0}) {
+      const double slope = degrees * kPi / 180;
+      const SkyView sky(plane(slope, aspect), settings, 256);
+      const auto rows = sky.rows(measures, 80, 81);
+      // The mean over 256 directions of a function of bounded second derivative differs from its integral by less.
+      constexpr double kDirections = 2e-4;
+      EXPECT_NEAR(static_cast<double>(rows[0][80]), 1 - slope / kPi, kFloats + kDirections) << degrees;
+      EXPECT_NEAR(static_cast<double>(rows[1][80]), (1 + std::cos(slope)) / 2, kFloats + kDirections) << degrees;
+      EXPECT_NEAR(static_cast<double>(rows[2][80]), kPi / 2, kFloats) << degrees;
+      EXPECT_NEAR(static_cast<double>(rows[3][80]), kPi / 2, kFloats) << degrees;
+    }
+  }
+}
+
+TEST(SkyView, KeepsHolesAndRefusesSettings) {
+  HeightField field = HeightField::own(std::vector<float>{1, 2, kHole, 4, 5, 6}, 3, 2);
+  constexpr std::array one{SkyMeasure::sky_fraction};
+  const auto rows = SkyView(field, {}, 8).rows(one, 0, 2);
+  EXPECT_TRUE(std::isnan(rows[0][2]));
+  EXPECT_FALSE(std::isnan(rows[0][0]));
+  EXPECT_THROW(SkyView(field, {}, 0), Error);
+  EXPECT_THROW(Horizons(field, {.eye_height = -1}), Error);
+  EXPECT_THROW(Horizons(field, {.max_distance = 0}), Error);
+  EXPECT_THROW(Horizons(field).rows(0, 0, 3), Error);
+  EXPECT_THROW(Horizons(field).rows(std::numeric_limits<double>::quiet_NaN(), 0, 1), Error);
+}
+
+// Nodes that a sun lights for an hour are those that shadow() finds lit, by other rules: it decides exactly, and rounds
+// the direction of the sun to 2^-27 cells per cell. Both may differ where the sun is on the horizon, and in directions
+// through nodes on a border or beside a hole, which only one of them may meet: such directions are not drawn.
+TEST(SunHours, AgreeWithShadows) {
+  int compared = 0, close = 0;
+  for (int s = 0; s < 48; ++s) {
+    Shape made = shape(s);
+    made.settings = {};
+    made.settings.curvature.coefficient = 0;
+    const Horizons horizons(made.field, made.settings);
+    for (int a = 13; a < 19; ++a) {
+      const SunDirection sun{azimuth(a), 0.05 + 0.2 * (a - 13)};
+      const auto codes = shadow(made.field, sun);
+      const SunMoment moments[] = {{sun, 1.0}};
+      const SunHours hours = sun_hours(horizons, moments, 0, made.field.rows());
+      const HorizonRows rows = horizons.rows(sun.azimuth, 0, made.field.rows());
+      for (std::size_t i = 0; i < codes.size(); ++i) {
+        if (codes[i] == Shade::hole) {
+          EXPECT_TRUE(std::isnan(hours.hours[i]));
+          continue;
+        }
+        // Floats are off by up to 2^-13 m in heights of 4000 m, by 2^-3 in those of 10^6 m, over a cell of 10 m.
+        const double room = (made.field.max_height() > 1e5 ? 0x1p-3 : 0x1p-13) / 10 + 0x1p-20;
+        ++compared;
+        if (std::abs(std::tan(static_cast<double>(rows.angle[i])) - std::tan(sun.altitude)) < room) {
+          ++close;
+          continue;
+        }
+        EXPECT_EQ(hours.hours[i] > 0, codes[i] == Shade::lit) << "shape " << s << ", sun " << a << ", node " << i;
+        EXPECT_EQ(hours.first[i], codes[i] == Shade::lit ? 0 : -1);
+      }
+    }
+  }
+  EXPECT_GT(compared, 100000);
+  EXPECT_LT(close, compared / 50);
+}
+
+}  // namespace
+}  // namespace scarp
