@@ -444,6 +444,14 @@ TEST(ScarpBench, PitchesWritesTheDocumentedFields) {
   EXPECT_EQ(all["rows"].size(), 12u);
 }
 
+TEST(ScarpBench, SkyComparesHorizonsWithEmbree) {
+  const json all = output_of("sky --sizes 129 --repeats 1 --azimuths 8 --nodes 400");
+  expect_documented(all, "sky");
+  ASSERT_EQ(all["rows"].size(), 3u);
+  // Half of the accuracy of Embree's search, and the ground between crossings, which triangles have.
+  for (const json& row : all["rows"]) EXPECT_LT(row["error_p50_deg"], 0.25) << row;
+}
+
 TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
   const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
   expect_documented(all, "sweeps");

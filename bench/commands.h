@@ -30,6 +30,7 @@ void add_voxel_leaks(cli::Program& program);
 void add_scenes(cli::Program& program);
 void add_seams(cli::Program& program);
 void add_pitches(cli::Program& program);
+void add_sky(cli::Program& program);
 void add_sweeps(cli::Program& program);
 void add_frames(cli::Program& program);
 void add_functions(cli::Program& program);

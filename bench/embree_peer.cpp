@@ -144,6 +144,8 @@ EmbreePeer::EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQu
 
 EmbreePeer::~EmbreePeer() = default;
 
+RTCSceneTy* EmbreePeer::scene() const { return scene_->scene; }
+
 std::vector<Engine> EmbreePeer::engines() const {
   const Scene& s = *scene_;
   Engine common;

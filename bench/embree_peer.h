@@ -11,6 +11,8 @@
 #include "bench/engine.h"
 #include "bench/fields.h"
 
+struct RTCSceneTy;
+
 namespace scarp::bench {
 
 enum class EmbreeSurface { triangles, grid };
@@ -30,6 +32,8 @@ class EmbreePeer {
 
   /// One for each of embree_modes(), x1 first: "embree-tri" or "embree-grid"; "-default" follows if not robust.
   std::vector<Engine> engines() const;
+  /// Embree's own handle, for rays that depend on one another.
+  RTCSceneTy* scene() const;
 
   /// "3.13.5"
   static std::string version();

@@ -40,6 +40,7 @@ cli::Program bench_program() {
   add_scenes(program);
   add_seams(program);
   add_pitches(program);
+  add_sky(program);
   add_sweeps(program);
   add_frames(program);
   add_functions(program);
