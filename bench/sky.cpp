@@ -116,7 +116,8 @@ std::vector<double> by_embree(const EmbreeHorizons& embree, const std::vector<No
       double* angle = &angles[i * static_cast<std::size_t>(azimuths)];
       for (int a = 0; a < azimuths; ++a) {
         const double azimuth = azimuth_of(a, azimuths);
-        angle[a] = guess && a > 0 ? embree.from_guess(nodes[i], azimuth, angle[a - 1]) : embree.bisect(nodes[i], azimuth);
+        angle[a] =
+            guess && a > 0 ? embree.from_guess(nodes[i], azimuth, angle[a - 1]) : embree.bisect(nodes[i], azimuth);
       }
     }
   });
@@ -176,13 +177,16 @@ std::vector<SkyRow> measure_sky(const HeightField& field, const SkyOptions& opti
         const auto truth = horizon_from(field, nodes[i].col, nodes[i].row, azimuth_of(a, options.azimuths), settings);
         // At the border there is no ground to be seen.
         if (truth && truth->distance)
-          errors.push_back(std::abs(truth->angle - angles[i * static_cast<std::size_t>(options.azimuths) +
-                                                          static_cast<std::size_t>(a)]) *
-                           180 / kPi);
+          errors.push_back(
+              std::abs(truth->angle -
+                       angles[i * static_cast<std::size_t>(options.azimuths) + static_cast<std::size_t>(a)]) *
+              180 / kPi);
       }
     }
     std::sort(errors.begin(), errors.end());
-    const auto at = [&](double share) { return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))]; };
+    const auto at = [&](double share) {
+      return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+    };
     const double rate = static_cast<double>(angles.size()) / median(seconds) * 1e-6;
     rows.push_back({guess ? "embree, guess" : "embree, bisection", rate, embree_build_s, at(0.5), at(0.99)});
   }
@@ -191,8 +195,8 @@ std::vector<SkyRow> measure_sky(const HeightField& field, const SkyOptions& opti
 
 void run_sky(const SkyOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{{"samples", "threads", "engine", "M node-azimuths/s", "x faster Embree",
-                                               "build s", "error p50", "p99 degrees"}};
+  std::vector<std::vector<std::string>> lines{
+      {"samples", "threads", "engine", "M node-azimuths/s", "x faster Embree", "build s", "error p50", "p99 degrees"}};
   for (const int size : options.sizes) {
     FieldOptions asked = options.field;
     asked.size = size;

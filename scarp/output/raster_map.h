@@ -51,9 +51,9 @@ struct RasterMap {
   std::vector<std::string> creation_options{};                  ///< NAME=VALUE; override the defaults
 };
 
-/// Throws Error without a file's name if GDAL lacks the driver, or if the driver cannot write rasters, or samples of this
-/// type ("Float32"), or does not accept one of the creation options NAME=VALUE. For programs with long computations
-/// before they write.
+/// Throws Error without a file's name if GDAL lacks the driver, or if the driver cannot write rasters, or samples of
+/// this type ("Float32"), or does not accept one of the creation options NAME=VALUE. For programs with long
+/// computations before they write.
 void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options = {},
                            std::string_view sample_type = "Byte");
 

@@ -160,7 +160,8 @@ TEST_F(ExrOutput, ReportsErrorsInOneLineWithoutOutput) {
     std::string fragment;
   } cases[] = {
       {{"-o", out(), "--look", "steps"}, "channels"},
-      {{"-o", out(), "--look", "error", "--depth-range", "1,9"}, "--depth-range applies to the look shaded"},
+      {{"-o", out(), "--look", "error", "--depth-range", "1,9"},
+       "--depth-range applies to the looks shaded and comanche"},
       {{"-o", scratch_.path("no/folder/out.exr")}, "folder"},
       {{"-o", "/proc/out.exr"}, "/proc"},
       {{"-o", scratch_.path("full.exr")}, "device"},

@@ -333,10 +333,7 @@ void run(ViewshedOptions options, const Command& command) {
   options.mode = mode_of(options.mode);
   const std::optional<PixelValues> values =
       options.mode == "visible" ? std::optional(pixel_values(options)) : std::nullopt;
-  settle_output(options.raster_output, options,
-                values                    ? "Byte"
-                : options.mode == "count" ? "UInt16"
-                                          : "Float32");
+  settle_output(options.raster_output, options, values ? "Byte" : options.mode == "count" ? "UInt16" : "Float32");
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);

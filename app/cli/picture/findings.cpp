@@ -68,7 +68,7 @@ void print_findings(const Picture& picture) {
   for (const std::string& caveat : errors.caveats) fmt::print("{}\n", caveat);
   fmt::print("judged by {}; tolerance {} along the ray; pixels:\n", errors.judges,
              errors.share == 0 ? fmt::format("{:.3g} m", errors.tolerance_m)
-                                    : fmt::format("{:.3g} % of the distance", 100 * errors.share));
+                               : fmt::format("{:.3g} % of the distance", 100 * errors.share));
   for (int i = 0; i < kVerdicts; ++i) {
     const auto verdict = static_cast<Verdict>(i);
     fmt::print("  {:10}  {:9}  {}{}\n", name_of(verdict), colour_name_of(verdict), errors[verdict],

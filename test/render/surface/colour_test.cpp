@@ -116,12 +116,13 @@ TEST(Light, SunIsAtItsCompassAzimuth) {
   EXPECT_NEAR(light.to_sun().y, 0, 1e-12);
 }
 
-TEST(Light, RejectsASunBelowTheHorizon) {
+TEST(Light, RejectsASunBelowTwilight) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double altitude : {0.0, -10.0, 91.0, nan}) {
+  for (const double altitude : {std::nextafter(kLowestSun, -90.0), -10.0, 91.0, nan}) {
     EXPECT_THROW(validate(SunSettings{.altitude_deg = altitude}), Error) << altitude;
   }
   EXPECT_THROW(validate(SunSettings{.azimuth_deg = nan}), Error);
+  EXPECT_NO_THROW(validate(SunSettings{.altitude_deg = kLowestSun}));
 }
 
 // Shades of a white hill-shade stay distinct, hues are kept, and dark colours do not change.
