@@ -29,7 +29,7 @@ expect() {
 }
 expect 'scarp ren' 'render'
 expect 'scarp c' 'cast composite'
-expect 'scarp render --look ' 'comanche error height hillshade shaded steps'
+expect 'scarp render --look ' 'comanche cost error height hillshade shaded steps'
 expect 'scarp render --look s' 'shaded steps'
 expect 'scarp render --look = h' 'height hillshade'
 expect 'scarp render --fog d' 'distance'

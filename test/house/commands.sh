@@ -134,4 +134,4 @@ for page in "$@"; do
   done < <(commands_of "$root/$page")
 done
 echo "$count commands, $failures failures"
-[[ $failures -eq 0 && $count -gt 60 ]]
+[[ $failures -eq 0 && $count -gt 40 ]]

@@ -147,8 +147,7 @@ void add_skyview(Program& program) {
   add_map_options(command, o);
   command.footer(kSkyFooter);
   command.example("scarp skyview dem.tif -o sky.tif");
-  command.example(
-      "scarp skyview dem.tif --measure sky-view-factor --measure positive-openness --azimuths 32 -o sky.tif");
+  command.example("scarp skyview dem.tif --measure sky-view-factor --measure positive-openness -o sky.tif");
   command.runs([options, &command] {
     options->typed = command.typed_values();
     run(*options, command);

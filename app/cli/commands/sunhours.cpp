@@ -36,8 +36,8 @@ constexpr int kMinutesPerDay = 24 * 60;
 constexpr const char* kSunHoursMethod =
     "exact horizons towards the centre of the sun; ground linear at crossings of grid lines (scarp sunhours)";
 constexpr const char* kSunHoursFooter =
-    R"(Pixels: hours of direct sun, one band per period. With --first-last, two more bands per day: the time
-of day, in hours, of the middle of the first and the last step with sun (nodata: none).
+    R"(Pixels: hours of direct sun, one band per period. With --first-last, two more bands per day: the
+time of day, in hours, of the middle of the first and the last step with sun (nodata: none).
 The sun of each step is that in its middle, at the centre of the raster.)";
 
 struct SunHoursOptions : MapOptions {
