@@ -45,12 +45,16 @@ constexpr double kPi = std::numbers::pi, kAccuracy = 0.25 * kPi / 180, kLowest =
 // Azimuths are half a step beside north: in the directions of the grid there are half as many crossings.
 double azimuth_of(int i, int count) { return 2 * kPi * (i + 0.5) / count; }
 
-std::vector<Node> random_nodes(const HeightField& field, int count) {
+// Blocks of neighbours at random places: their rays meet the same parts of Embree's tree one after another, as in a
+// map.
+std::vector<Node> sampled_nodes(const HeightField& field, int count) {
+  constexpr int kSide = 16;
   Random random(1, 0);
   std::vector<Node> nodes;
-  for (int i = 0; i < count; ++i) {
-    const auto below = [&](int n) { return static_cast<int>(random.below(static_cast<std::uint64_t>(n))); };
-    nodes.push_back({below(field.cols()), below(field.rows())});
+  while (static_cast<int>(nodes.size()) < count) {
+    const auto below = [&](int n) { return static_cast<int>(random.below(static_cast<std::uint64_t>(n - kSide + 1))); };
+    const int col = below(field.cols()), row = below(field.rows());
+    for (int i = 0; i < kSide * kSide; ++i) nodes.push_back({col + i % kSide, row + i / kSide});
   }
   return nodes;
 }
@@ -162,7 +166,7 @@ std::vector<SkyRow> measure_sky(const HeightField& field, const SkyOptions& opti
   const EmbreePeer peer(field, EmbreeSurface::triangles, EmbreeQuality::medium);
   const double embree_build_s = embree_building.wall_s();
   const EmbreeHorizons embree(field, peer);
-  const std::vector<Node> nodes = random_nodes(field, options.nodes);
+  const std::vector<Node> nodes = sampled_nodes(field, options.nodes);
   for (const bool guess : {false, true}) {
     std::vector<double> angles;
     seconds.clear();
