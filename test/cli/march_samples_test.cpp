@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -195,8 +196,44 @@ TEST_F(MarchSamples, SectionDrawsVisitedVoxelsAndEmptyBodies) {
       {{ray, "--march", "voxel-exhaustive"}, "--march 'voxel-exhaustive': expected voxel-planes"},
       {{"--march", "voxel-cubes"}, "--march has no effect without --ray"},
       {{ray, "--at", "3"}, "--at"},
-      {{ray, "--radii", "cubes"}, "--ray"}};
+      {{ray, "--radii", "cubes"}, "--ray"},
+      {{ray, "--outlines"}, "--outlines has no effect without radii"}};
   for (const auto& [arguments, fragment] : bad) test::expect_refused(draw(arguments), fragment);
+}
+
+// Outlines hold no solid voxel, and each empty voxel whose radius is not 0 is in one of them.
+TEST_F(MarchSamples, OutlinesCoverTheEmptyVoxels) {
+  struct Square {
+    int x, y, side;
+    bool holds(int cx, int cy) const { return cx > x && cx < x + side && cy > y && cy < y + side; }
+  };
+  for (const char* radii : {"cubes", "spheres"}) {
+    const auto result = run({"section", wall(), "--volume", "16x16x16:u8", "--solid-from", "1", "-o", path("s.svg"),
+                             "--radii", radii, "--outlines"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    std::vector<Square> outlines, solid, empty;
+    const std::string svg = text_of(path("s.svg"));
+    for (auto at = svg.find("<rect "); at != std::string::npos; at = svg.find("<rect ", at + 1)) {
+      Square square{};
+      ASSERT_EQ(
+          std::sscanf(svg.c_str() + at, "<rect x=\"%d\" y=\"%d\" width=\"%d\"", &square.x, &square.y, &square.side), 3);
+      const std::string line = svg.substr(at, svg.find('\n', at) - at);
+      if (line.find("fill=\"none\"") != std::string::npos) {
+        outlines.push_back(square);
+      } else if (line.find("<text") == std::string::npos) {
+        solid.push_back(square);
+      } else if (line.find(">0</text>") == std::string::npos) {
+        empty.push_back(square);
+      }
+    }
+    ASSERT_FALSE(outlines.empty() || solid.empty() || empty.empty());
+    const auto held = [&](const Square& cell) {
+      return std::any_of(outlines.begin(), outlines.end(),
+                         [&](const Square& outline) { return outline.holds(cell.x + 10, cell.y + 10); });
+    };
+    EXPECT_TRUE(std::none_of(solid.begin(), solid.end(), held)) << radii;
+    EXPECT_TRUE(std::all_of(empty.begin(), empty.end(), held)) << radii;
+  }
 }
 
 TEST_F(MarchSamples, ReportsBadInputInOneLineWithoutOutput) {

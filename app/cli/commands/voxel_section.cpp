@@ -28,6 +28,7 @@ struct SectionOptions {
   std::string input, output, radii = "spheres", axis, ray;
   std::vector<std::string> marches{"voxel-cubes"};
   int at = -1, model = 0, margin = 4;
+  bool outlines = false;
   VoxOptions vox;
 };
 
@@ -66,8 +67,48 @@ void require_size(const std::string& input, const ivec3& size, int axis) {
                     size[axis], kMaxAcceleratedSide));
 }
 
+// An empty body in the layer: the columns and rows around its centre that its radius reaches.
+struct Body {
+  int col, row, radius;
+};
+
+// Bodies that cover all empty voxels with a radius, the largest first, and of equal ones the first of the layer.
+// `radii`: of the voxels of the layer by rows; 0 of solid ones.
+std::vector<Body> covering_bodies(const std::vector<int>& radii, int cols, bool spheres) {
+  const int rows = static_cast<int>(radii.size()) / cols;
+  std::vector<Body> all, chosen;
+  for (int i = 0; i < static_cast<int>(radii.size()); ++i) {
+    if (const int radius = radii[static_cast<std::size_t>(i)]; radius > 0) all.push_back({i % cols, i / cols, radius});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Body& a, const Body& b) { return a.radius > b.radius; });
+  std::vector<char> covered(radii.size(), 0);
+  for (const Body& body : all) {
+    if (covered[static_cast<std::size_t>(body.row * cols + body.col)]) continue;
+    chosen.push_back(body);
+    for (int row = std::max(body.row - body.radius, 0); row <= std::min(body.row + body.radius, rows - 1); ++row) {
+      for (int col = std::max(body.col - body.radius, 0); col <= std::min(body.col + body.radius, cols - 1); ++col) {
+        const int x = col - body.col, y = row - body.row;
+        if (!spheres || x * x + y * y <= body.radius * body.radius)
+          covered[static_cast<std::size_t>(row * cols + col)] = 1;
+      }
+    }
+  }
+  return chosen;
+}
+
+// A cube is a square around its voxel. A sphere is what a ray may travel from anywhere in its voxel, a square with
+// round corners.
+std::string outline_of(const Body& body, bool spheres) {
+  const int x = (body.col - body.radius) * kCell, y = (body.row - body.radius) * kCell;
+  const int side = (2 * body.radius + 1) * kCell;
+  return fmt::format(
+      "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\" fill=\"none\" stroke=\"#b33a1e\" "
+      "stroke-width=\"2\"/>\n",
+      x, y, side, side, spheres ? body.radius * kCell : 0);
+}
+
 template <class Radius>
-std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius) {
+std::string svg_of(const VoxelGrid& grid, const SectionOptions& options, int axis, int at, const Radius& radius) {
   const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
   const int cols = grid.size()[across], rows = grid.size()[up];
   const auto voxel = [&](int col, int row) {
@@ -75,12 +116,11 @@ std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius
     v[axis] = at, v[across] = col, v[up] = rows - 1 - row;
     return v;
   };
-  int largest = 0;
+  std::vector<int> radii;
   for (int row = 0; row < rows; ++row) {
-    for (int col = 0; col < cols; ++col) {
-      if (!grid.solid(voxel(col, row))) largest = std::max(largest, radius(voxel(col, row)));
-    }
+    for (int col = 0; col < cols; ++col) radii.push_back(grid.solid(voxel(col, row)) ? 0 : radius(voxel(col, row)));
   }
+  const int largest = *std::max_element(radii.begin(), radii.end());
   const int width = cols * kCell, height = rows * kCell;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"-1 -1 {2} {3}\">\n"
@@ -101,7 +141,12 @@ std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius
       svg += '\n';
     }
   }
-  return svg + "</g>\n</svg>\n";
+  svg += "</g>\n";
+  if (options.outlines) {
+    const bool spheres = options.radii == "spheres";
+    for (const Body& body : covering_bodies(radii, cols, spheres)) svg += outline_of(body, spheres);
+  }
+  return svg + "</svg>\n";
 }
 
 void write_text(const std::string& path, const std::string& text) {
@@ -153,10 +198,10 @@ void run(const SectionOptions& options) {
   std::string svg;
   if (options.radii == "spheres") {
     const EmptySpheres spheres(grid);
-    svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return spheres.distance(v); });
+    svg = svg_of(grid, options, axis, at + options.margin, [&](const ivec3& v) { return spheres.distance(v); });
   } else {
     const EmptyCubes cubes(grid);
-    svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return cubes.distance(v) - 1; });
+    svg = svg_of(grid, options, axis, at + options.margin, [&](const ivec3& v) { return cubes.distance(v) - 1; });
   }
   write_text(options.output, svg);
   for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
@@ -182,6 +227,9 @@ void add_section(Program& program) {
                          .choices = {"spheres", "cubes"},
                          .closed = true,
                          .excludes = {"--ray"}});
+  command.add(&o.outlines, {.names = "--outlines",
+                            .help = "outlines of empty bodies that cover the layer, the largest first",
+                            .rules = {needs("radii, without --ray", [&o] { return o.ray.empty(); })}});
   command.add(&o.ray, {.names = "--ray",
                        .value = "X,Y,Z,DX,DY,DZ",
                        .help = "ray in a layer, with the steps of --march, in voxels",
