@@ -40,6 +40,7 @@ struct SkyOptions {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMillion = 1e6;
 constexpr double kPi = std::numbers::pi, kAccuracy = 0.25 * kPi / 180, kLowest = -kPi / 2, kHighest = kPi / 2;
 
 // Azimuths are half a step beside north: in the directions of the grid there are half as many crossings.
@@ -160,7 +161,7 @@ std::vector<SkyRow> measure_sky(const HeightField& field, const SkyOptions& opti
     }
     seconds.push_back(watch.wall_s());
   }
-  std::vector<SkyRow> rows{{"exact", counted * options.azimuths / median(seconds) * 1e-6, build_s, 0, 0}};
+  std::vector<SkyRow> rows{{"exact", counted * options.azimuths / median(seconds) / kMillion, build_s, 0, 0}};
 
   const Stopwatch embree_building;
   const EmbreePeer peer(field, EmbreeSurface::triangles, EmbreeQuality::medium);
@@ -191,7 +192,7 @@ std::vector<SkyRow> measure_sky(const HeightField& field, const SkyOptions& opti
     const auto at = [&](double share) {
       return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
     };
-    const double rate = static_cast<double>(angles.size()) / median(seconds) * 1e-6;
+    const double rate = static_cast<double>(angles.size()) / median(seconds) / kMillion;
     rows.push_back({guess ? "embree, guess" : "embree, bisection", rate, embree_build_s, at(0.5), at(0.99)});
   }
   return rows;

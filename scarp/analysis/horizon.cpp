@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/base/error.h"
@@ -15,16 +15,15 @@
 namespace scarp {
 namespace {
 
-constexpr int kBlockRows = 128;
+// A strip's rows of samples stay in the cache from one row of nodes to the next, and a block has enough rows for the
+// warm start of horizon_scan.h to pay.
+constexpr int kStripCols = 256, kBlockRows = 128;
+// Tables of this many azimuths are kept at once: 24 bytes per crossing.
+constexpr std::size_t kTablesAtOnce = 64;
 
 }  // namespace
 
 const Horizons::State& state_of(const Horizons& horizons) { return *horizons.state_; }
-
-void require_rows(const HeightField& field, int first, int last) {
-  if (first < 0 || first > last || last > field.rows())
-    throw Error(fmt::format("horizon: rows {} to {} of a field of {} rows", first, last, field.rows()));
-}
 
 void validate(const HorizonSettings& settings) {
   require_setting("horizon", settings.eye_height >= 0 && std::isfinite(settings.eye_height), "eye height",
@@ -33,19 +32,40 @@ void validate(const HorizonSettings& settings) {
   validate(settings.curvature);
 }
 
-void for_each_block(int cols, int first, int last, const std::function<void(const NodeRect&)>& body,
-                    const Progress& progress) {
-  const std::int64_t across = (cols + kStripCols - 1) / kStripCols, down = (last - first + kBlockRows - 1) / kBlockRows;
-  parallel_for(
-      across * down, 1,
-      [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) {
-          const int col = static_cast<int>(i % across) * kStripCols;
-          const int row = first + static_cast<int>(i / across) * kBlockRows;
-          body({col, row, std::min(col + kStripCols, cols), std::min(row + kBlockRows, last)});
-        }
-      },
-      progress);
+void for_each_horizon(const Horizons::State& state, const HorizonGround& ground, float eye,
+                      std::span<const double> azimuths, const RowBand& band,
+                      const std::function<void(const HorizonBlock&)>& body, const Progress& progress) {
+  require_band(state.field, band);
+  const int cols = ground.cols();
+  const std::int64_t across = (cols + kStripCols - 1) / kStripCols, down = (band.rows() + kBlockRows - 1) / kBlockRows;
+  for (std::size_t begin = 0; begin < azimuths.size(); begin += kTablesAtOnce) {
+    const std::size_t end = std::min(begin + kTablesAtOnce, azimuths.size());
+    std::vector<HorizonTable> tables;
+    for (std::size_t i = begin; i < end; ++i) tables.emplace_back(ground, state.crossings(azimuths[i]));
+    const auto all = static_cast<double>(azimuths.size());
+    parallel_for(
+        across * down, 1,
+        [&](std::int64_t first, std::int64_t last) {
+          for (std::int64_t block = first; block < last; ++block) {
+            const int col = static_cast<int>(block % across) * kStripCols;
+            const int row = band.first + static_cast<int>(block / across) * kBlockRows;
+            const NodeRect nodes{col, row, std::min(col + kStripCols, cols), std::min(row + kBlockRows, band.last)};
+            const int width = nodes.col_end - nodes.col_begin;
+            const auto count =
+                static_cast<std::size_t>(width) * static_cast<std::size_t>(nodes.row_end - nodes.row_begin);
+            std::vector<float> slopes(count);
+            std::vector<std::int32_t> entries(count);
+            for (std::size_t i = begin; i < end; ++i) {
+              scan_horizon(ground, tables[i - begin], eye, nodes, slopes.data(), entries.data(), width);
+              body({nodes, i, slopes.data(), entries.data()});
+            }
+          }
+        },
+        progress ? Progress([&, begin, end](double share) {
+          return progress((static_cast<double>(begin) + share * static_cast<double>(end - begin)) / all);
+        })
+                 : Progress());
+  }
 }
 
 Horizons::Horizons(const HeightField& field, const HorizonSettings& settings, const Progress& progress) {
@@ -57,36 +77,30 @@ Horizons::Horizons(const HeightField& field, const HorizonSettings& settings, co
 
 HorizonRows Horizons::rows(double azimuth, int first, int last, bool distances, const Progress& progress) const {
   require_setting("horizon", std::isfinite(azimuth), "azimuth", azimuth, "finite");
-  require_rows(state_->field, first, last);
-  const HorizonCrossings crossings = state_->crossings(azimuth);
-  const HorizonTable table(state_->ground, crossings);
+  const RowBand band{first, last};
+  require_band(state_->field, band);
   const std::ptrdiff_t cols = state_->field.cols();
   HorizonRows found;
-  found.angle.resize(static_cast<std::size_t>(cols * (last - first)));
-  std::vector<std::int32_t> entries(distances ? found.angle.size() : 0);
+  found.angle.resize(static_cast<std::size_t>(cols * band.rows()));
   if (distances) found.distance.resize(found.angle.size());
-  for_each_block(
-      static_cast<int>(cols), first, last,
-      [&](const NodeRect& block) {
-        const std::ptrdiff_t corner = (block.row_begin - first) * cols + block.col_begin;
-        scan_horizon(state_->ground, table, state_->eye(), block, found.angle.data() + corner,
-                     distances ? entries.data() + corner : nullptr, cols);
-        const int width = block.col_end - block.col_begin;
-        for (int row = 0; row < block.row_end - block.row_begin; ++row) {
-          float* angle = found.angle.data() + corner + row * cols;
-          for (int col = 0; col < width; ++col) angle[col] = std::atan(angle[col]);
-          if (!distances) continue;
-          const std::int32_t* entry = entries.data() + corner + row * cols;
-          float* distance = found.distance.data() + corner + row * cols;
-          for (int col = 0; col < width; ++col) {
-            distance[col] = entry[col] < 0
-                                ? std::numeric_limits<float>::quiet_NaN()
-                                : static_cast<float>(crossings.all()[static_cast<std::size_t>(entry[col])].steps *
-                                                     crossings.step());
-          }
-        }
-      },
-      progress);
+  const HorizonCrossings crossings = state_->crossings(azimuth);
+  const auto distance_of = [&](std::int32_t entry) {
+    if (entry < 0) return std::numeric_limits<float>::quiet_NaN();
+    return static_cast<float>(crossings.all()[static_cast<std::size_t>(entry)].steps * crossings.step());
+  };
+  const auto keep = [&](const HorizonBlock& block) {
+    const int width = block.nodes.col_end - block.nodes.col_begin;
+    std::ptrdiff_t i = 0;
+    for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row) {
+      auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
+      for (int col = 0; col < width; ++col, ++at, ++i) {
+        found.angle[at] = std::atan(block.slopes[i]);
+        if (distances) found.distance[at] = distance_of(block.entries[i]);
+      }
+    }
+  };
+  for_each_horizon(*state_, state_->ground, static_cast<float>(state_->settings.eye_height), {&azimuth, 1}, band, keep,
+                   progress);
   return found;
 }
 
@@ -107,7 +121,7 @@ std::optional<HorizonView> horizon_from(const HeightField& field, double col, do
     const double ahead = of_columns ? step.x : step.y, aside = of_columns ? step.y : step.x;
     const int lines = of_columns ? field.cols() : field.rows(), across = of_columns ? field.rows() : field.cols();
     // Only rounding of the angle makes a line that runs along an axis cross the lines of that axis.
-    if (std::abs(ahead) < 0x1p-40 * std::abs(aside)) return;
+    if (std::abs(ahead) < kNoDirection * std::abs(aside)) return;
     const int sign = ahead > 0 ? 1 : -1;
     const int first = sign > 0 ? static_cast<int>(std::floor(from)) + 1 : static_cast<int>(std::ceil(from)) - 1;
     for (int line = first; line >= 0 && line < lines; line += sign) {

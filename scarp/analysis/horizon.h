@@ -2,14 +2,13 @@
 // Horizons: for every node of a field and an azimuth, the elevation angle up to which the ground hides the sky.
 //
 //   const scarp::Horizons horizons(field);
-//   const auto south = horizons.rows(scarp::radians(180), 0, field.rows());     // radians, rows from north to south
+//   const auto south = horizons.rows(std::numbers::pi, 0, field.rows());     // radians, rows from north to south
 //
 // horizon_crossings.h has the definition: the ground is linear where the line of sight crosses a grid line (`crossings`
 // of sight.h), and the horizon is the largest slope over all crossings, in floats by one expression. Angles below zero
 // are kept: a node on a summit sees down to them. The results depend on no thread, vector width or band of rows.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -38,16 +37,17 @@ struct HorizonRows {
 
 class Horizons {
  public:
-  /// Copies the heights, as floats, and builds maxima over them: about 9 bytes per node. Throws Error for a wrapped
-  /// field, a side above kMaxSightSide or a setting out of range; Interrupted.
+  /// Copies the heights, as floats, and builds maxima over them: about 9 bytes per node, and 512 per row and column of
+  /// the border. Throws Error for a wrapped field, a side above kMaxSightSide or a setting out of range; Interrupted.
   explicit Horizons(const HeightField& field, const HorizonSettings& settings = {}, const Progress& progress = {});
 
   /// Rows [first, last) for an azimuth in radians clockwise from grid north, finite. Runs on all threads. Throws Error
-  /// for rows outside the field; Interrupted.
+  /// for rows outside the field and for none; Interrupted.
   HorizonRows rows(double azimuth, int first, int last, bool distances = false, const Progress& progress = {}) const;
 
+  struct State;  ///< private to scarp/analysis
+
  private:
-  struct State;
   friend const State& state_of(const Horizons& horizons);
   std::shared_ptr<const State> state_;
 };

@@ -5,23 +5,17 @@
 #include <cmath>
 
 namespace scarp {
-namespace {
-
-// A component or a difference of components this small is the rounding of the angle, not a direction.
-constexpr double kNoDifference = 0x1p-40;
-
-}  // namespace
 
 HorizonCrossings::HorizonCrossings(const HeightField& field, double azimuth, double reach,
                                    const SightCurvature& curvature) {
   const double cell_x = field.settings().cell_x, cell_y = field.settings().cell_y;
   const double cols = std::sin(azimuth) / cell_x, rows = -std::cos(azimuth) / cell_y;
-  along_columns_ = std::abs(cols) >= std::abs(rows) * (1 - kNoDifference);
+  along_columns_ = std::abs(cols) >= std::abs(rows) * (1 - kNoDirection);
   col_sign_ = cols < 0 ? -1 : 1, row_sign_ = rows < 0 ? -1 : 1;
   const double major = std::abs(along_columns_ ? cols : rows), minor = std::abs(along_columns_ ? rows : cols);
   tilt_ = std::min(minor / major, 1.0);
-  if (tilt_ < kNoDifference) tilt_ = 0;
-  if (tilt_ > 1 - kNoDifference) tilt_ = 1;
+  if (tilt_ < kNoDirection) tilt_ = 0;
+  if (tilt_ > 1 - kNoDirection) tilt_ = 1;
   const double major_cell = along_columns_ ? cell_x : cell_y, minor_cell = along_columns_ ? cell_y : cell_x;
   step_ = std::hypot(major_cell, tilt_ * minor_cell);
 
@@ -41,28 +35,27 @@ HorizonCrossings::HorizonCrossings(const HeightField& field, double azimuth, dou
     to.steps = steps;
     all_.push_back(to);
   };
-  // The fraction of a place between two lines, as a float below 1.
-  const auto weight = [](double place) {
-    return std::min(place - std::floor(place), static_cast<double>(0x1.fffffep-1f));
-  };
+  // A weight as a float below 1.
+  const auto below_one = [](double w) { return std::clamp(w, 0.0, static_cast<double>(0x1.fffffep-1f)); };
 
   major_.push_back(0), minor_.push_back(0);
   int q = 1;
   for (int k = 1; k < across; ++k) {
-    // Minor crossings come before the major one at the same time, where they are dropped as nodes.
-    for (; tilt_ > 0 && q < aside && q / tilt_ < k; ++q) {
-      const double steps = q / tilt_, w = weight(steps);
+    // One number decides which lines come first, and what is a node: where line k is crossed.
+    double place = k * tilt_;
+    if (std::abs(place - std::round(place)) <= HeightField::rounding_of_line(place, across + aside))
+      place = std::round(place);
+    for (; q < aside && q < place; ++q) {
+      const double steps = q / tilt_;
       if (steps * step_ > reach) break;
-      if (static_cast<float>(w) > 0) add(steps, static_cast<int>(steps), q, false, w);
+      add(steps, k - 1, q, false, below_one(steps - (k - 1)));
       minor_.push_back(static_cast<std::uint32_t>(all_.size()));
     }
-    if (k * step_ > reach) break;
-    const double place = k * tilt_;
-    if (place > aside - 1) break;
-    const double w = weight(place);
-    add(k, k, static_cast<int>(place), true, static_cast<float>(w) > 0 ? w : 0);
+    if (k * step_ > reach || place > aside - 1) break;
+    const int beside = static_cast<int>(place);
+    add(k, k, beside, true, below_one(place - beside));
     major_.push_back(static_cast<std::uint32_t>(all_.size()));
-    if (tilt_ > 0 && q < aside && q / tilt_ == k) {
+    if (q < aside && q == place) {
       ++q;
       minor_.push_back(static_cast<std::uint32_t>(all_.size()));
     }

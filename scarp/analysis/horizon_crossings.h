@@ -31,6 +31,9 @@
 
 namespace scarp {
 
+/// A component of a direction this small, relative to the other, is the rounding of the angle.
+inline constexpr double kNoDirection = 0x1p-40;
+
 /// One crossing, relative to a node. Offsets count columns and rows.
 struct HorizonCrossing {
   std::int32_t col, row;                ///< of the first sample
@@ -45,7 +48,8 @@ struct HorizonCrossing {
 class HorizonCrossings {
  public:
   /// `azimuth`: radians clockwise from grid north, finite. `reach`: horizontal metres up to which ground counts, > 0.
-  /// Directions within 2^-40 of an axis or, in cells, of a diagonal are exactly that.
+  /// Directions within kNoDirection of an axis or, in cells, of a diagonal are exactly that; crossings within rounding
+  /// of a node are the node.
   HorizonCrossings(const HeightField& field, double azimuth, double reach, const SightCurvature& curvature);
 
   const std::vector<HorizonCrossing>& all() const { return all_; }

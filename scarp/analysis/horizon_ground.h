@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Private to scarp/analysis: the heights of a field with a margin, and maxima of windows over them, for horizon_scan.h.
 //
-//   level 0   window of 10 x 10 samples at every sample                     bounds segments of 8 steps
-//   level 1   37 x 37 at every 4th                                          32
-//   level 2   161 x 161 at every 16th                                       128
-//   level l   2 * 4^l steps + quantisation of the corner + a group          8 * 4^l
+//   level l   windows of 10 * 4^l x 10 * 4^l samples at every 4^l-th      bound segments of 8 * 4^l steps
 //
-// A segment of L steps of a line lies in L + 2 columns and rows. From level 2 on, a window also covers all nodes of a
-// group (16 columns, 2 rows), so that one number serves all of them.
+// A segment of L steps of a line lies in L + 2 columns and rows, and the corner of its window is rounded down to one of
+// those that exist: L + 2 + 4^l - 1 samples. From level 2 on, a window also covers all nodes of a group (15 columns and
+// 1 row more), so that one number serves all of them: 8 * 4^l + 4^l + 16 <= 10 * 4^l.
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "scarp/base/progress.h"
@@ -24,9 +21,8 @@ inline constexpr int kGroupCols = 16, kGroupRows = 2;
 
 class HorizonGround {
  public:
-  /// Steps of a segment of the first level; each further level has four times as many.
-  static constexpr int kFirstSteps = 8;
-  static constexpr int steps_of(int level) { return kFirstSteps << (2 * level); }
+  /// Steps of a segment of a level.
+  static constexpr int steps_of(int level) { return 8 << (2 * level); }
   /// Distance of the corners of windows, in samples.
   static constexpr int stride_of(int level) { return 1 << (2 * level); }
 
@@ -37,12 +33,13 @@ class HorizonGround {
   int cols() const { return cols_; }
   int rows() const { return rows_; }
   int levels() const { return static_cast<int>(levels_.size()); }
+  int sign() const { return sign_; }
 
   /// Height of a node in metres; NaN on a hole and within the margin.
   const float* height(int col, int row) const { return &heights_[place(col, row)]; }
   std::ptrdiff_t pitch() const { return pitch_; }
 
-  /// Maxima of a level; -inf over a window without ground. `corner` counts strides, and may be before the first.
+  /// Maxima of a level; -inf over a window without ground. `corner` counts strides, and may be before the first sample.
   struct Maxima {
     std::vector<float> values;
     std::ptrdiff_t pitch = 0;
@@ -55,20 +52,18 @@ class HorizonGround {
 
  private:
   std::size_t place(int col, int row) const {
-    return static_cast<std::size_t>((row + kMarginRows) * pitch_ + kMarginCols + col);
+    return static_cast<std::size_t>((row + kMargin) * pitch_ + kMargin + col);
   }
-  void build_first(const Progress& progress);
+  void build_first(float above, const Progress& progress);
   void build_coarser(int level);
 
-  // Nodes at the border look up to 16 columns and 2 rows past it, windows of level 0 up to 24 and 12.
-  static constexpr int kMarginCols = 64, kMarginRows = 32;
+  // Groups at a border look up to 16 columns and 2 rows past it; windows of level 0 begin up to 24 samples before it.
+  static constexpr int kMargin = 32;
 
-  int cols_, rows_;
+  int cols_, rows_, sign_;
   std::ptrdiff_t pitch_;
   std::vector<float> heights_;
   std::vector<Maxima> levels_;
-  std::vector<int> windows_;  // samples per side that the windows of a level cover
-  float above_ = 0;           // that maxima are higher: horizon_scan.h says why
 };
 
 }  // namespace scarp

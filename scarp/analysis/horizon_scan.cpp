@@ -12,8 +12,8 @@ HorizonTable::HorizonTable(const HorizonGround& ground, const HorizonCrossings& 
   const std::ptrdiff_t pitch = ground.pitch();
   entries_.reserve(crossings.all().size());
   for (const HorizonCrossing& c : crossings.all()) {
-    entries_.push_back({static_cast<std::int32_t>(c.row * pitch + c.col),
-                        static_cast<std::int32_t>(c.second_row * pitch + c.second_col), c.w, c.per_distance, c.drop});
+    entries_.push_back({c.row * pitch + c.col, static_cast<std::int32_t>(c.second_row * pitch + c.second_col), c.w,
+                        c.per_distance, static_cast<float>(ground.sign()) * c.drop});
   }
   const bool along_columns = crossings.along_columns();
   const auto counts = [](int lines, const auto& count) {

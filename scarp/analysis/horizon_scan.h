@@ -13,7 +13,7 @@
 // unit in the last place. The walk then finds the maximum again, nearest first: the result does not depend on the
 // start.
 //
-// Why skipping is exact, with u = 2^-24 and H = max |height|: the slope to a crossing of the segment is
+// Why skipping is exact, with u = 2^-24 and H = max |height| + eye: the slope to a crossing of the segment is
 // fma(g, p, -drop), where g is at most 6 u H above the real w h1 + (1 - w) h0 - z <= M - z, and the maximum M - z in
 // floats at most 3 u H below. Maxima are raised by 16 u H, so g <= b = M - z in floats; rounding is monotone, so
 // fma(b, p, -least drop) is at least the slope, with the largest p of the segment if b >= 0, else the smallest.
@@ -39,7 +39,8 @@ class HorizonTable {
   HorizonTable(const HorizonGround& ground, const HorizonCrossings& crossings);
 
   struct Entry {
-    std::int32_t first, second;  ///< samples from the node to the first, and from there to the second
+    std::ptrdiff_t first;  ///< samples from the node to the first sample
+    std::int32_t second;   ///< samples from there to the second
     float w, per_distance, drop;
   };
   struct Segment {
@@ -73,11 +74,5 @@ void scan_horizon(const HorizonGround& ground, const HorizonTable& table, float 
 /// The same by every crossing, one after another: the text to read first, and the judge of the vectors.
 void scan_horizon_by_all(const HorizonGround& ground, const HorizonTable& table, float eye, const NodeRect& rect,
                          float* slope, std::int32_t* entry, std::ptrdiff_t pitch);
-
-/// Work of scan_horizon() on this thread since the last call.
-struct HorizonStats {
-  std::uint64_t groups = 0, evaluated = 0, tested = 0, failed = 0;
-};
-HorizonStats take_horizon_stats();
 
 }  // namespace scarp

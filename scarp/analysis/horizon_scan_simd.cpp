@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "scarp/analysis/horizon_scan.h"
@@ -74,12 +73,9 @@ class HorizonScan {
     }
   }
 
-  HorizonStats stats;
-
  private:
   // The horizons of a group. `winners`: those of the group above, and then of this one.
   HWY_INLINE void look(int col, int row, std::int32_t* winners) {
-    ++stats.groups;
     col_ = col, row_ = row;
     node_ = ground_.height(col, row);
     const VF none = hn::Set(df, -std::numeric_limits<float>::infinity());
@@ -108,21 +104,20 @@ class HorizonScan {
 
   HWY_INLINE void start_warm(const std::int32_t* winners) {
     constexpr std::int32_t kAround = 3, kApart = 4;
-    const std::int32_t near = table_.segments(0).empty() ? 0 : table_.segments(0)[0].end;
-    std::int32_t tried[4];
+    const std::int32_t near = table_.segments(0)[0].end;
+    std::int32_t tried[(N + 4) / 5];
     int count = 0;
     for (std::size_t lane = 0; lane < N; lane += 5) {
       const std::int32_t at = winners[lane] + table_.shift();
       if (winners[lane] < 0 || at < near) continue;
       if (std::any_of(tried, tried + count, [at](std::int32_t t) { return std::abs(t - at) < kApart; })) continue;
-      if (count < 4) tried[count++] = at;
+      tried[count++] = at;
       evaluate<false>(std::max(at - kAround, 0), std::min(at + kAround + 1, stop_));
     }
     if (count > 0) best0_ = next_below(best0_), best1_ = next_below(best1_);
   }
 
   HWY_INLINE void walk() {
-    if (table_.segments(0).empty()) return;
     evaluate<true>(0, std::min(table_.segments(0)[0].end, stop_));
     for (int level = 0; level <= top_; ++level) {
       const auto& segments = table_.segments(level);
@@ -137,16 +132,14 @@ class HorizonScan {
   void visit(int level, std::size_t p) {
     const HorizonTable::Segment& segment = table_.segments(level)[p];
     if (segment.begin == segment.end) return;
-    ++stats.tested;
     if (!rises_above(level, segment)) return;
-    ++stats.failed;
     if (level == 0) return evaluate<true>(segment.begin, std::min(segment.end, stop_));
     const auto& parts = table_.segments(level - 1);
     for (std::size_t part = 4 * p; part < std::min(4 * p + 4, parts.size()) && parts[part].begin < stop_; ++part)
       visit(level - 1, part);
   }
 
-  // Whether a crossing of the segment may be above the horizon so far of a node.
+  // Whether a crossing of the segment may exceed the current horizon of any node.
   HWY_INLINE bool rises_above(int level, const HorizonTable::Segment& segment) const {
     const int col = col_ + segment.corner_col, row = row_ + segment.corner_row;
     const HorizonGround::Maxima& maxima = ground_.maxima(level);
@@ -196,7 +189,6 @@ class HorizonScan {
     }
     best0_ = best0, best1_ = best1;
     if constexpr (winners) entry0_ = entry0, entry1_ = entry1;
-    stats.evaluated += static_cast<std::uint64_t>(std::max(end - begin, 0));
   }
 
   const HorizonGround& ground_;
@@ -211,11 +203,9 @@ class HorizonScan {
   VI entry0_, entry1_;
 };
 
-HorizonStats scan(const HorizonGround& ground, const HorizonTable& table, float eye, const NodeRect& rect, float* slope,
-                  std::int32_t* entry, std::ptrdiff_t pitch) {
-  HorizonScan walk(ground, table, eye);
-  walk.run(rect, slope, entry, pitch);
-  return walk.stats;
+void scan(const HorizonGround& ground, const HorizonTable& table, float eye, const NodeRect& rect, float* slope,
+          std::int32_t* entry, std::ptrdiff_t pitch) {
+  HorizonScan(ground, table, eye).run(rect, slope, entry, pitch);
 }
 
 }  // namespace
@@ -228,18 +218,13 @@ namespace scarp {
 namespace {
 
 HWY_EXPORT(scan);
-thread_local HorizonStats t_stats;
 
 }  // namespace
 
 void scan_horizon(const HorizonGround& ground, const HorizonTable& table, float eye, const NodeRect& rect, float* slope,
                   std::int32_t* entry, std::ptrdiff_t pitch) {
-  const HorizonStats stats = HWY_DYNAMIC_DISPATCH(scan)(ground, table, eye, rect, slope, entry, pitch);
-  t_stats.groups += stats.groups, t_stats.evaluated += stats.evaluated;
-  t_stats.tested += stats.tested, t_stats.failed += stats.failed;
+  HWY_DYNAMIC_DISPATCH(scan)(ground, table, eye, rect, slope, entry, pitch);
 }
-
-HorizonStats take_horizon_stats() { return std::exchange(t_stats, {}); }
 
 }  // namespace scarp
 #endif

@@ -2,12 +2,14 @@
 // Private to scarp/analysis: what Horizons keeps, shared by the questions about the sky.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
+#include <span>
 
 #include "scarp/analysis/horizon.h"
 #include "scarp/analysis/horizon_ground.h"
 #include "scarp/analysis/horizon_scan.h"
+#include "scarp/analysis/map_part.h"
 
 namespace scarp {
 
@@ -16,7 +18,6 @@ struct Horizons::State {
   HorizonSettings settings;
   HorizonGround ground;
 
-  float eye() const { return static_cast<float>(settings.eye_height); }
   HorizonCrossings crossings(double azimuth) const {
     return HorizonCrossings(field, azimuth, settings.max_distance, settings.curvature);
   }
@@ -24,15 +25,20 @@ struct Horizons::State {
 
 const Horizons::State& state_of(const Horizons& horizons);
 
-/// Throws Error for rows outside the field.
-void require_rows(const HeightField& field, int first, int last);
+/// The slopes of the horizons of a block of nodes in one of the azimuths, rows of the block's width, and the crossings
+/// that won. Both may be changed.
+struct HorizonBlock {
+  NodeRect nodes;
+  std::size_t azimuth;  ///< index
+  float* slopes;
+  const std::int32_t* entries;
+};
 
-/// Columns of a strip: its rows of samples stay in the cache from one row of nodes to the next.
-inline constexpr int kStripCols = 256;
-
-/// Calls body(rect) for blocks of kStripCols columns that cover rows [first, last), on all threads. Each is large
-/// enough for the warm start of horizon_scan.h to pay.
-void for_each_block(int cols, int first, int last, const std::function<void(const NodeRect&)>& body,
-                    const Progress& progress);
+/// Finds the horizons of a band of rows for each azimuth (radians from grid north), on all threads: body(block) for
+/// each block of nodes and each azimuth, those of a block in order and one at a time. `ground` is that of the state, or
+/// the same upside down; `eye` in metres. Throws Error for an empty band and one beside the field; Interrupted.
+void for_each_horizon(const Horizons::State& state, const HorizonGround& ground, float eye,
+                      std::span<const double> azimuths, const RowBand& band,
+                      const std::function<void(const HorizonBlock&)>& body, const Progress& progress);
 
 }  // namespace scarp

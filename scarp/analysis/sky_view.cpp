@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "scarp/analysis/horizon_state.h"
+#include "scarp/base/parallel.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
@@ -61,79 +63,79 @@ void add_openness(const float* slope, int count, float* sum) {
   }
 }
 
+// Measures of the ground upside down need other horizons.
+bool is_inverted(SkyMeasure measure) { return measure == SkyMeasure::negative_openness; }
+
 }  // namespace
 
-SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths, const Progress& progress)
-    : horizons_(field, settings, progress), azimuths_(azimuths) {
+struct SkyView::State {
+  Horizons horizons;
+  std::vector<double> azimuths;
+  std::vector<SkyMeasure> measures;
+  std::optional<HorizonGround> inverted;
+};
+
+SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths,
+                 std::vector<SkyMeasure> measures, const Progress& progress) {
   require_setting("sky view", azimuths >= 1 && azimuths <= 3600, "number of azimuths", azimuths, "1 to 3600");
+  auto state = std::make_unique<State>(State{Horizons(field, settings, progress), {}, std::move(measures), {}});
+  for (int i = 0; i < azimuths; ++i) state->azimuths.push_back(2 * std::numbers::pi * i / azimuths);
+  if (std::any_of(state->measures.begin(), state->measures.end(), is_inverted))
+    state->inverted.emplace(field, -1, 0.0f, progress);
+  state_ = std::move(state);
 }
 
-std::vector<std::vector<float>> SkyView::rows(std::span<const SkyMeasure> measures, int first, int last,
-                                              const Progress& progress) const {
-  const auto& state = state_of(horizons_);
-  require_rows(state.field, first, last);
-  const std::ptrdiff_t cols = state.field.cols();
-  const auto asks = [&](SkyMeasure measure) {
-    return std::find(measures.begin(), measures.end(), measure) != measures.end();
-  };
-  std::optional<HorizonGround> inverted;
-  if (asks(SkyMeasure::negative_openness)) inverted.emplace(state.field, -1, 0.0f, progress);
+SkyView::~SkyView() = default;
+SkyView::SkyView(SkyView&&) noexcept = default;
 
-  std::vector<HorizonTable> tables;
-  std::vector<std::pair<float, float>> directions;  // east, north
-  for (int i = 0; i < azimuths_; ++i) {
-    const double azimuth = 2 * std::numbers::pi * i / azimuths_;
-    tables.emplace_back(state.ground, state.crossings(azimuth));
-    directions.emplace_back(static_cast<float>(std::sin(azimuth)), static_cast<float>(std::cos(azimuth)));
+std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progress& progress) const {
+  const auto& state = state_of(state_->horizons);
+  const RowBand band{first, last};
+  require_band(state.field, band);
+  const std::ptrdiff_t cols = state.field.cols();
+  std::vector<std::vector<float>> maps(state_->measures.size());
+  for (auto& map : maps) map.assign(static_cast<std::size_t>(cols * band.rows()), 0.0f);
+  std::vector<Tilt> tilts;
+  if (std::find(state_->measures.begin(), state_->measures.end(), SkyMeasure::sky_view_factor) !=
+      state_->measures.end()) {
+    tilts.resize(static_cast<std::size_t>(cols * band.rows()));
+    const SightGround samples(state.field);
+    parallel_for(band.rows(), 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::ptrdiff_t i = begin * cols; i < end * cols; ++i)
+        tilts[static_cast<std::size_t>(i)] =
+            tilt_of(samples, static_cast<int>(i % cols), first + static_cast<int>(i / cols));
+    });
   }
-  const SightGround samples(state.field);
-  std::vector<std::vector<float>> maps(measures.size());
-  for (auto& map : maps) map.assign(static_cast<std::size_t>(cols * (last - first)), 0.0f);
-  for_each_block(
-      static_cast<int>(cols), first, last,
-      [&](const NodeRect& block) {
-        const int width = block.col_end - block.col_begin, height = block.row_end - block.row_begin,
-                  count = width * height;
-        std::vector<float> slopes(static_cast<std::size_t>(count));
-        std::vector<std::vector<float>> sums(measures.size(), std::vector<float>(slopes.size()));
-        std::vector<Tilt> tilts;
-        if (asks(SkyMeasure::sky_view_factor)) {
-          for (int row = block.row_begin; row < block.row_end; ++row) {
-            for (int col = block.col_begin; col < block.col_end; ++col) tilts.push_back(tilt_of(samples, col, row));
+  const auto add = [&](const HorizonGround& ground, float eye, bool inverted) {
+    const auto add_block = [&](const HorizonBlock& block) {
+      const int width = block.nodes.col_end - block.nodes.col_begin;
+      const double azimuth = state_->azimuths[block.azimuth];
+      const auto east = static_cast<float>(std::sin(azimuth)), north = static_cast<float>(std::cos(azimuth));
+      for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row) {
+        const float* slopes = block.slopes + static_cast<std::ptrdiff_t>(row - block.nodes.row_begin) * width;
+        const auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
+        for (std::size_t m = 0; m < maps.size(); ++m) {
+          if (is_inverted(state_->measures[m]) != inverted) continue;
+          float* sum = maps[m].data() + at;
+          if (state_->measures[m] == SkyMeasure::sky_fraction) {
+            add_sky_fraction(slopes, width, sum);
+          } else if (state_->measures[m] == SkyMeasure::sky_view_factor) {
+            add_sky_view_factor(slopes, tilts.data() + at, east, north, width, sum);
+          } else {
+            add_openness(slopes, width, sum);
           }
         }
-        const auto add_all = [&](const HorizonGround& ground, int azimuth, bool upside_down) {
-          scan_horizon(ground, tables[static_cast<std::size_t>(azimuth)], upside_down ? 0 : state.eye(), block,
-                       slopes.data(), nullptr, width);
-          const auto [east, north] = directions[static_cast<std::size_t>(azimuth)];
-          for (std::size_t m = 0; m < measures.size(); ++m) {
-            if ((measures[m] == SkyMeasure::negative_openness) != upside_down) continue;
-            float* sum = sums[m].data();
-            if (measures[m] == SkyMeasure::sky_fraction) {
-              add_sky_fraction(slopes.data(), count, sum);
-            } else if (measures[m] == SkyMeasure::sky_view_factor) {
-              add_sky_view_factor(slopes.data(), tilts.data(), east, north, count, sum);
-            } else {
-              add_openness(slopes.data(), count, sum);
-            }
-          }
-        };
-        const bool upright = std::any_of(measures.begin(), measures.end(),
-                                         [](SkyMeasure m) { return m != SkyMeasure::negative_openness; });
-        for (int i = 0; i < azimuths_; ++i) {
-          if (upright) add_all(state.ground, i, false);
-          if (inverted) add_all(*inverted, i, true);
-        }
-        for (std::size_t m = 0; m < measures.size(); ++m) {
-          const float share = 1 / static_cast<float>(azimuths_);
-          for (int row = 0; row < height; ++row) {
-            const float* from = sums[m].data() + static_cast<std::ptrdiff_t>(row) * width;
-            float* to = maps[m].data() + (block.row_begin - first + row) * cols + block.col_begin;
-            for (int col = 0; col < width; ++col) to[col] = from[col] * share;
-          }
-        }
-      },
-      progress);
+      }
+    };
+    for_each_horizon(state, ground, eye, state_->azimuths, band, add_block, progress);
+  };
+  if (!std::all_of(state_->measures.begin(), state_->measures.end(), is_inverted))
+    add(state.ground, static_cast<float>(state.settings.eye_height), false);
+  if (state_->inverted) add(*state_->inverted, 0, true);
+  const float share = 1 / static_cast<float>(state_->azimuths.size());
+  for (auto& map : maps) {
+    for (float& value : map) value *= share;
+  }
   return maps;
 }
 

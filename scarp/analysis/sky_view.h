@@ -6,7 +6,7 @@
 //                       are those of the central differences at the node:
 //                         mean of cos b sin^2 H + sin b cos(azimuth - a) (H - sin H cos H),   H = pi/2 - h
 //   positive openness   mean of H, horizons below the horizontal included; radians
-//   negative openness   the same over the ground upside down
+//   negative openness   the same over the ground upside down, which curves the other way, too
 //
 // h is the horizon, at least 0 in the first two. Where a line of sight meets no ground (a node at the border that looks
 // out), the horizon is level. Three different quantities are called "sky view factor"; their names here are those of
@@ -20,7 +20,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "scarp/analysis/horizon.h"
@@ -31,17 +31,20 @@ enum class SkyMeasure : std::uint8_t { sky_fraction, sky_view_factor, positive_o
 
 class SkyView {
  public:
-  /// `azimuths`: number of directions, equally spaced from grid north on, 1 to 3600. Throws as Horizons does.
-  SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths, const Progress& progress = {});
+  /// `azimuths`: number of directions, equally spaced from grid north on, 1 to 3600. Throws as Horizons does. Negative
+  /// openness needs a second copy of the heights, upside down.
+  SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths, std::vector<SkyMeasure> measures,
+          const Progress& progress = {});
+  ~SkyView();
+  SkyView(SkyView&&) noexcept;
 
   /// Rows [first, last) of each measure, from north to south; NaN on holes. Runs on all threads. Throws as
   /// Horizons::rows() does.
-  std::vector<std::vector<float>> rows(std::span<const SkyMeasure> measures, int first, int last,
-                                       const Progress& progress = {}) const;
+  std::vector<std::vector<float>> rows(int first, int last, const Progress& progress = {}) const;
 
  private:
-  Horizons horizons_;
-  int azimuths_;
+  struct State;
+  std::unique_ptr<const State> state_;
 };
 
 }  // namespace scarp

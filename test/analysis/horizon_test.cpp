@@ -15,6 +15,7 @@
 #include <random>
 #include <vector>
 
+#include "march/instruction_sets.h"
 #include "scarp/analysis/horizon_scan.h"
 #include "scarp/analysis/shadow.h"
 #include "scarp/analysis/sky_view.h"
@@ -52,12 +53,15 @@ Shape shape(int number) {
           below(37) == 0 ? 4000.0f : 0.0f,
           std::ldexp(below(2) ? 1.0f : -1.0f, below(40) - 20),
           30 * std::sin(0.2f * static_cast<float>(col)) * std::cos(0.13f * static_cast<float>(row))};
-      const bool hole = number % 3 == 1 && below(14) == 0;
+      const bool hole = (number % 3 == 1 || number % 6 == 5) && below(14) == 0;
       heights.push_back(hole ? kHole : kinds[static_cast<std::size_t>(number % 8)]);
     }
   }
   HeightFieldSettings settings{.cell_x = 25, .cell_y = 25};
   if (number % 2 == 1) settings.cell_x = 10 + below(30), settings.cell_y = 10 + below(30);
+  // Azimuths of 45 degrees then meet every second or third node, and cross holes beside them.
+  if (number % 6 == 1) settings.cell_x = 10, settings.cell_y = 30;
+  if (number % 6 == 5) settings.cell_x = 20, settings.cell_y = 30;
   Shape made{HeightField::own(std::move(heights), cols, rows, settings), number % 5 == 0 ? 2.0f : 0.0f, {}};
   made.settings.eye_height = static_cast<double>(made.eye);
   if (number % 7 == 6) made.settings.max_distance = 400;
@@ -67,22 +71,28 @@ Shape shape(int number) {
 }
 
 // Axes, diagonals, beside them, and between.
+constexpr int kAzimuths = 21;
 double azimuth(int number) {
+  // Far more than the rounding of an angle, and less than a float's weight can tell within a few cells.
+  constexpr double kBeside = 0x1p-23;
   if (number < 8) return number * kPi / 4;
-  if (number < 12) return (number - 8) * kPi / 4 + 1e-7;
+  if (number < 12) return (number - 8) * kPi / 4 + kBeside;
   if (number == 12) return std::atan(0.5);
+  if (number == 20) return std::atan(1.0 / 3);
   std::mt19937 random(static_cast<unsigned>(number));
   return static_cast<double>(random()) / 4294967296.0 * 2 * kPi;
 }
 
 TEST(Horizons, EqualEveryCrossingToTheBit) {
   int differences = 0;
+  const std::vector<std::int64_t> sets = test::instruction_sets();
   for (int s = 0; s < 48; ++s) {
     const Shape made = shape(s);
     const HorizonGround ground(made.field, 1, made.eye);
     const NodeRect all{0, 0, made.field.cols(), made.field.rows()};
     const auto nodes = static_cast<std::size_t>(all.col_end) * static_cast<std::size_t>(all.row_end);
-    for (int a = 0; a < 20; ++a) {
+    for (int a = 0; a < kAzimuths; ++a) {
+      const test::InstructionSet set(sets[static_cast<std::size_t>(s + a) % sets.size()]);
       const HorizonTable table(
           ground, HorizonCrossings(made.field, azimuth(a), made.settings.max_distance, made.settings.curvature));
       std::vector<float> fast(nodes), slow(nodes);
@@ -99,10 +109,10 @@ TEST(Horizons, EqualEveryCrossingToTheBit) {
   EXPECT_EQ(differences, 0);
 }
 
-// The horizon slope of a node by every grid line that the line of sight crosses, in long double, and the largest error
-// that the floats of the definition may have.
+// The horizon slope of a node by every grid line that the line of sight crosses, in long double, and the largest errors
+// that the floats of the definition and the doubles of horizon_from() may have.
 struct Judged {
-  long double slope = -std::numeric_limits<long double>::infinity(), error = 0;
+  long double slope = -std::numeric_limits<long double>::infinity(), error = 0, error_in_double = 0;
 };
 Judged judge(const Shape& made, int col, int row, double direction) {
   const HeightFieldSettings& cells = made.field.settings();
@@ -134,9 +144,13 @@ Judged judge(const Shape& made, int col, int row, double direction) {
       judged.slope = std::max(judged.slope, slope);
       // Heights, the eye and w round once each (w also by 2^-36 of a cell), the differences and the sum once more, 1/D
       // and the drop once, the slope once.
-      const long double unit = 0x1p-24L, tall = std::abs(*first) + std::abs(*second) + std::abs(eye);
-      const long double of_ground = 4 * unit * tall + (unit + 0x1p-36L) * std::abs(*second - *first);
-      judged.error = std::max(judged.error, of_ground / distance + 3 * unit * (std::abs(slope) + drop));
+      const long double tall = std::abs(*first) + std::abs(*second) + std::abs(eye);
+      const auto error = [&](long double unit) {
+        const long double of_ground = 4 * unit * tall + (unit + 0x1p-36L) * std::abs(*second - *first);
+        return of_ground / distance + 3 * unit * (std::abs(slope) + drop);
+      };
+      judged.error = std::max(judged.error, error(0x1p-24L));
+      judged.error_in_double = std::max(judged.error_in_double, error(0x1p-53L));
     }
   }
   return judged;
@@ -148,7 +162,7 @@ TEST(Horizons, EqualCrossingsInLongDouble) {
     const Shape made = shape(s);
     const Horizons horizons(made.field, made.settings);
     std::mt19937 random(static_cast<unsigned>(s));
-    for (int a = 0; a < 20; ++a) {
+    for (int a = 0; a < kAzimuths; ++a) {
       const HorizonRows found = horizons.rows(azimuth(a), 0, made.field.rows());
       for (int i = 0; i < 12; ++i) {
         const int col = static_cast<int>(random() % static_cast<unsigned>(made.field.cols()));
@@ -171,7 +185,8 @@ TEST(Horizons, EqualCrossingsInLongDouble) {
             << "shape " << s << ", azimuth " << azimuth(a) << ", node " << col << ", " << row;
         const auto view = horizon_from(made.field, col, row, azimuth(a), made.settings);
         ASSERT_TRUE(view);
-        EXPECT_NEAR(view->angle, static_cast<double>(std::atan(truth.slope)), allowed);
+        EXPECT_NEAR(view->angle, static_cast<double>(std::atan(truth.slope)),
+                    static_cast<double>(truth.error_in_double) + 0x1p-52);
       }
     }
   }
@@ -236,35 +251,44 @@ HeightField plane(double slope, double aspect) {
 }
 
 // The middle of a plane sees (1 + cos b) / 2 of the radiation; the solid angle is 1 - sin of atan(tan b cos) averaged
-// over the uphill half: 1 - b / pi. Floats: heights up to 2^11 m round by 2^-13 m over 10 m or more.
+// over the uphill half: 1 - b / pi.
 TEST(SkyView, OfPlanesIsKnown) {
-  constexpr std::array measures{SkyMeasure::sky_fraction, SkyMeasure::sky_view_factor, SkyMeasure::positive_openness,
-                                SkyMeasure::negative_openness};
-  constexpr double kFloats = 0x1p-13 / 10 * 4;
+  const std::vector measures{SkyMeasure::sky_fraction, SkyMeasure::sky_view_factor, SkyMeasure::positive_openness,
+                             SkyMeasure::negative_openness};
+  // Two heights below 2^11 m, each rounded by 2^-14 m, over 10 m or more; four roundings of a slope below 2.
+  constexpr double kHorizon = 0x1p-13 / 10 + 4 * 0x1p-23;
+  // The sum of 256 floats, of at most pi / 2 each; its mean is that of the partial sums.
+  constexpr double kSum = 0x1p-16;
+  constexpr double kStep = 2 * kPi / 256;
   HorizonSettings settings;
   settings.curvature.coefficient = 0;
   for (const double degrees : {0.0, 10.0, 30.0, 45.0, 60.0}) {
     for (const double aspect : {0.0, kPi / 2, 0.5, 4.0}) {
       const double slope = degrees * kPi / 180;
-      const SkyView sky(plane(slope, aspect), settings, 256);
-      const auto rows = sky.rows(measures, 80, 81);
-      // The mean over 256 directions of a function of bounded second derivative differs from its integral by less.
-      constexpr double kDirections = 2e-4;
-      EXPECT_NEAR(static_cast<double>(rows[0][80]), 1 - slope / kPi, kFloats + kDirections) << degrees;
-      EXPECT_NEAR(static_cast<double>(rows[1][80]), (1 + std::cos(slope)) / 2, kFloats + kDirections) << degrees;
-      EXPECT_NEAR(static_cast<double>(rows[2][80]), kPi / 2, kFloats) << degrees;
-      EXPECT_NEAR(static_cast<double>(rows[3][80]), kPi / 2, kFloats) << degrees;
+      const SkyView sky(plane(slope, aspect), settings, 256, measures);
+      const auto rows = sky.rows(80, 81);
+      // The trapezoid rule of a period: step^2 / 8 times the variation of the first derivative, which is 4 tan b for
+      // the sine of the horizon (monotone from tan b to -tan b uphill, 0 downhill) and 2 pi sin b for the radiation.
+      const auto directions = [&](double variation) { return kStep * kStep / 8 * variation / (2 * kPi); };
+      EXPECT_NEAR(static_cast<double>(rows[0][80]), 1 - slope / kPi, kHorizon + kSum + directions(4 * std::tan(slope)))
+          << degrees;
+      // The slope of the plane comes from the heights, too.
+      EXPECT_NEAR(static_cast<double>(rows[1][80]), (1 + std::cos(slope)) / 2,
+                  3 * kHorizon + kSum + directions(2 * kPi * std::sin(slope)))
+          << degrees;
+      EXPECT_NEAR(static_cast<double>(rows[2][80]), kPi / 2, kHorizon + kSum) << degrees;
+      EXPECT_NEAR(static_cast<double>(rows[3][80]), kPi / 2, kHorizon + kSum) << degrees;
     }
   }
 }
 
 TEST(SkyView, KeepsHolesAndRefusesSettings) {
   HeightField field = HeightField::own(std::vector<float>{1, 2, kHole, 4, 5, 6}, 3, 2);
-  constexpr std::array one{SkyMeasure::sky_fraction};
-  const auto rows = SkyView(field, {}, 8).rows(one, 0, 2);
+  const std::vector one{SkyMeasure::sky_fraction};
+  const auto rows = SkyView(field, {}, 8, one).rows(0, 2);
   EXPECT_TRUE(std::isnan(rows[0][2]));
   EXPECT_FALSE(std::isnan(rows[0][0]));
-  EXPECT_THROW(SkyView(field, {}, 0), Error);
+  EXPECT_THROW(SkyView(field, {}, 0, one), Error);
   EXPECT_THROW(Horizons(field, {.eye_height = -1}), Error);
   EXPECT_THROW(Horizons(field, {.max_distance = 0}), Error);
   EXPECT_THROW(Horizons(field).rows(0, 0, 3), Error);
@@ -292,8 +316,11 @@ TEST(SunHours, AgreeWithShadows) {
           EXPECT_TRUE(std::isnan(hours.hours[i]));
           continue;
         }
-        // Floats are off by up to 2^-13 m in heights of 4000 m, by 2^-3 in those of 10^6 m, over a cell of 10 m.
-        const double room = (made.field.max_height() > 1e5 ? 0x1p-3 : 0x1p-13) / 10 + 0x1p-20;
+        // Heights are floats: their differences, w and their sum round by 2^-24 of the relief each, and the direction
+        // moves crossings by 2^-27 cells per cell; over 10 m or more. The slope and its angle round below 2^-20.
+        const double relief =
+            static_cast<double>(made.field.max_height()) - static_cast<double>(made.field.min_height());
+        const double room = (4 * 0x1p-24 + 0x1p-27) * relief / 10 + 0x1p-20;
         ++compared;
         if (std::abs(std::tan(static_cast<double>(rows.angle[i])) - std::tan(sun.altitude)) < room) {
           ++close;

@@ -97,8 +97,8 @@ void run(SkyviewOptions options, const Command& command) {
   }
   RasterMap map = map_of(input, options.raster_output, area, kSkyMethod, metadata);
   const Progress progress = terminal_progress("skyview");
-  const SkyView sky(plane.field, settings, options.azimuths, progress);
-  auto values = sky.rows(measures, rows.first, rows.last, progress);
+  const SkyView sky(plane.field, settings, options.azimuths, measures, progress);
+  auto values = sky.rows(rows.first, rows.last, progress);
   std::string means;
   for (std::size_t m = 0; m < values.size(); ++m) {
     const MeasureText& text = measure_of(options.measures[m]);

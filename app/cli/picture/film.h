@@ -20,7 +20,7 @@ class Film {
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
 
-  /// Name of the frames to render, "/tmp/scarp-film-Xy12ab/frame-######.png", numbered from 0.
+  /// Name of the frames to render, "FOLDER/frame-######.png", numbered from 0.
   std::string frames() const;
   /// Encodes the frames and commits the output. Throws Error with the last line of ffmpeg's messages if it fails,
   /// Interrupted after a signal.
