@@ -2,6 +2,7 @@
 // The command line from outside: its output, its files, its exit status.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -588,8 +589,13 @@ class OpenPipe {
   OpenPipe(const OpenPipe&) = delete;
   OpenPipe& operator=(const OpenPipe&) = delete;
 
+  // Returns when the text has been read: a program that opens /dev/stdin again only after close() waits for a writer.
   void write(std::string_view text) const {
     EXPECT_EQ(::write(file_, text.data(), text.size()), static_cast<::ssize_t>(text.size()));
+    for (int left = 1, i = 0; left > 0 && i < 20'000; ++i) {
+      ASSERT_EQ(::ioctl(file_, FIONREAD, &left), 0);
+      if (left > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
   void close() {
     if (file_ >= 0) ::close(file_);

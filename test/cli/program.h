@@ -58,10 +58,10 @@ class StartAttributes {
 struct Result {
   int status;  ///< exit status, or 1000 + the signal that ended it
   std::string out, err;
-  std::uint64_t peak = 0;  ///< peak memory in bytes; 0: unknown, for programs that are not forked
+  std::uint64_t peak = 0;  ///< peak memory in bytes, including the loaded libraries
 };
 
-inline Result result_of(int status, const Streams& streams, std::uint64_t peak = 0) {
+inline Result result_of(int status, const Streams& streams, std::uint64_t peak) {
   // A device such as /dev/full has no end.
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
           std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err), peak};
@@ -88,13 +88,21 @@ class Program {
     if (error != 0) throw std::runtime_error("cannot start " SCARP_PROGRAM);
   }
 
+  // A test that failed before result() leaves no program behind.
+  ~Program() {
+    if (pid_ > 0 && ::kill(pid_, SIGKILL) == 0) ::waitpid(pid_, nullptr, 0);
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
   ::pid_t pid() const { return pid_; }
 
-  /// Waits until the program ends.
-  Result result() {
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
-    return result_of(status, streams_);
+  /// Waits until the program ends. One that takes longer than the patience is ended by SIGSEGV.
+  Result result(std::chrono::seconds patience = kHangs) {
+    ::rusage used{};
+    const int status = wait_for_child(pid_, used, patience);
+    pid_ = 0;
+    return result_of(status, streams_, peak_of(used));
   }
 
  private:

@@ -2,13 +2,12 @@
 // Adversarial rasters, from outside: no crash, no blank picture without a warning, one line for each error, no silent
 // mistakes, and memory in proportion to the file.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/program.h"
@@ -31,31 +30,10 @@ constexpr double kBlank = 0.005;
 constexpr auto kPatience = std::chrono::seconds(20);  // sanitizers are slow
 constexpr double kMiB = 1 << 20;
 
-struct MeasuredResult {
-  Result result;
-  double peak_bytes = 0;
-  bool hung = false;
-};
-
-// Like test::run, but in a separate process, with its peak memory, and stopped if it takes too long.
-MeasuredResult run_measured(const Names& arguments) {
-  test::Program program(arguments);
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  MeasuredResult measured;
-  int status = 0;
-  ::rusage usage{};
-  while (::wait4(program.pid(), &status, WNOHANG, &usage) == 0) {
-    if (std::chrono::steady_clock::now() > end) {
-      ::kill(program.pid(), SIGKILL);
-      measured.hung = true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  measured.result = program.result();  // texts; the process has been waited for
-  measured.result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-  measured.peak_bytes = static_cast<double>(usage.ru_maxrss) * 1024;
-  return measured;
-}
+// In a separate process, stopped if it takes too long.
+Result run_alone(const Names& arguments) { return test::Program(arguments).result(kPatience); }
+bool hung(const Result& result) { return result.status == 1000 + SIGSEGV; }
+double peak_bytes(const Result& result) { return static_cast<double>(result.peak); }
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -131,19 +109,15 @@ class Judge {
     words.insert(words.end(), more.begin(), more.end());
     what_ = subcommand;
     for (const std::string& word : more) what_ += " " + word;
-    Result result;
+    const Result result = raster_.may_hang ? run_alone(words) : test::run(words);
     if (raster_.may_hang) {
-      const MeasuredResult measured = run_measured(words);
-      result = measured.result;
-      if (measured.hung) {
+      if (hung(result)) {
         wrong("it does not end");
         hung_ = true;
         return result;
       }
       // These files are not worth keeping.
-      if (measured.peak_bytes > kMostForNothing) wrong(fmt::format("{:.0f} MiB", measured.peak_bytes / kMiB));
-    } else {
-      result = test::run(words);
+      if (peak_bytes(result) > kMostForNothing) wrong(fmt::format("{:.0f} MiB", peak_bytes(result) / kMiB));
     }
     if (result.status > 2) wrong(fmt::format("status {}: {}", result.status, result.err));
     for (const char* riddle : {"std::", "terminate", "what()", " 0x", "Success"}) {
@@ -355,10 +329,10 @@ TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     Names words = c.words;
     words.push_back(pipe);
-    const MeasuredResult measured = run_measured(words);
-    EXPECT_FALSE(measured.hung) << c.name;
-    EXPECT_NE(measured.result.err.find(std::string(c.name)), std::string::npos) << measured.result.err;
-    EXPECT_NE(measured.result.err.find("is a pipe"), std::string::npos) << measured.result.err;
+    const Result result = run_alone(words);
+    EXPECT_FALSE(hung(result)) << c.name;
+    EXPECT_NE(result.err.find(std::string(c.name)), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("is a pipe"), std::string::npos) << result.err;
   }
 }
 
@@ -366,9 +340,9 @@ TEST(SpitefulRasters, RejectsPipesAsOptionValues) {
 TEST(SpitefulRasters, MemoryStaysBelowFourTimesTheSamples) {
   const test::SpitefulFiles files;
   const auto peak = [&](const std::string& file) {
-    const MeasuredResult measured = run_measured({"render", file, "-o", files.path("p.png"), "--size", "96x54"});
-    EXPECT_EQ(measured.result.status, 0) << measured.result.err;
-    return measured.peak_bytes;
+    const Result result = run_alone({"render", file, "-o", files.path("p.png"), "--size", "96x54"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return peak_bytes(result);
   };
   const double least = peak(files.tiff("least.tif", GDT_Int16, {1, 2, 3, 4}, {}, {}, 1, 2, 2));
   constexpr int kSide = 2048;

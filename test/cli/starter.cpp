@@ -16,9 +16,11 @@ namespace {
 using scarp::test::Ended;
 using scarp::test::kStarterSocket;
 using scarp::test::Limits;
+using scarp::test::peak_of;
 using scarp::test::receive_bytes;
 using scarp::test::receive_words;
 using scarp::test::send_bytes;
+using scarp::test::wait_for_child;
 
 bool open_as(int stream, const std::string& path, int flags) {
   const int file = ::open(path.c_str(), flags, 0600);
@@ -72,8 +74,8 @@ int main() {
     if (pid == 0) return call(streams, settings, arguments, limits);
     Ended ended;
     ::rusage used{};
-    if (::wait4(pid, &ended.status, 0, &used) != pid) return EXIT_FAILURE;
-    ended.peak = 1024 * static_cast<std::uint64_t>(used.ru_maxrss);
+    ended.status = wait_for_child(pid, used);
+    ended.peak = peak_of(used);
     if (!send_bytes(kStarterSocket, &ended, sizeof ended)) return EXIT_FAILURE;
   }
   return EXIT_SUCCESS;

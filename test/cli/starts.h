@@ -8,17 +8,38 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace scarp::test {
+
+constexpr std::chrono::seconds kHangs{300};
+
+/// Waits for a child; returns its status, of waitpid(). One that hangs is ended by SIGSEGV, for which sanitizers print
+/// where the program was: the test fails with that, instead of all tests of its program by ctest's limit.
+inline int wait_for_child(::pid_t pid, ::rusage& used, std::chrono::seconds patience = kHangs) {
+  using namespace std::chrono_literals;
+  constexpr auto kDying = 20s;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int status = 0, signal = 0;;) {
+    if (::wait4(pid, &status, WNOHANG, &used) == pid) return status;
+    const auto waited = std::chrono::steady_clock::now() - begin;
+    if (waited > patience && signal == 0) ::kill(pid, signal = SIGSEGV);
+    if (waited > patience + kDying && signal == SIGSEGV) ::kill(pid, signal = SIGKILL);
+    std::this_thread::sleep_for(waited < 50ms ? 200us : 2ms);
+  }
+}
 
 /// The starter's end of the socket.
 constexpr int kStarterSocket = 3;
@@ -40,6 +61,8 @@ struct Ended {
   int status = 0;          ///< of waitpid()
   std::uint64_t peak = 0;  ///< peak memory in bytes, including the loaded libraries
 };
+
+inline std::uint64_t peak_of(const ::rusage& used) { return 1024 * static_cast<std::uint64_t>(used.ru_maxrss); }
 
 inline bool send_bytes(int socket, const void* bytes, std::size_t size) {
   for (const char* at = static_cast<const char*>(bytes); size > 0;) {
