@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -25,6 +26,7 @@
 #include "bench/report.h"
 #include "bench/trace_options.h"
 #include "scarp/analysis/horizon.h"
+#include "scarp/analysis/sky_view.h"
 #include "scarp/base/parallel.h"
 
 namespace scarp::bench {
@@ -36,6 +38,7 @@ struct SkyOptions {
   int azimuths = 16;  // of the engine; beside the directions of the grid
   int nodes = 4000;   // of Embree
   int repeats = 3;
+  bool maps = false;
 };
 
 using Json = nlohmann::ordered_json;
@@ -60,69 +63,77 @@ std::vector<Node> sampled_nodes(const HeightField& field, int count) {
   return nodes;
 }
 
-// The horizon of a node by Embree: the largest angle at which a ray is blocked, found to kAccuracy.
-class EmbreeHorizons {
+// The horizon of a node in an azimuth by Embree: the largest angle at which a ray is blocked, found to kAccuracy.
+class EmbreeHorizon {
  public:
-  EmbreeHorizons(const HeightField& field, const EmbreePeer& peer) : field_(field), scene_(peer.scene()) {}
+  // `east` and `north`: direction of the azimuth.
+  EmbreeHorizon(RTCScene scene, const dvec3& origin, double east, double north)
+      : scene_(scene), east_(east), north_(north) {
+    constexpr float kLift = 0x1p-10f;  // metres
+    ray_.org_x = static_cast<float>(origin.x), ray_.org_y = static_cast<float>(origin.y);
+    ray_.org_z = static_cast<float>(origin.z) + kLift;
+    ray_.mask = ~0u;
+  }
 
   // By bisection of all angles.
-  double bisect(const Node& node, double azimuth) const { return between(node, azimuth, kLowest, kHighest); }
+  double bisect() const { return between(kLowest, kHighest); }
 
   // From a guess in steps that double, then by bisection.
-  double from_guess(const Node& node, double azimuth, double guess) const {
-    const bool low = blocked(node, azimuth, guess);
+  double from_guess(double guess) const {
+    const bool low = blocked(guess);
     double from = guess;
     for (double step = kAccuracy;; step *= 2) {
       const double to = std::clamp(low ? from + step : from - step, kLowest, kHighest);
-      if (to == kLowest || to == kHighest || blocked(node, azimuth, to) != low)
-        return low ? between(node, azimuth, from, to) : between(node, azimuth, to, from);
+      if (to == kLowest || to == kHighest || blocked(to) != low) return low ? between(from, to) : between(to, from);
       from = to;
     }
   }
 
  private:
-  double between(const Node& node, double azimuth, double low, double high) const {
+  double between(double low, double high) const {
     while (high - low > kAccuracy) {
       const double middle = 0.5 * (low + high);
-      (blocked(node, azimuth, middle) ? low : high) = middle;
+      (blocked(middle) ? low : high) = middle;
     }
     return 0.5 * (low + high);
   }
 
-  bool blocked(const Node& node, double azimuth, double angle) const {
-    constexpr double kLift = 0x1p-10;  // cells
-    const dvec3 from = field_.world_from_grid(node.col, node.row, sample(node));
-    RTCRay ray{};
-    ray.org_x = static_cast<float>(from.x), ray.org_y = static_cast<float>(from.y);
-    ray.org_z = static_cast<float>(from.z + kLift);
-    ray.dir_x = static_cast<float>(std::sin(azimuth) * std::cos(angle));
-    ray.dir_y = static_cast<float>(std::cos(azimuth) * std::cos(angle));
+  bool blocked(double angle) const {
+    RTCRay ray = ray_;
+    const double level = std::cos(angle);
+    ray.dir_x = static_cast<float>(east_ * level), ray.dir_y = static_cast<float>(north_ * level);
     ray.dir_z = static_cast<float>(std::sin(angle));
-    ray.tfar = std::numeric_limits<float>::infinity(), ray.mask = ~0u;
+    ray.tfar = std::numeric_limits<float>::infinity();
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene_, &context, &ray);
     return ray.tfar < 0;
   }
-  double sample(const Node& node) const {
-    return field_.visit([&](const auto& grid) { return static_cast<double>(grid.at(node.col, node.row)); });
-  }
 
-  const HeightField& field_;
   RTCScene scene_;
+  const double east_, north_;
+  RTCRay ray_{};
 };
 
 // Horizons of the nodes in all azimuths, node by node.
-std::vector<double> by_embree(const EmbreeHorizons& embree, const std::vector<Node>& nodes, int azimuths, bool guess) {
+std::vector<double> by_embree(const HeightField& field, const EmbreePeer& peer, const std::vector<Node>& nodes,
+                              int azimuths, bool guess) {
+  std::vector<dvec2> directions;
+  for (int a = 0; a < azimuths; ++a) {
+    const double azimuth = azimuth_of(a, azimuths);
+    directions.emplace_back(std::sin(azimuth), std::cos(azimuth));
+  }
   std::vector<double> angles(nodes.size() * static_cast<std::size_t>(azimuths));
   parallel_for(static_cast<std::int64_t>(nodes.size()), 16, [&](std::int64_t begin, std::int64_t end) {
     const DenormalsOff denormals_off;
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      double* angle = &angles[i * static_cast<std::size_t>(azimuths)];
-      for (int a = 0; a < azimuths; ++a) {
-        const double azimuth = azimuth_of(a, azimuths);
-        angle[a] =
-            guess && a > 0 ? embree.from_guess(nodes[i], azimuth, angle[a - 1]) : embree.bisect(nodes[i], azimuth);
+      double* angle = &angles[i * directions.size()];
+      const double height =
+          field.visit([&](const auto& grid) { return static_cast<double>(grid.at(nodes[i].col, nodes[i].row)); });
+      const dvec3 origin = field.world_from_grid(nodes[i].col, nodes[i].row, height);
+      for (std::size_t a = 0; a < directions.size(); ++a) {
+        const EmbreeHorizon embree(peer.scene(), origin, directions[a].x, directions[a].y);
+        angle[a] = guess && a > 0 ? embree.from_guess(angle[a - 1]) : embree.bisect();
       }
     }
   });
@@ -143,72 +154,141 @@ std::vector<std::pair<int, int>> bands_of(const HeightField& field) {
   return bands;
 }
 
+// The value that this share of all is not above.
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Median seconds of the timed passes.
+double seconds_of(int repeats, const std::function<void()>& work) {
+  std::vector<double> seconds;
+  for (int pass = 0; pass < repeats; ++pass) {
+    const Stopwatch watch;
+    work();
+    seconds.push_back(watch.wall_s());
+  }
+  return median(seconds);
+}
+
 std::vector<SkyRow> measure_sky(const HeightField& field, const SkyOptions& options, int threads) {
   const ThreadLimit limit(threads);
   const auto bands = bands_of(field);
   HorizonSettings settings;
   settings.curvature.coefficient = 0;  // as Embree's triangles
+  std::vector<SkyRow> rows;
+  const auto add = [&](const char* engine, double horizons, double seconds, double build_s,
+                       std::vector<double> errors) {
+    rows.push_back({engine, horizons / seconds / kMillion, build_s, quantile(errors, 0.5), quantile(errors, 0.99)});
+  };
+
   const Stopwatch building;
-  const Horizons horizons(field, settings);
+  const Horizons exact(field, settings);
   const double build_s = building.wall_s();
-  std::vector<double> seconds;
   double counted = 0;
   for (const auto& [first, last] : bands) counted += static_cast<double>(field.cols()) * (last - first);
-  for (int pass = 0; pass < options.repeats; ++pass) {
-    const Stopwatch watch;
-    for (int a = 0; a < options.azimuths; ++a) {
-      for (const auto& [first, last] : bands) horizons.rows(azimuth_of(a, options.azimuths), first, last);
-    }
-    seconds.push_back(watch.wall_s());
-  }
-  std::vector<SkyRow> rows{{"exact", counted * options.azimuths / median(seconds) / kMillion, build_s, 0, 0}};
+  add("exact", counted * options.azimuths,
+      seconds_of(options.repeats,
+                 [&] {
+                   for (int a = 0; a < options.azimuths; ++a) {
+                     for (const auto& [first, last] : bands) exact.rows(azimuth_of(a, options.azimuths), first, last);
+                   }
+                 }),
+      build_s, {0});
 
+  // A sweep passes over the whole field.
+  settings.engine = HorizonEngine::sweep;
+  const Stopwatch copying;
+  const Horizons sweep(field, settings);
+  const double copy_s = copying.wall_s();
+  std::vector<double> swept_errors;
+  for (int a = 0; a < options.azimuths; ++a) {
+    const double azimuth = azimuth_of(a, options.azimuths);
+    const HorizonRows found = sweep.rows(azimuth, 0, field.rows());
+    for (const auto& [first, last] : bands) {
+      const HorizonRows truth = exact.rows(azimuth, first, last);
+      const std::size_t from = static_cast<std::size_t>(first) * static_cast<std::size_t>(field.cols());
+      for (std::size_t i = 0; i < truth.angle.size(); i += 7)
+        swept_errors.push_back(static_cast<double>(std::abs(truth.angle[i] - found.angle[from + i])) * 180 / kPi);
+    }
+  }
+  add("sweep", static_cast<double>(field.cols()) * field.rows() * options.azimuths,
+      seconds_of(options.repeats,
+                 [&] {
+                   for (int a = 0; a < options.azimuths; ++a)
+                     sweep.rows(azimuth_of(a, options.azimuths), 0, field.rows());
+                 }),
+      copy_s, std::move(swept_errors));
+
+  settings.engine = HorizonEngine::exact;
   const Stopwatch embree_building;
   const EmbreePeer peer(field, EmbreeSurface::triangles, EmbreeQuality::medium);
   const double embree_build_s = embree_building.wall_s();
-  const EmbreeHorizons embree(field, peer);
   const std::vector<Node> nodes = sampled_nodes(field, options.nodes);
   for (const bool guess : {false, true}) {
     std::vector<double> angles;
-    seconds.clear();
-    for (int pass = 0; pass < options.repeats; ++pass) {
-      const Stopwatch watch;
-      angles = by_embree(embree, nodes, options.azimuths, guess);
-      seconds.push_back(watch.wall_s());
-    }
+    const double seconds =
+        seconds_of(options.repeats, [&] { angles = by_embree(field, peer, nodes, options.azimuths, guess); });
     std::vector<double> errors;
     for (std::size_t i = 0; i < nodes.size(); i += 16) {
       for (int a = 0; a < options.azimuths; ++a) {
         const auto truth = horizon_from(field, nodes[i].col, nodes[i].row, azimuth_of(a, options.azimuths), settings);
+        const double found = angles[i * static_cast<std::size_t>(options.azimuths) + static_cast<std::size_t>(a)];
         // At the border there is no ground to be seen.
-        if (truth && truth->distance)
-          errors.push_back(
-              std::abs(truth->angle -
-                       angles[i * static_cast<std::size_t>(options.azimuths) + static_cast<std::size_t>(a)]) *
-              180 / kPi);
+        if (truth && truth->distance) errors.push_back(std::abs(truth->angle - found) * 180 / kPi);
       }
     }
-    std::sort(errors.begin(), errors.end());
-    const auto at = [&](double share) {
-      return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
-    };
-    const double rate = static_cast<double>(angles.size()) / median(seconds) / kMillion;
-    rows.push_back({guess ? "embree, guess" : "embree, bisection", rate, embree_build_s, at(0.5), at(0.99)});
+    add(guess ? "embree, guess" : "embree, bisection", static_cast<double>(angles.size()), seconds, embree_build_s,
+        std::move(errors));
   }
   return rows;
 }
 
+// Seconds of a whole map of the sky fraction, of 64 azimuths.
+void measure_sky_fraction(const HeightField& field, int threads, std::vector<std::vector<std::string>>& lines,
+                          Json& rows) {
+  const ThreadLimit limit(threads);
+  HorizonSettings settings;
+  std::vector<std::vector<float>> maps[2];
+  for (const HorizonEngine engine : {HorizonEngine::exact, HorizonEngine::sweep}) {
+    settings.engine = engine;
+    const bool swept = engine == HorizonEngine::sweep;
+    const Stopwatch watch;
+    maps[swept] = SkyView(field, settings, 64, {SkyMeasure::sky_fraction}).rows(0, field.rows());
+    const double seconds = watch.wall_s();
+    double sum = 0;
+    for (std::size_t i = 0; swept && i < maps[0][0].size(); ++i)
+      sum += static_cast<double>(std::abs(maps[1][0][i] - maps[0][0][i]));
+    const double error = sum / static_cast<double>(maps[0][0].size());
+    const char* name = swept ? "sweep" : "exact";
+    lines.push_back({fmt::format("{0} x {0}", field.cols()), fmt::format("{}", threads), name, short_number(seconds),
+                     short_number(error)});
+    rows.push_back({{"size", field.cols()},
+                    {"threads", threads},
+                    {"engine", name},
+                    {"sky_fraction_s", seconds},
+                    {"mean_error", error}});
+  }
+}
+
 void run_sky(const SkyOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{
-      {"samples", "threads", "engine", "M node-azimuths/s", "x faster Embree", "build s", "error p50", "p99 degrees"}};
+  std::vector<std::vector<std::string>> lines{{"samples", "threads", "engine", "sky fraction s", "mean error"}};
+  if (!options.maps)
+    lines = {{"samples", "threads", "engine", "M node-azimuths/s", "x faster Embree", "build s", "error p50",
+              "p99 degrees"}};
   for (const int size : options.sizes) {
     FieldOptions asked = options.field;
     asked.size = size;
     const BenchField ground = load_field(asked);
     for (const int threads : options.threads) {
+      if (options.maps) {
+        measure_sky_fraction(ground.field, threads, lines, rows);
+        continue;
+      }
       const std::vector<SkyRow> found = measure_sky(ground.field, options, threads);
-      const double peer = std::max(found[1].rate, found[2].rate);
+      const double peer = std::max(found[2].rate, found[3].rate);
       for (const SkyRow& one : found) {
         Json row;
         row["size"] = ground.field.cols(), row["field"] = ground.name, row["threads"] = threads;
@@ -236,6 +316,8 @@ void add_sky(cli::Program& program) {
   command.add(&o.azimuths, {.names = "--azimuths", .help = "directions", .range = {1, 3600}});
   command.add(&o.nodes, {.names = "--nodes", .help = "nodes that Embree answers", .range = {16, 1e8}});
   add_repeats_option(command, o.repeats, "timed passes of each");
+  command.add(&o.maps,
+              {.names = "--maps", .help = "instead: whole maps of the sky fraction, 64 azimuths, by each engine"});
 }
 
 }  // namespace scarp::bench

@@ -13,66 +13,22 @@
 #include "scarp/base/setting.h"
 
 namespace scarp {
-namespace {
-
-// A strip's rows of samples stay in the cache from one row of nodes to the next, and a block has enough rows for the
-// warm start of horizon_scan.h to pay.
-constexpr int kStripCols = 256, kBlockRows = 128;
-// Tables of this many azimuths are kept at once: 24 bytes per crossing.
-constexpr std::size_t kTablesAtOnce = 64;
-
-}  // namespace
-
 const Horizons::State& state_of(const Horizons& horizons) { return *horizons.state_; }
 
 void validate(const HorizonSettings& settings) {
   require_setting("horizon", settings.eye_height >= 0 && std::isfinite(settings.eye_height), "eye height",
                   settings.eye_height, "finite, at least 0");
   require_setting("horizon", settings.max_distance > 0, "maximum distance", settings.max_distance, "above 0");
+  if (settings.engine == HorizonEngine::sweep && std::isfinite(settings.max_distance))
+    throw Error("horizon: the engine sweep has no maximum distance (choose exact, or an infinite distance)");
   validate(settings.curvature);
-}
-
-void for_each_horizon(const Horizons::State& state, const HorizonGround& ground, float eye,
-                      std::span<const double> azimuths, const RowBand& band,
-                      const std::function<void(const HorizonBlock&)>& body, const Progress& progress) {
-  require_band(state.field, band);
-  const int cols = ground.cols();
-  const std::int64_t across = (cols + kStripCols - 1) / kStripCols, down = (band.rows() + kBlockRows - 1) / kBlockRows;
-  for (std::size_t begin = 0; begin < azimuths.size(); begin += kTablesAtOnce) {
-    const std::size_t end = std::min(begin + kTablesAtOnce, azimuths.size());
-    std::vector<HorizonTable> tables;
-    for (std::size_t i = begin; i < end; ++i) tables.emplace_back(ground, state.crossings(azimuths[i]));
-    const auto all = static_cast<double>(azimuths.size());
-    parallel_for(
-        across * down, 1,
-        [&](std::int64_t first, std::int64_t last) {
-          for (std::int64_t block = first; block < last; ++block) {
-            const int col = static_cast<int>(block % across) * kStripCols;
-            const int row = band.first + static_cast<int>(block / across) * kBlockRows;
-            const NodeRect nodes{col, row, std::min(col + kStripCols, cols), std::min(row + kBlockRows, band.last)};
-            const int width = nodes.col_end - nodes.col_begin;
-            const auto count =
-                static_cast<std::size_t>(width) * static_cast<std::size_t>(nodes.row_end - nodes.row_begin);
-            std::vector<float> slopes(count);
-            std::vector<std::int32_t> entries(count);
-            for (std::size_t i = begin; i < end; ++i) {
-              scan_horizon(ground, tables[i - begin], eye, nodes, slopes.data(), entries.data(), width);
-              body({nodes, i, slopes.data(), entries.data()});
-            }
-          }
-        },
-        progress ? Progress([&, begin, end](double share) {
-          return progress((static_cast<double>(begin) + share * static_cast<double>(end - begin)) / all);
-        })
-                 : Progress());
-  }
 }
 
 Horizons::Horizons(const HeightField& field, const HorizonSettings& settings, const Progress& progress) {
   validate(settings);
   const SightGround checked(field);  // throws for fields that this station refuses
-  state_ = std::make_shared<const State>(
-      State{field, settings, HorizonGround(field, 1, static_cast<float>(settings.eye_height), progress)});
+  state_ = std::make_shared<const State>(State{
+      field, settings, HorizonRelief(field, settings.engine, 1, static_cast<float>(settings.eye_height), progress)});
 }
 
 HorizonRows Horizons::rows(double azimuth, int first, int last, bool distances, const Progress& progress) const {
@@ -83,11 +39,6 @@ HorizonRows Horizons::rows(double azimuth, int first, int last, bool distances, 
   HorizonRows found;
   found.angle.resize(static_cast<std::size_t>(cols * band.rows()));
   if (distances) found.distance.resize(found.angle.size());
-  const HorizonCrossings crossings = state_->crossings(azimuth);
-  const auto distance_of = [&](std::int32_t entry) {
-    if (entry < 0) return std::numeric_limits<float>::quiet_NaN();
-    return static_cast<float>(crossings.all()[static_cast<std::size_t>(entry)].steps * crossings.step());
-  };
   const auto keep = [&](const HorizonBlock& block) {
     const int width = block.nodes.col_end - block.nodes.col_begin;
     std::ptrdiff_t i = 0;
@@ -95,12 +46,13 @@ HorizonRows Horizons::rows(double azimuth, int first, int last, bool distances, 
       auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
       for (int col = 0; col < width; ++col, ++at, ++i) {
         found.angle[at] = std::atan(block.slopes[i]);
-        if (distances) found.distance[at] = distance_of(block.entries[i]);
+        if (!distances) continue;
+        const std::int32_t entry = block.entries[i];
+        found.distance[at] = entry < 0 ? std::numeric_limits<float>::quiet_NaN() : block.distances[entry];
       }
     }
   };
-  for_each_horizon(*state_, state_->ground, static_cast<float>(state_->settings.eye_height), {&azimuth, 1}, band, keep,
-                   progress);
+  for_each_horizon(*state_, state_->relief, {&azimuth, 1}, band, keep, progress);
   return found;
 }
 

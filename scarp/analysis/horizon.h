@@ -9,6 +9,7 @@
 // are kept: a node on a summit sees down to them. The results depend on no thread, vector width or band of rows.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -20,10 +21,18 @@
 
 namespace scarp {
 
+enum class HorizonEngine : std::uint8_t {
+  exact,  ///< every crossing, skipped only by proof
+  /// Every crossing up to 8 steps away, beyond them one per node, found by hulls of lines (horizon_sweep.h): several
+  /// times as fast. 99 of 100 angles are off by less than half a degree on most ground, single ones by more.
+  sweep
+};
+
 struct HorizonSettings {
   double eye_height = 0;                                          ///< metres above the ground, >= 0, finite
   double max_distance = std::numeric_limits<double>::infinity();  ///< metres; ground farther away does not count; > 0
   SightCurvature curvature{};
+  HorizonEngine engine = HorizonEngine::exact;
 };
 
 /// Horizons of nodes, rows from north to south.
@@ -38,7 +47,8 @@ struct HorizonRows {
 class Horizons {
  public:
   /// Copies the heights, as floats, and builds maxima over them: about 9 bytes per node, and 512 per row and column of
-  /// the border. Throws Error for a wrapped field, a side above kMaxSightSide or a setting out of range; Interrupted.
+  /// the border. The engine sweep keeps two copies, 8 bytes per node. Throws Error for a wrapped field, a side above
+  /// kMaxSightSide, a setting out of range, and a maximum distance for the engine sweep; Interrupted.
   explicit Horizons(const HeightField& field, const HorizonSettings& settings = {}, const Progress& progress = {});
 
   /// Rows [first, last) for an azimuth in radians clockwise from grid north, finite. Runs on all threads. Throws Error

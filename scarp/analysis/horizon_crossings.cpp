@@ -7,7 +7,8 @@
 namespace scarp {
 
 HorizonCrossings::HorizonCrossings(const HeightField& field, double azimuth, double reach,
-                                   const SightCurvature& curvature) {
+                                   const SightCurvature& curvature)
+    : curvature_(curvature.per_square_metre()) {
   const double cell_x = field.settings().cell_x, cell_y = field.settings().cell_y;
   const double cols = std::sin(azimuth) / cell_x, rows = -std::cos(azimuth) / cell_y;
   along_columns_ = std::abs(cols) >= std::abs(rows) * (1 - kNoDirection);
@@ -20,7 +21,6 @@ HorizonCrossings::HorizonCrossings(const HeightField& field, double azimuth, dou
   step_ = std::hypot(major_cell, tilt_ * minor_cell);
 
   const int across = along_columns_ ? field.cols() : field.rows(), aside = along_columns_ ? field.rows() : field.cols();
-  const double c = curvature.per_square_metre();
   const auto add = [&](double steps, int on_major, int on_minor, bool is_major, double w) {
     const double distance = steps * step_, side = is_major ? minor_cell : major_cell;
     HorizonCrossing to{};
@@ -31,7 +31,7 @@ HorizonCrossings::HorizonCrossings(const HeightField& field, double azimuth, dou
     if (w > 0) set(to.second_col, to.second_row, is_major ? 0 : 1, is_major ? 1 : 0);
     to.w = static_cast<float>(w);
     to.per_distance = static_cast<float>(1 / distance);
-    to.drop = static_cast<float>(c * (distance * distance + w * (1 - w) * side * side) / distance);
+    to.drop = static_cast<float>(curvature_ * (distance * distance + w * (1 - w) * side * side) / distance);
     to.steps = steps;
     all_.push_back(to);
   };

@@ -62,9 +62,13 @@ class HorizonCrossings {
   double tilt() const { return tilt_; }
   /// Length of one major step in metres.
   double step() const { return step_; }
+  /// SightCurvature::per_square_metre().
+  double curvature() const { return curvature_; }
   /// Number of crossings up to that many steps along the major axis, and up to that many lines of the minor axis.
   std::size_t count_to_major(int steps) const { return counted(major_, steps); }
   std::size_t count_to_minor(int lines) const { return counted(minor_, lines); }
+  /// Whether some node of the field has a major crossing at this number of steps.
+  bool has_major(int steps) const { return steps > 0 && static_cast<std::size_t>(steps) < major_.size(); }
 
  private:
   std::size_t counted(const std::vector<std::uint32_t>& counts, int lines) const {
@@ -74,7 +78,7 @@ class HorizonCrossings {
 
   bool along_columns_;
   int col_sign_, row_sign_;
-  double tilt_, step_;
+  double tilt_, step_, curvature_;
   std::vector<HorizonCrossing> all_;
   std::vector<std::uint32_t> major_, minor_;
 };

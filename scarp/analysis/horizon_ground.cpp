@@ -16,44 +16,26 @@ constexpr float kNothing = -std::numeric_limits<float>::infinity();
 constexpr int kWindow = 10, kParts = 4;
 constexpr std::int64_t kRowsPerTask = 64;
 
-// An odd number of cache lines: rows at a power of two would share the same sets of the cache.
-std::ptrdiff_t odd_lines(std::ptrdiff_t samples) {
-  constexpr std::ptrdiff_t kLine = 16;
-  return ((samples + kLine - 1) / kLine | 1) * kLine;
-}
-
 }  // namespace
 
 HorizonGround::HorizonGround(const HeightField& field, int sign, float eye, const Progress& progress)
-    : cols_(field.cols()), rows_(field.rows()), sign_(sign), pitch_(odd_lines(field.cols() + 2 * kMargin)) {
-  heights_.assign(static_cast<std::size_t>(pitch_ * (rows_ + 2 * kMargin)), std::numeric_limits<float>::quiet_NaN());
-  field.visit([&](const auto& grid) {
-    parallel_for(rows_, kRowsPerTask, [&](std::int64_t begin, std::int64_t end) {
-      for (int row = static_cast<int>(begin); row < end; ++row) {
-        float* to = &heights_[place(0, row)];
-        for (int col = 0; col < cols_; ++col) {
-          const auto sample = grid.at(col, row);
-          if (!(grid.has_holes && grid.is_nodata(sample)))
-            to[col] = static_cast<float>(sign * field.height_from_sample(static_cast<double>(sample)));
-        }
-      }
-    });
-  });
-  const double tallest = field.all_nodata() ? 0 : std::max(std::abs(field.min_height()), std::abs(field.max_height()));
+    : heights_(field, sign) {
   int levels = 1;
-  while (8 * steps_of(levels - 1) < std::max(cols_, rows_)) ++levels;
+  while (8 * steps_of(levels - 1) < std::max(cols(), rows())) ++levels;
   levels_.resize(static_cast<std::size_t>(levels));
   // Maxima are higher by this, 16 roundings of the tallest height: horizon_scan.h says why.
-  build_first(0x1p-20f * (static_cast<float>(tallest) + eye), progress);
+  build_first(0x1p-20f * (static_cast<float>(heights_.tallest()) + eye), progress);
   for (int level = 1; level < levels; ++level) build_coarser(level);
 }
 
 // Maxima over 10 samples from those over 2, 4 and 8, first along rows, then along columns.
 void HorizonGround::build_first(float above, const Progress& progress) {
   Maxima& to = levels_[0];
-  to.first = -kMargin, to.pitch = pitch_;
-  const std::int64_t high = rows_ + 2 * kMargin;
-  to.values.assign(heights_.size(), kNothing);
+  const std::vector<float>& heights = heights_.values();
+  const std::ptrdiff_t pitch = heights_.pitch();
+  to.first = -HorizonHeights::kMargin, to.pitch = pitch;
+  const std::int64_t high = rows() + 2 * HorizonHeights::kMargin;
+  to.values.assign(heights.size(), kNothing);
   const auto widen = [](const float* from, std::ptrdiff_t step, float* out, std::ptrdiff_t count) {
     for (std::ptrdiff_t i = 0; i < count; ++i) out[i] = std::max(from[i], from[i + step]);
   };
@@ -61,24 +43,24 @@ void HorizonGround::build_first(float above, const Progress& progress) {
       high, kRowsPerTask,
       [&](std::int64_t begin, std::int64_t end) {
         const std::int64_t last = std::min(end + kWindow - 1, high);
-        std::vector<float> along(static_cast<std::size_t>(pitch_ * (last - begin)));
-        std::vector<float> a(static_cast<std::size_t>(pitch_ + kWindow), kNothing), b(a);
+        std::vector<float> along(static_cast<std::size_t>(pitch * (last - begin)));
+        std::vector<float> a(static_cast<std::size_t>(pitch + kWindow), kNothing), b(a);
         for (std::int64_t y = begin; y < last; ++y) {
-          const float* row = &heights_[static_cast<std::size_t>(y * pitch_)];
-          for (std::ptrdiff_t x = 0; x < pitch_; ++x)
+          const float* row = &heights[static_cast<std::size_t>(y * pitch)];
+          for (std::ptrdiff_t x = 0; x < pitch; ++x)
             a[static_cast<std::size_t>(x)] = std::isnan(row[x]) ? kNothing : row[x];
           // 2, 4 and 8 samples; 10 are 8 and the 8 two further.
-          widen(a.data(), 1, b.data(), pitch_), widen(b.data(), 2, a.data(), pitch_);
-          widen(a.data(), 4, b.data(), pitch_);
-          widen(b.data(), 2, &along[static_cast<std::size_t>((y - begin) * pitch_)], pitch_);
+          widen(a.data(), 1, b.data(), pitch), widen(b.data(), 2, a.data(), pitch);
+          widen(a.data(), 4, b.data(), pitch);
+          widen(b.data(), 2, &along[static_cast<std::size_t>((y - begin) * pitch)], pitch);
         }
         for (std::int64_t y = begin; y < end; ++y) {
-          float* out = &to.values[static_cast<std::size_t>(y * pitch_)];
+          float* out = &to.values[static_cast<std::size_t>(y * pitch)];
           for (std::int64_t r = y; r < std::min(y + kWindow, last); ++r) {
-            const float* from = &along[static_cast<std::size_t>((r - begin) * pitch_)];
-            for (std::ptrdiff_t x = 0; x < pitch_; ++x) out[x] = std::max(out[x], from[x]);
+            const float* from = &along[static_cast<std::size_t>((r - begin) * pitch)];
+            for (std::ptrdiff_t x = 0; x < pitch; ++x) out[x] = std::max(out[x], from[x]);
           }
-          for (std::ptrdiff_t x = 0; x < pitch_; ++x) out[x] += above;
+          for (std::ptrdiff_t x = 0; x < pitch; ++x) out[x] += above;
         }
       },
       progress);
@@ -90,8 +72,8 @@ void HorizonGround::build_coarser(int level) {
   const int stride = stride_of(level);
   // Windows begin up to the length of a segment and a group before the field, and up to a group behind it.
   to.first = -(steps_of(level) + 2 * kGroupCols) / stride - 1;
-  const int across = (cols_ + 2 * kGroupCols) / stride + 1 - to.first;
-  const int down = (rows_ + 2 * kGroupCols) / stride + 1 - to.first;
+  const int across = (cols() + 2 * kGroupCols) / stride + 1 - to.first;
+  const int down = (rows() + 2 * kGroupCols) / stride + 1 - to.first;
   to.pitch = across + kGroupCols;  // vectors are loaded from any corner
   to.values.assign(static_cast<std::size_t>(to.pitch * (down + 1)), kNothing);
   const std::ptrdiff_t finer_rows = static_cast<std::ptrdiff_t>(finer.values.size()) / finer.pitch;

@@ -11,8 +11,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "scarp/analysis/horizon_heights.h"
 #include "scarp/base/progress.h"
-#include "scarp/field/height_field.h"
 
 namespace scarp {
 
@@ -26,18 +26,14 @@ class HorizonGround {
   /// Distance of the corners of windows, in samples.
   static constexpr int stride_of(int level) { return 1 << (2 * level); }
 
-  /// Heights are rounded to float. `sign`: 1, or -1 for the ground upside down. `eye`: the highest eye above the ground
-  /// that will look over it, in metres. Throws Interrupted.
+  /// `sign`: as of HorizonHeights. `eye`: the highest eye above the ground that will look over it, in metres. Throws
+  /// Interrupted.
   HorizonGround(const HeightField& field, int sign, float eye, const Progress& progress = {});
 
-  int cols() const { return cols_; }
-  int rows() const { return rows_; }
+  const HorizonHeights& heights() const { return heights_; }
+  int cols() const { return heights_.cols(); }
+  int rows() const { return heights_.rows(); }
   int levels() const { return static_cast<int>(levels_.size()); }
-  int sign() const { return sign_; }
-
-  /// Height of a node in metres; NaN on a hole and within the margin.
-  const float* height(int col, int row) const { return &heights_[place(col, row)]; }
-  std::ptrdiff_t pitch() const { return pitch_; }
 
   /// Maxima of a level; -inf over a window without ground. `corner` counts strides, and may be before the first sample.
   struct Maxima {
@@ -51,18 +47,10 @@ class HorizonGround {
   const Maxima& maxima(int level) const { return levels_[static_cast<std::size_t>(level)]; }
 
  private:
-  std::size_t place(int col, int row) const {
-    return static_cast<std::size_t>((row + kMargin) * pitch_ + kMargin + col);
-  }
   void build_first(float above, const Progress& progress);
   void build_coarser(int level);
 
-  // Groups at a border look up to 16 columns and 2 rows past it; windows of level 0 begin up to 24 samples before it.
-  static constexpr int kMargin = 32;
-
-  int cols_, rows_, sign_;
-  std::ptrdiff_t pitch_;
-  std::vector<float> heights_;
+  HorizonHeights heights_;
   std::vector<Maxima> levels_;
 };
 

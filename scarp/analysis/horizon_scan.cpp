@@ -9,11 +9,12 @@ namespace scarp {
 
 HorizonTable::HorizonTable(const HorizonGround& ground, const HorizonCrossings& crossings)
     : col_sign_(crossings.col_sign()), row_sign_(crossings.row_sign()) {
-  const std::ptrdiff_t pitch = ground.pitch();
+  const std::ptrdiff_t pitch = ground.heights().pitch();
   entries_.reserve(crossings.all().size());
   for (const HorizonCrossing& c : crossings.all()) {
+    distances_.push_back(static_cast<float>(c.steps * crossings.step()));
     entries_.push_back({c.row * pitch + c.col, static_cast<std::int32_t>(c.second_row * pitch + c.second_col), c.w,
-                        c.per_distance, static_cast<float>(ground.sign()) * c.drop});
+                        c.per_distance, static_cast<float>(ground.heights().sign()) * c.drop});
   }
   const bool along_columns = crossings.along_columns();
   const auto counts = [](int lines, const auto& count) {
@@ -61,7 +62,7 @@ void scan_horizon_by_all(const HorizonGround& ground, const HorizonTable& table,
                          float* slope, std::int32_t* entry, std::ptrdiff_t pitch) {
   for (int row = rect.row_begin; row < rect.row_end; ++row) {
     for (int col = rect.col_begin; col < rect.col_end; ++col) {
-      const float* node = ground.height(col, row);
+      const float* node = ground.heights().height(col, row);
       const float z = *node + eye;
       float best = -std::numeric_limits<float>::infinity();
       std::int32_t winner = -1;

@@ -50,6 +50,8 @@ class HorizonTable {
   };
 
   const std::vector<Entry>& entries() const { return entries_; }
+  /// Horizontal metres to each entry.
+  const std::vector<float>& distances() const { return distances_; }
   const std::vector<Segment>& segments(int level) const { return segments_[static_cast<std::size_t>(level)]; }
   /// Number of entries that nodes at this distance from the borders ahead can reach.
   std::int32_t reachable(int cols_ahead, int rows_ahead) const;
@@ -60,6 +62,7 @@ class HorizonTable {
 
  private:
   std::vector<Entry> entries_;
+  std::vector<float> distances_;
   std::vector<std::vector<Segment>> segments_;
   std::vector<std::int32_t> by_col_, by_row_;
   int col_sign_, row_sign_;

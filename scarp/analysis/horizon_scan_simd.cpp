@@ -15,6 +15,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h must come first.
 #include "hwy/highway.h"
+#include "scarp/analysis/fused_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -28,18 +29,6 @@ constexpr hn::RebindToSigned<decltype(df)> di;
 constexpr std::size_t N = hn::MaxLanes(df);
 using VF = hn::Vec<decltype(df)>;
 using VI = hn::Vec<decltype(di)>;
-
-// One rounding, as the definition has it, with any processor.
-HWY_INLINE VF fused(VF a, VF b, VF c) {
-#if HWY_NATIVE_FMA
-  return hn::MulAdd(a, b, c);
-#else
-  alignas(64) float x[N], y[N], z[N];
-  hn::Store(a, df, x), hn::Store(b, df, y), hn::Store(c, df, z);
-  for (std::size_t i = 0; i < N; ++i) x[i] = std::fma(x[i], y[i], z[i]);
-  return hn::Load(df, x);
-#endif
-}
 
 // The next number below; -inf stays.
 HWY_INLINE VF next_below(VF v) {
@@ -55,7 +44,7 @@ HWY_INLINE VF next_below(VF v) {
 class HorizonScan {
  public:
   HorizonScan(const HorizonGround& ground, const HorizonTable& table, float eye)
-      : ground_(ground), table_(table), eye_(eye), pitch_(ground.pitch()), top_(ground.levels() - 1) {}
+      : ground_(ground), table_(table), eye_(eye), pitch_(ground.heights().pitch()), top_(ground.levels() - 1) {}
 
   void run(const NodeRect& rect, float* slope, std::int32_t* entry, std::ptrdiff_t pitch) {
     const auto groups = static_cast<std::size_t>((rect.col_end - rect.col_begin + static_cast<int>(N) - 1)) / N;
@@ -77,7 +66,7 @@ class HorizonScan {
   // The horizons of a group. `winners`: those of the group above, and then of this one.
   HWY_INLINE void look(int col, int row, std::int32_t* winners) {
     col_ = col, row_ = row;
-    node_ = ground_.height(col, row);
+    node_ = ground_.heights().height(col, row);
     const VF none = hn::Set(df, -std::numeric_limits<float>::infinity());
     z0_ = hn::Add(hn::LoadU(df, node_), hn::Set(df, eye_));
     z1_ = hn::Add(hn::LoadU(df, node_ + pitch_), hn::Set(df, eye_));

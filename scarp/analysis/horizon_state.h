@@ -4,19 +4,34 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "scarp/analysis/horizon.h"
 #include "scarp/analysis/horizon_ground.h"
 #include "scarp/analysis/horizon_scan.h"
+#include "scarp/analysis/horizon_sweep.h"
 #include "scarp/analysis/map_part.h"
 
 namespace scarp {
 
+/// Heights as an engine needs them.
+struct HorizonRelief {
+  /// `sign`: 1, or -1 for the ground upside down. `eye_height`: metres above the ground. Throws Interrupted.
+  HorizonRelief(const HeightField& field, HorizonEngine engine, int sign, float eye_height, const Progress& progress);
+
+  std::optional<HorizonGround> ground;                // exact
+  std::optional<HorizonHeights> heights, transposed;  // sweep
+  float eye;
+
+  /// Of the nodes, as the field has them.
+  const HorizonHeights& of_nodes() const { return ground ? ground->heights() : *heights; }
+};
+
 struct Horizons::State {
   HeightField field;
   HorizonSettings settings;
-  HorizonGround ground;
+  HorizonRelief relief;
 
   HorizonCrossings crossings(double azimuth) const {
     return HorizonCrossings(field, azimuth, settings.max_distance, settings.curvature);
@@ -25,20 +40,21 @@ struct Horizons::State {
 
 const Horizons::State& state_of(const Horizons& horizons);
 
-/// The slopes of the horizons of a block of nodes in one of the azimuths, rows of the block's width, and the crossings
-/// that won. Both may be changed.
+/// The slopes of the horizons of a block of nodes in one of the azimuths, rows of the block's width.
 struct HorizonBlock {
   NodeRect nodes;
   std::size_t azimuth;  ///< index
-  float* slopes;
-  const std::int32_t* entries;
+  const float* slopes;
+  const std::int32_t* entries;  ///< for distances; -1 without ground
+  const float* distances;       ///< of entries; horizontal metres
 };
 
 /// Finds the horizons of a band of rows for each azimuth (radians from grid north), on all threads: body(block) for
-/// each block of nodes and each azimuth, those of a block in order and one at a time. `ground` is that of the state, or
-/// the same upside down; `eye` in metres. Throws Error for an empty band and one beside the field; Interrupted.
-void for_each_horizon(const Horizons::State& state, const HorizonGround& ground, float eye,
-                      std::span<const double> azimuths, const RowBand& band,
-                      const std::function<void(const HorizonBlock&)>& body, const Progress& progress);
+/// blocks that cover all nodes for each azimuth; those of a node come in the order of the azimuths, one at a time.
+/// `relief` is that of the state, or the same upside down. Throws Error for an empty band and one beside the field;
+/// Interrupted.
+void for_each_horizon(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
+                      const RowBand& band, const std::function<void(const HorizonBlock&)>& body,
+                      const Progress& progress);
 
 }  // namespace scarp

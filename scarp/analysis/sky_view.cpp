@@ -72,7 +72,7 @@ struct SkyView::State {
   Horizons horizons;
   std::vector<double> azimuths;
   std::vector<SkyMeasure> measures;
-  std::optional<HorizonGround> inverted;
+  std::optional<HorizonRelief> inverted;
 };
 
 SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths,
@@ -81,7 +81,7 @@ SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int 
   auto state = std::make_unique<State>(State{Horizons(field, settings, progress), {}, std::move(measures), {}});
   for (int i = 0; i < azimuths; ++i) state->azimuths.push_back(2 * std::numbers::pi * i / azimuths);
   if (std::any_of(state->measures.begin(), state->measures.end(), is_inverted))
-    state->inverted.emplace(field, -1, 0.0f, progress);
+    state->inverted.emplace(field, settings.engine, -1, 0.0f, progress);
   state_ = std::move(state);
 }
 
@@ -106,7 +106,7 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
             tilt_of(samples, static_cast<int>(i % cols), first + static_cast<int>(i / cols));
     });
   }
-  const auto add = [&](const HorizonGround& ground, float eye, bool inverted) {
+  const auto add = [&](const HorizonRelief& relief, bool inverted) {
     const auto add_block = [&](const HorizonBlock& block) {
       const int width = block.nodes.col_end - block.nodes.col_begin;
       const double azimuth = state_->azimuths[block.azimuth];
@@ -127,11 +127,10 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
         }
       }
     };
-    for_each_horizon(state, ground, eye, state_->azimuths, band, add_block, progress);
+    for_each_horizon(state, relief, state_->azimuths, band, add_block, progress);
   };
-  if (!std::all_of(state_->measures.begin(), state_->measures.end(), is_inverted))
-    add(state.ground, static_cast<float>(state.settings.eye_height), false);
-  if (state_->inverted) add(*state_->inverted, 0, true);
+  if (!std::all_of(state_->measures.begin(), state_->measures.end(), is_inverted)) add(state.relief, false);
+  if (state_->inverted) add(*state_->inverted, true);
   const float share = 1 / static_cast<float>(state_->azimuths.size());
   for (auto& map : maps) {
     for (float& value : map) value *= share;

@@ -25,7 +25,7 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
   const std::ptrdiff_t cols = state.field.cols();
   std::vector<double> sums;  // hours; NaN on holes
   for (int row = first; row < last; ++row) {
-    const float* heights = state.ground.height(0, row);
+    const float* heights = state.relief.of_nodes().height(0, row);
     for (std::ptrdiff_t col = 0; col < cols; ++col)
       sums.push_back(std::isnan(heights[col]) ? std::numeric_limits<double>::quiet_NaN() : 0);
   }
@@ -48,7 +48,7 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
       }
     }
   };
-  for_each_horizon(state, state.ground, static_cast<float>(state.settings.eye_height), azimuths, band, add, progress);
+  for_each_horizon(state, state.relief, azimuths, band, add, progress);
   for (std::size_t i = 0; i < sums.size(); ++i) found.hours[i] = static_cast<float>(sums[i]);
   return found;
 }

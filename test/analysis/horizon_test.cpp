@@ -15,6 +15,7 @@
 #include <random>
 #include <vector>
 
+#include "analysis/horizon_shapes.h"
 #include "march/instruction_sets.h"
 #include "scarp/analysis/horizon_scan.h"
 #include "scarp/analysis/shadow.h"
@@ -26,68 +27,19 @@
 namespace scarp {
 namespace {
 
+using test::azimuth;
+using test::HorizonShape;
+using test::kAzimuths;
+using test::shape;
+
 constexpr double kPi = std::numbers::pi;
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-
-struct Shape {
-  HeightField field;
-  float eye;
-  HorizonSettings settings;
-};
-
-// Fields that tempt a march to skip too much or too little.
-Shape shape(int number) {
-  std::mt19937 random(static_cast<unsigned>(number) + 1);
-  const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
-  const int cols = 1 + below(90), rows = number % 9 == 8 ? 1 : 1 + below(90);
-  std::vector<float> heights;
-  for (int row = 0; row < rows; ++row) {
-    for (int col = 0; col < cols; ++col) {
-      const float noise = static_cast<float>(below(65536)) / 65536;
-      const std::array<float, 8> kinds{
-          50 * noise,
-          7,
-          col > cols / 2 ? 300.0f : 0.0f,
-          static_cast<float>(30 * std::abs(row - rows / 2)),
-          1e6f + noise,
-          below(37) == 0 ? 4000.0f : 0.0f,
-          std::ldexp(below(2) ? 1.0f : -1.0f, below(40) - 20),
-          30 * std::sin(0.2f * static_cast<float>(col)) * std::cos(0.13f * static_cast<float>(row))};
-      const bool hole = (number % 3 == 1 || number % 6 == 5) && below(14) == 0;
-      heights.push_back(hole ? kHole : kinds[static_cast<std::size_t>(number % 8)]);
-    }
-  }
-  HeightFieldSettings settings{.cell_x = 25, .cell_y = 25};
-  if (number % 2 == 1) settings.cell_x = 10 + below(30), settings.cell_y = 10 + below(30);
-  // Azimuths of 45 degrees then meet every second or third node, and cross holes beside them.
-  if (number % 6 == 1) settings.cell_x = 10, settings.cell_y = 30;
-  if (number % 6 == 5) settings.cell_x = 20, settings.cell_y = 30;
-  Shape made{HeightField::own(std::move(heights), cols, rows, settings), number % 5 == 0 ? 2.0f : 0.0f, {}};
-  made.settings.eye_height = static_cast<double>(made.eye);
-  if (number % 7 == 6) made.settings.max_distance = 400;
-  if (number % 4 == 3) made.settings.curvature.coefficient = 0.5, made.settings.curvature.diameter = 1e4;
-  if (number % 4 == 1) made.settings.curvature.coefficient = 0;
-  return made;
-}
-
-// Axes, diagonals, beside them, and between.
-constexpr int kAzimuths = 21;
-double azimuth(int number) {
-  // Far more than the rounding of an angle, and less than a float's weight can tell within a few cells.
-  constexpr double kBeside = 0x1p-23;
-  if (number < 8) return number * kPi / 4;
-  if (number < 12) return (number - 8) * kPi / 4 + kBeside;
-  if (number == 12) return std::atan(0.5);
-  if (number == 20) return std::atan(1.0 / 3);
-  std::mt19937 random(static_cast<unsigned>(number));
-  return static_cast<double>(random()) / 4294967296.0 * 2 * kPi;
-}
 
 TEST(Horizons, EqualEveryCrossingToTheBit) {
   int differences = 0;
   const std::vector<std::int64_t> sets = test::instruction_sets();
   for (int s = 0; s < 48; ++s) {
-    const Shape made = shape(s);
+    const HorizonShape made = shape(s);
     const HorizonGround ground(made.field, 1, made.eye);
     const NodeRect all{0, 0, made.field.cols(), made.field.rows()};
     const auto nodes = static_cast<std::size_t>(all.col_end) * static_cast<std::size_t>(all.row_end);
@@ -114,7 +66,7 @@ TEST(Horizons, EqualEveryCrossingToTheBit) {
 struct Judged {
   long double slope = -std::numeric_limits<long double>::infinity(), error = 0, error_in_double = 0;
 };
-Judged judge(const Shape& made, int col, int row, double direction) {
+Judged judge(const HorizonShape& made, int col, int row, double direction) {
   const HeightFieldSettings& cells = made.field.settings();
   const SightGround ground(made.field);
   const auto z = ground.height({col, row});
@@ -159,7 +111,7 @@ Judged judge(const Shape& made, int col, int row, double direction) {
 TEST(Horizons, EqualCrossingsInLongDouble) {
   int judged = 0;
   for (int s = 0; s < 48; ++s) {
-    const Shape made = shape(s);
+    const HorizonShape made = shape(s);
     const Horizons horizons(made.field, made.settings);
     std::mt19937 random(static_cast<unsigned>(s));
     for (int a = 0; a < kAzimuths; ++a) {
@@ -201,22 +153,27 @@ std::vector<std::uint32_t> bits(const std::vector<float>& values) {
 }
 
 TEST(Horizons, DependOnNoBandAndNoThread) {
-  const Shape made = shape(7);
-  const Horizons horizons(made.field, made.settings);
-  const HorizonRows whole = horizons.rows(1.2345, 0, made.field.rows(), true);
-  const ThreadLimit one(1);
-  HorizonRows parts;
-  for (int row = 0; row < made.field.rows(); row += 3) {
-    const HorizonRows part = horizons.rows(1.2345, row, std::min(row + 3, made.field.rows()), true);
-    parts.angle.insert(parts.angle.end(), part.angle.begin(), part.angle.end());
-    parts.distance.insert(parts.distance.end(), part.distance.begin(), part.distance.end());
+  for (const HorizonEngine engine : {HorizonEngine::exact, HorizonEngine::sweep}) {
+    HorizonShape made = shape(7);
+    made.settings.engine = engine;
+    const Horizons horizons(made.field, made.settings);
+    for (const double azimuth : {1.2345, 0.2345, 3.0, 4.5, kPi, 1.5 * kPi}) {
+      const HorizonRows whole = horizons.rows(azimuth, 0, made.field.rows(), true);
+      const ThreadLimit one(1);
+      HorizonRows parts;
+      for (int row = 0; row < made.field.rows(); row += 3) {
+        const HorizonRows part = horizons.rows(azimuth, row, std::min(row + 3, made.field.rows()), true);
+        parts.angle.insert(parts.angle.end(), part.angle.begin(), part.angle.end());
+        parts.distance.insert(parts.distance.end(), part.distance.begin(), part.distance.end());
+      }
+      EXPECT_EQ(bits(parts.angle), bits(whole.angle));
+      EXPECT_EQ(bits(parts.distance), bits(whole.distance));
+    }
   }
-  EXPECT_EQ(bits(parts.angle), bits(whole.angle));
-  EXPECT_EQ(bits(parts.distance), bits(whole.distance));
 }
 
 TEST(Horizons, AzimuthsOfAFullTurnAreEqual) {
-  const Shape made = shape(16);
+  const HorizonShape made = shape(16);
   const Horizons horizons(made.field, made.settings);
   for (const double turn : {0.0, kPi / 2, kPi}) {
     EXPECT_EQ(bits(horizons.rows(turn, 0, made.field.rows()).angle),
@@ -264,6 +221,7 @@ TEST(SkyView, OfPlanesIsKnown) {
   settings.curvature.coefficient = 0;
   for (const double degrees : {0.0, 10.0, 30.0, 45.0, 60.0}) {
     for (const double aspect : {0.0, kPi / 2, 0.5, 4.0}) {
+      settings.engine = aspect < 1 ? HorizonEngine::exact : HorizonEngine::sweep;
       const double slope = degrees * kPi / 180;
       const SkyView sky(plane(slope, aspect), settings, 256, measures);
       const auto rows = sky.rows(80, 81);
@@ -291,6 +249,7 @@ TEST(SkyView, KeepsHolesAndRefusesSettings) {
   EXPECT_THROW(SkyView(field, {}, 0, one), Error);
   EXPECT_THROW(Horizons(field, {.eye_height = -1}), Error);
   EXPECT_THROW(Horizons(field, {.max_distance = 0}), Error);
+  EXPECT_THROW(Horizons(field, {.max_distance = 5, .engine = HorizonEngine::sweep}), Error);
   EXPECT_THROW(Horizons(field).rows(0, 0, 3), Error);
   EXPECT_THROW(Horizons(field).rows(std::numeric_limits<double>::quiet_NaN(), 0, 1), Error);
 }
@@ -301,7 +260,7 @@ TEST(SkyView, KeepsHolesAndRefusesSettings) {
 TEST(SunHours, AgreeWithShadows) {
   int compared = 0, close = 0;
   for (int s = 0; s < 48; ++s) {
-    Shape made = shape(s);
+    HorizonShape made = shape(s);
     made.settings = {};
     made.settings.curvature.coefficient = 0;
     const Horizons horizons(made.field, made.settings);

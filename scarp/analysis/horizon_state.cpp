@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/analysis/horizon_state.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "scarp/base/parallel.h"
+
+namespace scarp {
+namespace {
+
+// A strip's rows of samples stay in the cache from one row of nodes to the next, and a block has enough rows for the
+// warm start of horizon_scan.h to pay.
+constexpr int kStripCols = 256, kBlockRows = 128;
+// Tables of this many azimuths are kept at once: 28 bytes per crossing.
+constexpr std::size_t kTablesAtOnce = 64;
+
+using Body = std::function<void(const HorizonBlock&)>;
+
+// Progress of parts [begin, end) of `all`.
+Progress share_of(const Progress& progress, std::size_t begin, std::size_t end, std::size_t all) {
+  if (!progress) return {};
+  return [&progress, from = static_cast<double>(begin), parts = static_cast<double>(end - begin),
+          all = static_cast<double>(all)](double share) { return progress((from + share * parts) / all); };
+}
+
+void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
+          const RowBand& band, const Body& body, const Progress& progress) {
+  const HorizonGround& ground = *relief.ground;
+  const int cols = ground.cols();
+  const std::int64_t across = (cols + kStripCols - 1) / kStripCols, down = (band.rows() + kBlockRows - 1) / kBlockRows;
+  for (std::size_t begin = 0; begin < azimuths.size(); begin += kTablesAtOnce) {
+    const std::size_t end = std::min(begin + kTablesAtOnce, azimuths.size());
+    std::vector<HorizonTable> tables;
+    for (std::size_t i = begin; i < end; ++i) tables.emplace_back(ground, state.crossings(azimuths[i]));
+    const auto blocks = [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t block = first; block < last; ++block) {
+        const int col = static_cast<int>(block % across) * kStripCols;
+        const int row = band.first + static_cast<int>(block / across) * kBlockRows;
+        const NodeRect nodes{col, row, std::min(col + kStripCols, cols), std::min(row + kBlockRows, band.last)};
+        const int width = nodes.col_end - nodes.col_begin;
+        const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(nodes.row_end - nodes.row_begin);
+        std::vector<float> slopes(count);
+        std::vector<std::int32_t> entries(count);
+        for (std::size_t i = begin; i < end; ++i) {
+          scan_horizon(ground, tables[i - begin], relief.eye, nodes, slopes.data(), entries.data(), width);
+          body({nodes, i, slopes.data(), entries.data(), tables[i - begin].distances().data()});
+        }
+      }
+    };
+    parallel_for(across * down, 1, blocks, share_of(progress, begin, end, azimuths.size()));
+  }
+}
+
+// Collects the horizons of neighbouring columns, one after another, and passes them on by rows.
+class CollectedColumns {
+ public:
+  // `ascending`: whether columns come from west to east.
+  CollectedColumns(std::size_t azimuth, bool ascending, const float* distances, const Body& body)
+      : azimuth_(azimuth), ascending_(ascending), distances_(distances), body_(body) {}
+
+  void add(int col, int row, int count, const float* slopes, const std::int32_t* entries) {
+    if (count_ == 0) {
+      // The lines move by at most one row per column.
+      first_col_ = ascending_ ? col : col - kCols + 1, first_row_ = row - kCols;
+      std::fill_n(begin_, kRows, kCols), std::fill_n(end_, kRows, 0);
+    }
+    const int at = col - first_col_;
+    for (int i = 0; i < count; ++i) {
+      const int r = row - first_row_ + i;
+      slopes_[r][at] = slopes[i], entries_[r][at] = entries[i];
+      begin_[r] = std::min(begin_[r], at), end_[r] = std::max(end_[r], at + 1);
+    }
+    if (++count_ == kCols) pass_on();
+  }
+
+  void pass_on() {
+    for (int r = 0; count_ > 0 && r < kRows; ++r) {
+      const int begin = begin_[r], row = first_row_ + r;
+      if (begin < end_[r]) {
+        body_({{first_col_ + begin, row, first_col_ + end_[r], row + 1},
+               azimuth_,
+               slopes_[r] + begin,
+               entries_[r] + begin,
+               distances_});
+      }
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kCols = 16, kRows = kSweptLines + 2 * kCols;
+
+  const std::size_t azimuth_;
+  const bool ascending_;
+  const float* const distances_;
+  const Body& body_;
+  int count_ = 0, first_col_ = 0, first_row_ = 0;
+  int begin_[kRows], end_[kRows];  // columns that a row has
+  float slopes_[kRows][kCols];
+  std::int32_t entries_[kRows][kCols];
+};
+
+void sweep(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
+           const RowBand& band, const Body& body, const Progress& progress) {
+  for (std::size_t i = 0; i < azimuths.size(); ++i) {
+    const HorizonCrossings crossings = state.crossings(azimuths[i]);
+    const bool transposed = crossings.along_columns();
+    const HorizonHeights& heights = transposed ? *relief.transposed : *relief.heights;
+    const SweepTable table(heights, crossings);
+    // Rows nearer than the band hide nothing in it.
+    int visits = heights.rows();
+    if (!transposed) visits = table.row_sign() > 0 ? heights.rows() - band.first : band.last;
+    const int drift = swept_place(table, visits - 1).nearest;
+    const int first = (transposed ? band.first : 0) - std::max(drift, 0);
+    const int last = (transposed ? band.last : heights.cols()) - std::min(drift, 0);
+    const auto strips = [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t strip = begin; strip < end; ++strip) {
+        CollectedColumns columns(i, table.row_sign() < 0, table.distances().data(), body);
+        const SweepSink sink = [&](int col, int row, int count, const float* slopes, const std::int32_t* entries) {
+          if (!transposed) {
+            if (row >= band.first && row < band.last)
+              body({{col, row, col + count, row + 1}, i, slopes, entries, table.distances().data()});
+            return;
+          }
+          const int above = std::max(band.first - col, 0), below = std::max(col + count - band.last, 0);
+          if (above + below < count)
+            columns.add(row, col + above, count - above - below, slopes + above, entries + above);
+        };
+        sweep_horizons(heights, table, relief.eye, first + static_cast<int>(strip) * kSweptLines, visits, sink);
+        columns.pass_on();
+      }
+    };
+    parallel_for((last - first + kSweptLines - 1) / kSweptLines, 1, strips,
+                 share_of(progress, i, i + 1, azimuths.size()));
+  }
+}
+
+}  // namespace
+
+HorizonRelief::HorizonRelief(const HeightField& field, HorizonEngine engine, int sign, float eye_height,
+                             const Progress& progress)
+    : eye(eye_height) {
+  if (engine == HorizonEngine::exact) {
+    ground.emplace(field, sign, eye, progress);
+  } else {
+    heights.emplace(field, sign), transposed.emplace(field, sign, true);
+  }
+}
+
+void for_each_horizon(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
+                      const RowBand& band, const Body& body, const Progress& progress) {
+  require_band(state.field, band);
+  (relief.ground ? scan : sweep)(state, relief, azimuths, band, body, progress);
+}
+
+}  // namespace scarp
