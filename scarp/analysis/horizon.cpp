@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -40,16 +41,14 @@ HorizonRows Horizons::rows(double azimuth, int first, int last, bool distances, 
   found.angle.resize(static_cast<std::size_t>(cols * band.rows()));
   if (distances) found.distance.resize(found.angle.size());
   const auto keep = [&](const HorizonBlock& block) {
-    const int width = block.nodes.col_end - block.nodes.col_begin;
-    std::ptrdiff_t i = 0;
-    for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row) {
-      auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
-      for (int col = 0; col < width; ++col, ++at, ++i) {
-        found.angle[at] = std::atan(block.slopes[i]);
-        if (!distances) continue;
-        const std::int32_t entry = block.entries[i];
-        found.distance[at] = entry < 0 ? std::numeric_limits<float>::quiet_NaN() : block.distances[entry];
-      }
+    const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
+    const float* slopes = block.slopes;
+    const std::int32_t* entries = block.entries;
+    for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row, slopes += width, entries += width) {
+      const auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
+      find_angles(slopes, width, &found.angle[at]);
+      for (std::size_t i = 0; distances && i < width; ++i)
+        found.distance[at + i] = entries[i] < 0 ? std::numeric_limits<float>::quiet_NaN() : block.distances[entries[i]];
     }
   };
   for_each_horizon(*state_, state_->relief, {&azimuth, 1}, band, keep, progress);

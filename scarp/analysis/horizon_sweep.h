@@ -15,8 +15,8 @@
 //     the same expression; where that crossing has no ground, the slope of the tangent.
 // So most values are horizons of horizon_crossings.h or lower, and the others differ by the distance of line and node.
 // Rows are visited from the far border on, so that each sample is pushed once (V. Timonen, J. Westerholm, "Scalable
-// Height Field Self-Shadowing", Computer Graphics Forum 29(2), 2010). Their hull has neither near crossings nor the lag
-// of 8 rows, and errs by whole degrees where a sample beside the node hides the ground behind it.
+// Height Field Self-Shadowing", Computer Graphics Forum 29(2), 2010). The hull of that paper has neither near crossings
+// nor the lag of 8 rows, and errs by whole degrees where a sample beside the node hides the ground behind it.
 //
 // Where the azimuth runs along the columns, rows here are columns of the field: the heights are transposed.
 //

@@ -8,14 +8,13 @@
 #include <optional>
 #include <utility>
 
+#include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
 namespace {
-
-constexpr float kQuarterTurn = static_cast<float>(std::numbers::pi / 2);
 
 // The tangent plane of a node: cos b, and sin b times the direction of the aspect.
 struct Tilt {
@@ -40,27 +39,6 @@ Tilt tilt_of(const SightGround& ground, int col, int row) {
   const double y = slope(height(col, row + 1), height(col, row - 1), field.settings().cell_y);
   const double level = 1 / std::sqrt(1 + x * x + y * y);
   return {static_cast<float>(level), static_cast<float>(-x * level), static_cast<float>(-y * level)};
-}
-
-// One azimuth's share of a measure, for slopes of horizons. NaN stays.
-void add_sky_fraction(const float* slope, int count, float* sum) {
-  for (int i = 0; i < count; ++i) {
-    const float s = slope[i] < 0 ? 0 : slope[i];
-    sum[i] += 1 - s / std::sqrt(1 + s * s);
-  }
-}
-void add_sky_view_factor(const float* slope, const Tilt* tilt, float east, float north, int count, float* sum) {
-  for (int i = 0; i < count; ++i) {
-    const float s = slope[i] < 0 ? 0 : slope[i], h = std::atan(s), zenith = kQuarterTurn - h;
-    const float square = 1 / (1 + s * s);  // sin^2 H
-    sum[i] += tilt[i].level * square + (tilt[i].east * east + tilt[i].north * north) * (zenith - s * square);
-  }
-}
-void add_openness(const float* slope, int count, float* sum) {
-  for (int i = 0; i < count; ++i) {
-    const float s = slope[i] == -std::numeric_limits<float>::infinity() ? 0 : slope[i];
-    sum[i] += kQuarterTurn - std::atan(s);
-  }
 }
 
 // Measures of the ground upside down need other horizons.
@@ -95,34 +73,37 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
   const std::ptrdiff_t cols = state.field.cols();
   std::vector<std::vector<float>> maps(state_->measures.size());
   for (auto& map : maps) map.assign(static_cast<std::size_t>(cols * band.rows()), 0.0f);
-  std::vector<Tilt> tilts;
+  std::vector<float> level, east_tilt, north_tilt;
   if (std::find(state_->measures.begin(), state_->measures.end(), SkyMeasure::sky_view_factor) !=
       state_->measures.end()) {
-    tilts.resize(static_cast<std::size_t>(cols * band.rows()));
+    for (auto* tilt : {&level, &east_tilt, &north_tilt}) tilt->resize(static_cast<std::size_t>(cols * band.rows()));
     const SightGround samples(state.field);
     parallel_for(band.rows(), 1, [&](std::int64_t begin, std::int64_t end) {
-      for (std::ptrdiff_t i = begin * cols; i < end * cols; ++i)
-        tilts[static_cast<std::size_t>(i)] =
-            tilt_of(samples, static_cast<int>(i % cols), first + static_cast<int>(i / cols));
+      for (std::ptrdiff_t i = begin * cols; i < end * cols; ++i) {
+        const Tilt tilt = tilt_of(samples, static_cast<int>(i % cols), first + static_cast<int>(i / cols));
+        const auto at = static_cast<std::size_t>(i);
+        level[at] = tilt.level, east_tilt[at] = tilt.east, north_tilt[at] = tilt.north;
+      }
     });
   }
   const auto add = [&](const HorizonRelief& relief, bool inverted) {
     const auto add_block = [&](const HorizonBlock& block) {
-      const int width = block.nodes.col_end - block.nodes.col_begin;
+      const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
       const double azimuth = state_->azimuths[block.azimuth];
       const auto east = static_cast<float>(std::sin(azimuth)), north = static_cast<float>(std::cos(azimuth));
-      for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row) {
-        const float* slopes = block.slopes + static_cast<std::ptrdiff_t>(row - block.nodes.row_begin) * width;
+      const float* slopes = block.slopes;
+      for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row, slopes += width) {
         const auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
         for (std::size_t m = 0; m < maps.size(); ++m) {
           if (is_inverted(state_->measures[m]) != inverted) continue;
-          float* sum = maps[m].data() + at;
+          float* sums = maps[m].data() + at;
           if (state_->measures[m] == SkyMeasure::sky_fraction) {
-            add_sky_fraction(slopes, width, sum);
+            add_sky_fraction(slopes, width, sums);
           } else if (state_->measures[m] == SkyMeasure::sky_view_factor) {
-            add_sky_view_factor(slopes, tilts.data() + at, east, north, width, sum);
+            add_sky_view_factor(slopes, {level.data() + at, east_tilt.data() + at, north_tilt.data() + at}, east, north,
+                                width, sums);
           } else {
-            add_openness(slopes, width, sum);
+            add_openness(slopes, width, sums);
           }
         }
       }

@@ -17,6 +17,7 @@
 
 #include "analysis/horizon_shapes.h"
 #include "march/instruction_sets.h"
+#include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_scan.h"
 #include "scarp/analysis/shadow.h"
 #include "scarp/analysis/sky_view.h"
@@ -131,7 +132,7 @@ TEST(Horizons, EqualCrossingsInLongDouble) {
           EXPECT_EQ(angle, static_cast<float>(-kPi / 2));
           continue;
         }
-        // An angle moves by no more than its slope; rounding of the angle itself.
+        // An angle moves by no more than its slope; horizon_measures.h has the bound of the angle itself.
         const double allowed = static_cast<double>(truth.error) + 0x1p-22;
         EXPECT_NEAR(static_cast<double>(angle), static_cast<double>(std::atan(truth.slope)), allowed)
             << "shape " << s << ", azimuth " << azimuth(a) << ", node " << col << ", " << row;
@@ -143,6 +144,29 @@ TEST(Horizons, EqualCrossingsInLongDouble) {
     }
   }
   EXPECT_GT(judged, 5000);
+}
+
+// The bound of horizon_measures.h, at every 1021st float; the same bits with every instruction set.
+TEST(Horizons, AnglesAreArcTangents) {
+  std::vector<float> slopes{0, -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
+  for (std::uint32_t bits = 0; bits < 0x7f800000u; bits += 1021) {
+    slopes.push_back(std::bit_cast<float>(bits));
+    slopes.push_back(-slopes.back());
+  }
+  slopes.push_back(kHole);
+  std::vector<float> angles(slopes.size()), others(slopes.size());
+  find_angles(slopes.data(), slopes.size(), angles.data());
+  EXPECT_TRUE(std::isnan(angles.back()));
+  double largest = 0;
+  for (std::size_t i = 0; i + 1 < slopes.size(); ++i)
+    largest = std::max(largest, std::abs(static_cast<double>(angles[i]) - std::atan(static_cast<double>(slopes[i]))));
+  EXPECT_LT(largest, 0x1p-22);
+  EXPECT_EQ(angles[1], -angles[2]);
+  for (const std::int64_t set : test::instruction_sets()) {
+    const test::InstructionSet selected(set);
+    find_angles(slopes.data(), slopes.size(), others.data());
+    EXPECT_TRUE(std::equal(angles.begin(), angles.end() - 1, others.begin()));
+  }
 }
 
 // Also equal where both are NaN.
