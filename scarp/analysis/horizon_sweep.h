@@ -18,7 +18,7 @@
 // Height Field Self-Shadowing", Computer Graphics Forum 29(2), 2010). The hull of that paper has neither near crossings
 // nor the lag of 8 rows, and errs by whole degrees where a sample beside the node hides the ground behind it.
 //
-// Where the azimuth runs along the columns, rows here are columns of the field: the heights are transposed.
+// The heights are transposed where the azimuth runs along the columns: rows here are then columns of the field.
 //
 // Lanes of vectors are lines. Results depend on no vector width and no thread.
 #pragma once
