@@ -262,7 +262,8 @@ class Comparison {
       }
       return at->second;
     };
-    const auto add = [&](const char* mode, DeviceMarch& march, const std::function<bool(const Judgement&)>& good) {
+    const auto add = [&](const char* mode, DeviceMarch& march, const std::function<bool(const Judgement&)>& good,
+                         EarlyHits early = EarlyHits::limited) {
       const auto attempt = [&](const NaiveSettings& settings) {
         const Judgement& judged = contender_with(march, settings).judged;
         return NaiveTrial{good(judged), judged.steps};
@@ -273,7 +274,7 @@ class Comparison {
                    ground.exaggeration, name_of(set.ray_class), mode);
         return;
       }
-      contenders.push_back(contender_with(march, coarsened_naive(*settings, attempt)));
+      contenders.push_back(contender_with(march, coarsened_naive(*settings, attempt, early)));
       contenders.back().mode = mode;
     };
     const auto in_position = [](const Judgement& judged) { return has_positions(judged, kNearlyRight); };
@@ -281,7 +282,8 @@ class Comparison {
     add("naive-position-clipped", clipped_naive_, in_position);
     if (!set.any_hit) return;
     const auto nearly_right = [](const Judgement& judged) { return judged.wrong_rate <= kNearlyRight; };
-    add("naive-missed", naive_, [&](const Judgement& judged) { return judged.miss_rate < limit; });
+    add(
+        "naive-missed", naive_, [&](const Judgement& judged) { return judged.miss_rate < limit; }, EarlyHits::ignored);
     add("naive-missed-false", naive_,
         [&](const Judgement& judged) { return judged.miss_rate + judged.false_rate < limit; });
     add("naive-wrong", naive_, nearly_right);

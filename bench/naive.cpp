@@ -49,14 +49,15 @@ Contender naive_with(const ScarpGround& scarp, const Judge& judge, const char* m
 }
 
 std::optional<Contender> cheapest(const ScarpGround& scarp, const Judge& judge, const char* mode,
-                                  const std::function<bool(const Judgement&)>& good) {
+                                  const std::function<bool(const Judgement&)>& good,
+                                  EarlyHits early = EarlyHits::limited) {
   const auto attempt = [&](const NaiveSettings& tried) {
     const Judgement judged = naive_with(scarp, judge, mode, tried).judged;
     return NaiveTrial{good(judged), judged.steps};
   };
   const auto settings = cheapest_naive(attempt);
   if (!settings) return {};
-  return naive_with(scarp, judge, mode, coarsened_naive(*settings, attempt));
+  return naive_with(scarp, judge, mode, coarsened_naive(*settings, attempt, early));
 }
 
 class Comparison {
@@ -83,14 +84,16 @@ class Comparison {
       // The comparison: ground that was stepped over counts as a hole, even if something is hit behind it, and so does
       // a hit in the air.
       add(cheapest(scarp, judge, kPosition, [&](const Judgement& j) { return has_positions(j, limit); }));
-      add(cheapest(scarp, judge, "naive-missed", [&](const Judgement& j) { return j.miss_rate < limit; }));
+      add(cheapest(
+          scarp, judge, "naive-missed", [&](const Judgement& j) { return j.miss_rate < limit; }, EarlyHits::ignored));
       if (set.any_hit) {
         // A false shadow is as wrong as a missing one.
         add(cheapest(scarp, judge, "naive-missed-false",
                      [&](const Judgement& j) { return j.miss_rate + j.false_rate < limit; }));
       }
-      add(cheapest(scarp, judge, "naive-missed-late",
-                   [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
+      add(cheapest(
+          scarp, judge, "naive-missed-late", [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; },
+          EarlyHits::ignored));
       for (const int threads : trace.threads) measure_all(ground, exaggeration, set, contenders, threads);
     }
   }

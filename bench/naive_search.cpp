@@ -40,7 +40,8 @@ std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const
   return best;
 }
 
-NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt) {
+NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
+                              EarlyHits early) {
   struct Coarsening {
     double NaiveSettings::*member;
     double ratio;
@@ -51,6 +52,7 @@ NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveT
   };
   double steps = attempt(settings).steps;
   for (const auto& [member, ratio] : kCoarsenings) {
+    if (early == EarlyHits::ignored && member == &NaiveSettings::tolerance) continue;
     for (;;) {
       NaiveSettings coarser = settings;
       coarser.*member *= ratio;

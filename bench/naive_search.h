@@ -27,8 +27,12 @@ struct NaiveTrial {
 std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
                                             double most_steps = std::numeric_limits<double>::infinity());
 
-/// Coarsens good settings from `cheapest_naive`: first the tolerance, then the minimum step, then the factor (at most
-/// 1), each as long as naive stays good and takes fewer steps.
-NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt);
+/// Whether good settings have few hits in the air. If not, any tolerance is good: at a large one, every ray hits at once.
+enum class EarlyHits : bool { limited, ignored };
+
+/// Coarsens good settings from `cheapest_naive`: first the tolerance, if early hits are limited, then the minimum step,
+/// then the factor (at most 1), each as long as naive stays good and takes fewer steps.
+NaiveSettings coarsened_naive(NaiveSettings settings, const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
+                              EarlyHits early = EarlyHits::limited);
 
 }  // namespace scarp::bench

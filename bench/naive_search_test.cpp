@@ -32,5 +32,14 @@ TEST(NaiveSearch, CoarsensSettingsWhileAccurateAndCheaper) {
   EXPECT_EQ(kept.tolerance, found.tolerance);
 }
 
+TEST(NaiveSearch, KeepsTheToleranceIfEarlyHitsAreIgnored) {
+  // Every tolerance is good, and larger ones take fewer steps.
+  const auto attempt = [](const NaiveSettings& settings) {
+    return NaiveTrial{settings.min_step <= 1.0 / 1000, 1 / settings.min_step + 1 / settings.tolerance};
+  };
+  const NaiveSettings found = *cheapest_naive(attempt);
+  EXPECT_EQ(coarsened_naive(found, attempt, EarlyHits::ignored).tolerance, found.tolerance);
+}
+
 }  // namespace
 }  // namespace scarp::bench
