@@ -27,7 +27,8 @@ struct NaiveTrial {
 std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
                                             double most_steps = std::numeric_limits<double>::infinity());
 
-/// Whether good settings have few hits in the air. If not, any tolerance is good: at a large one, every ray hits at once.
+/// Whether good settings have few hits in the air. If not, any tolerance is good: at a large one, every ray hits at
+/// once.
 enum class EarlyHits : bool { limited, ignored };
 
 /// Coarsens good settings from `cheapest_naive`: first the tolerance, if early hits are limited, then the minimum step,

@@ -24,7 +24,7 @@ struct HorizonRelief {
   std::optional<HorizonHeights> heights, transposed;  // sweep
   float eye;
 
-  /// Of the nodes, as the field has them.
+  /// Heights in the rows and columns of the field.
   const HorizonHeights& of_nodes() const { return ground ? ground->heights() : *heights; }
 };
 

@@ -13,10 +13,10 @@
 //   - the slopes to the crossings up to 8 steps away, exactly those of horizon_crossings.h, and
 //   - the slope to the major crossing at the step of the sample where the tangent from the node touches the hull, by
 //     the same expression; where that crossing has no ground, the slope of the tangent.
-// So most values are horizons of horizon_crossings.h or lower, and the others differ by the distance of line and node.
-// Rows are visited from the far border on, so that each sample is pushed once (V. Timonen, J. Westerholm, "Scalable
-// Height Field Self-Shadowing", Computer Graphics Forum 29(2), 2010). The hull of that paper has neither near crossings
-// nor the lag of 8 rows, and errs by whole degrees where a sample beside the node hides the ground behind it.
+// Most values are therefore horizons of horizon_crossings.h or lower, and the others differ by the distance of line and
+// node. Rows are visited from the far border on, so that each sample is pushed once (V. Timonen, J. Westerholm,
+// "Scalable Height Field Self-Shadowing", Computer Graphics Forum 29(2), 2010). The hull of that paper has neither near
+// crossings nor the lag of 8 rows, and errs by whole degrees where a sample beside the node hides the ground behind it.
 //
 // The heights are transposed where the azimuth runs along the columns: rows here are then columns of the field.
 //
