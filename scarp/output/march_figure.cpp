@@ -41,15 +41,22 @@ struct Key {
   enum class Shape { line, thick, dashes, dot, ring, box } shape;
 };
 
-std::vector<Key> keys_of(MarchMarks marks) {
+std::vector<Key> keys_of(const MarchPanel& panel) {
   using Shape = Key::Shape;
-  switch (marks) {
+  switch (panel.marks) {
     case MarchMarks::bars:
       return {{"height above ground", kBar, kBar, Shape::line}, {"length of the step", kStep, kStep, Shape::line}};
     case MarchMarks::shells:
       return {{"shell around the start", kShell, kShell, Shape::line}};
-    case MarchMarks::balls:
-      return {{"ball free of ground", kBall, kBallEdge, Shape::ring}, {"steepest slope", kCone, kCone, Shape::dashes}};
+    case MarchMarks::balls: {
+      std::vector<Key> keys{{panel.proof == BallProof::none ? "ball that may contain ground" : "ball free of ground",
+                             kBall, kBallEdge, Shape::ring}};
+      const std::vector<TraceStep>& steps = panel.trace.steps;
+      if (std::any_of(steps.begin(), steps.end(), [](const TraceStep& step) { return step.clearance > step.free; }))
+        keys.push_back({panel.proof == BallProof::steepest_slope ? "steepest slope" : "slope that the step allows for",
+                        kCone, kCone, Shape::dashes});
+      return keys;
+    }
     case MarchMarks::blocks:
       return {{"block passed", kPassed, kPassedEdge, Shape::box},
               {"block entered", kEntered, kEnteredEdge, Shape::box},
@@ -104,7 +111,7 @@ class MarchDrawing {
     if (sampled) keys_.push_back({"sample", kSample, kSample, Key::Shape::dot});
     if (refined) keys_.push_back({"sample of the refinement", kRefined, kRefined, Key::Shape::dot});
     for (const MarchPanel& panel : figure_.panels) {
-      for (const Key& key : keys_of(panel.marks)) {
+      for (const Key& key : keys_of(panel)) {
         const auto same = [&](const Key& other) { return other.text == key.text; };
         if (std::none_of(keys_.begin(), keys_.end(), same)) keys_.push_back(key);
       }
@@ -298,7 +305,8 @@ class MarchDrawing {
       cairo_fill_preserve(cr_);
       stroke(kBallEdge, 1);
     }
-    // The cone of the bound: as steep as the ground may be, from the ground below a point to where it touches the ball.
+    // The cone of the bound: as steep as the ground may be for the step to be safe, from the ground below a point to
+    // where it touches the ball.
     constexpr std::array kDashes{4.0, 3.0};
     cairo_set_dash(cr_, kDashes.data(), 2, 0);
     for (const TraceStep& step : panel.trace.steps) {

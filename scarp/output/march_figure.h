@@ -4,7 +4,7 @@
 //
 //   bars    heights of the samples above the ground, and steps          naive, relaxed
 //   shells  equal distances from the start of the ray                   fixed-step
-//   balls   free of ground by a bound on its slope, and their cones     lipschitz
+//   balls   as wide as the steps, and the slope that they allow for     lipschitz
 //   blocks  of the pyramid: passed, entered; cells: passed, tested      max-mip
 #pragma once
 
@@ -25,9 +25,13 @@ struct MarchFigurePoint {
 
 enum class MarchMarks : std::uint8_t { bars, shells, balls, blocks };
 
+/// Whether balls are free of ground: by its steepest slope; by a slope that is steeper; or not proven.
+enum class BallProof : std::uint8_t { steepest_slope, steeper_slope, none };
+
 struct MarchPanel {
   std::string caption{};
   MarchMarks marks = MarchMarks::bars;
+  BallProof proof = BallProof::steepest_slope;
   MarchTrace trace{};
   Hit hit{};
 };

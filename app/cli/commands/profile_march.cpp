@@ -16,6 +16,7 @@
 #include "scarp/base/file_name.h"
 #include "scarp/base/march_trace.h"
 #include "scarp/march/height/height_table.h"
+#include "scarp/march/sampling/shrink_factor.h"
 #ifdef SCARP_CAIRO
 #include "scarp/output/march_figure.h"
 #endif
@@ -65,6 +66,11 @@ MarchMarks marks_of(const HeightMarchEntry& march) {
       break;
   }
   return MarchMarks::blocks;
+}
+
+BallProof proof_of(const LipschitzSettings& settings, double slope) {
+  if (settings.shrink == 0) return BallProof::steepest_slope;
+  return lipschitz_guarantee(settings, slope) == Guarantee::approximate ? BallProof::none : BallProof::steeper_slope;
 }
 
 // Leaves out points that lie on a straight line between others, up to `tolerance`.
@@ -266,10 +272,13 @@ std::vector<std::string> draw_marches([[maybe_unused]] const ProfileMarchOptions
     const HeightMarchEntry& march = find_height_march(name);
     MarchPanel panel;
     panel.marks = marks_of(march);
+    panel.proof = proof_of(options.settings.lipschitz, target.slope);
     MarchStats stats;
     panel.hit = march.traced(target, ray, options.settings, &stats, panel.trace);
     panel.caption = caption_of(march, panel, stats, exact, metre);
     lines.push_back(panel.caption);
+    if (panel.marks == MarchMarks::balls && panel.proof == BallProof::none)
+      lines.push_back(lipschitz_caveat(options.settings.lipschitz, target.slope));
     figure.panels.push_back(std::move(panel));
   }
   const double end = std::min(part->second, end_of(figure, ray, part->second));

@@ -37,7 +37,8 @@ ProfileRay typed_ray(MapInput& input, const std::string& text);
 /// The ray from the eye to the target of a line of sight without curvature, and a little beyond.
 ProfileRay ray_along(const SightLine& line);
 
-/// Draws the marches of a ray. Throws Error if it does not pass over the field. Returns a line for each march.
+/// Draws the marches of a ray. Throws Error if it does not pass over the field. Returns lines about
+/// the marches.
 std::vector<std::string> draw_marches(const ProfileMarchOptions& options, const ProfileRay& ray,
                                       const std::string& title, int width, int height, const std::string& output);
 
