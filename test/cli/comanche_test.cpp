@@ -100,6 +100,7 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
       {{"--frames", "3"}, "--frames has no effect without --path FILE, --turntable or --animate"},
       {{"--depth-range", "1,100"}, "name the output *.exr"},
       {{"--depth-range", "auto"}, "name the output *.exr"},
+      {{"--depth-reversed"}, "--depth-reversed needs an EXR picture"},
       {{"--depth-range", "near"}, "NEAR,FAR in metres, for example 1,50000, or auto"},
   };
   for (const Case& one : cases) {
@@ -410,6 +411,23 @@ TEST(Composite, ShowsTheNearerPixel) {
     between += by_metres > 0 && by_metres < 64;
   }
   EXPECT_GE(between, 1);
+  // Depths of a buffer without planes, and metres.
+  const auto note = [&](const std::string& channel) {
+    const auto result = test::run(
+        {"composite", ours, scratch.path("plate.exr"), "-o", scratch.path("x.png"), "--depth-channel", channel});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_NE(note("D").find("note: " + scratch.path("plate.exr") + ": all depths in channel D are 0 to 1 m"),
+            std::string::npos)
+      << note("D");
+  EXPECT_EQ(note("Z"), "");
+  for (const auto& [range, says] : {std::pair{"auto", "name NEAR,FAR"}, {"near", "for example 1,50000"}}) {
+    const auto result =
+        test::run({"composite", ours, scratch.path("plate.exr"), "-o", scratch.path("x.png"), "--depth-range", range});
+    EXPECT_NE(result.status, 0);
+    EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+  }
   write_exr(scratch.path("small.exr"),
             {4, 4, {{"R", zero.data()}, {"G", one.data()}, {"B", zero.data()}, {"Z", z.data()}}, {}});
   const auto result = test::run({"composite", ours, scratch.path("small.exr"), "-o", scratch.path("x.png")});
@@ -426,8 +444,8 @@ TEST(Composite, DepthsBeyondThePlanesStayInFrontOfTheSky) {
   // The planes that the note on a picture names last; empty if there is none.
   const auto render = [&](const std::string& range, bool reversed) -> std::string {
     std::vector<std::string> arguments{"render",   dem,           "-o",   out, "--eye",  "40,-90,120", "--target",
-                                       "40,40,40", "--no-plinth", "--aa", "1", "--size", "40x30",      "--depth-range",
-                                       range};
+                                       "40,40,40", "--no-plinth", "--aa", "1", "--size", "40x30"};
+    if (!range.empty()) arguments.insert(arguments.end(), {"--depth-range", range});
     if (reversed) arguments.emplace_back("--depth-reversed");
     const auto result = test::run(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -467,6 +485,12 @@ TEST(Composite, DepthsBeyondThePlanesStayInFrontOfTheSky) {
     }
     EXPECT_EQ(render(fitting, reversed), "");
   }
+  // A buffer needs planes, metres do not.
+  const std::string fitting = render("auto", true), depths = test::text_of(out);
+  EXPECT_EQ(render("", true), fitting);
+  EXPECT_TRUE(test::text_of(out) == depths);
+  EXPECT_EQ(render("", false), "");
+  EXPECT_EQ(test::text_of(out).find("depth"), std::string::npos);
 }
 
 // The sky is behind everything: a plate is visible in front of it, and another renderer's sky hides nothing.

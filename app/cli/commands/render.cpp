@@ -30,11 +30,12 @@ void check_output(const RenderOptions& options) {
   const PictureFormat& format = picture_format_of(options.output);
   const PictureSettings picture = resolve(options.picture, {});
   check_frames(options.frames, options.output);
-  if ((options.depth.range || options.depth.fitted) && !format.layers) {
-    throw Error("--depth-range needs an EXR picture, of which it is a channel (name the output *.exr)");
+  if (options.depth.buffer() && !format.layers) {
+    throw Error(fmt::format("{} needs an EXR picture, of which it is a channel (name the output *.exr)",
+                            options.depth.range || options.depth.fitted ? "--depth-range" : "--depth-reversed"));
   }
-  if (options.depth.fitted && options.frames.several())
-    throw Error("--depth-range auto: frames share their planes (name NEAR,FAR)");
+  if (options.depth.buffer() && !options.depth.range && options.frames.several())
+    throw Error("frames share the planes of their depths, which are not known beforehand (add --depth-range NEAR,FAR)");
   check_figure(options.figure, picture, format);
   check_comparison(options, format);
   if (format.layers && !entry_of(picture.look).lit && picture.look != Look::error) {

@@ -46,6 +46,12 @@ ExrSamples read_depth(const std::string& path, const std::string& channel) {
   return depth;
 }
 
+// Surfaces within a metre of the camera are rarer than a depth buffer read without its planes.
+bool like_a_buffer(const std::vector<float>& depths) {
+  return std::none_of(depths.begin(), depths.end(), [](float z) { return std::isfinite(z) && (z < 0 || z > 1); }) &&
+         std::any_of(depths.begin(), depths.end(), [](float z) { return std::isfinite(z); });
+}
+
 std::vector<vec3> read_colour(const std::string& path) {
   std::vector<vec3> colour;
   int axis = 0;
@@ -94,6 +100,12 @@ void run(const CompositeOptions& options) {
     throw Error(fmt::format("picture '{}': {} x {} pixels, where '{}' has {} x {}; render both in one size",
                             options.theirs, theirs.width, theirs.height, options.ours, ours.width, ours.height));
   }
+  if (!range && like_a_buffer(theirs.values)) {
+    fmt::print(stderr,
+               "note: {}: all depths in channel {} are 0 to 1 m (if they are those of a depth buffer, add "
+               "--depth-range NEAR,FAR)\n",
+               options.theirs, options.depth_channel);
+  }
   std::vector<float>& depth = ours.values;
   std::vector<vec3> colour = read_colour(options.ours);
   const std::vector<vec3> their_colour = read_colour(options.theirs);
@@ -141,7 +153,7 @@ void add_composite(Program& program) {
                          .help = "their opacity channel, by which their colours are multiplied",
                          .fallback = "none"});
   add_tone_option(command, &o.no_tone_curve, o.output, Topic::general);
-  add_depth_options(command, o.depth);
+  add_read_depth_options(command, o.depth);
   command.example("scarp composite terrain.exr ship.exr -o both.png");
   command.runs([options, &command] {
     command.require_effect({});

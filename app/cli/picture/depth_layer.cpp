@@ -47,15 +47,15 @@ std::string note_on(const std::vector<float>& view_depths, const DepthRange& ran
 
 DepthLayer depth_layer(const std::vector<float>& view_depths, const DepthOptions& options) {
   DepthLayer layer;
+  if (!options.buffer()) return layer;
   std::optional<DepthRange> range = options.range;
-  if (options.fitted) {
+  if (!range) {
     range = fitting_range(view_depths);
     if (range) layer.note = fmt::format("depth: the planes are those of --depth-range {}", planes_text(*range));
     if (!range) range = DepthRange{};
-  } else if (range) {
+  } else {
     layer.note = note_on(view_depths, *range);
   }
-  if (!range) return layer;
   range->reversed = options.reversed;
   const float last = last_depth(options.reversed);
   layer.values.reserve(view_depths.size());

@@ -10,7 +10,7 @@
 namespace scarp::cli {
 
 struct DepthLayer {
-  std::vector<float> values;  ///< empty unless --depth-range is given
+  std::vector<float> values;  ///< empty unless DepthOptions::buffer()
   std::string note;           ///< the planes that were chosen, or that would show all surfaces; empty: nothing to say
 };
 
