@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -138,6 +139,24 @@ TEST(Help, ListsEveryOptionAndTopic) {
   // Regardless of other options.
   EXPECT_EQ(run({"render", "--watr", "3", "--fov", "x", "--help", "fog"}).status, 0);
   EXPECT_EQ(run({"--help", "cast"}).out, run({"cast", "--help"}).out);
+}
+
+// No value is dropped in favour of another: an option of each type of variable.
+TEST(Options, AreRejectedIfRepeated) {
+  cli::Program program = cli::scarp_program();
+  std::set<std::size_t> types;
+  for (const cli::Command* command : declared().commands()) {
+    for (const cli::Declared& option : command->options()) {
+      const bool several = option.option.repeats || std::holds_alternative<std::vector<std::string>*>(option.to);
+      if (option.positional() || option.flag() || several || !types.insert(option.to.index()).second) continue;
+      Names words{"scarp", command->name(), option.name, "1", option.name, "2"};
+      std::vector<char*> argv;
+      for (std::string& word : words) argv.push_back(word.data());
+      EXPECT_EQ(test::refusal([&] { program.run(static_cast<int>(argv.size()), argv.data()); }),
+                option.name + " was given 2 times; expected once");
+    }
+  }
+  EXPECT_GT(types.size(), 8U);
 }
 
 TEST(Options, RejectNumbersOutOfRange) {
