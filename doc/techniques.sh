@@ -50,7 +50,7 @@ fill() {
 
 judged=true
 "$scarp" render "$dem" --crs EPSG:4326 --bounds=-84.41375,36.44625,-84.0779166667,36.7329166667 --exaggeration 4 \
-  --view 195,40,0.7 --no-plinth --size 720x320 --compare naive,max-mip -o "$images/techniques-compare.png" >/dev/null
+  --view 195,40,0.7 --no-plinth --size 400x180 --compare naive,max-mip -o "$images/techniques-compare.png" >/dev/null
 field=("$dem" --crs EPSG:4326 --bounds=-84.41375,36.44625,-84.0779166667,36.7329166667 --exaggeration 4 --view 195,40 --no-plinth)
 {
   row heights naive 0,100 --march naive

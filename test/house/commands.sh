@@ -127,8 +127,7 @@ for page in "$@"; do
       row)
         run "$place" "$last $text --look steps"
         found=$(sed -n 's/^steps per ray: .*mean \([0-9.]*\).*/\1/p' said)
-        # The pictures of functions on the page are larger.
-        [[ $table == functions || $found == "$steps" ]] || fail "$place: $text: the page says $steps steps per ray, not $found"
+        [[ $found == "$steps" ]] || fail "$place: $text: the page says $steps steps per ray, not $found"
         ;;
     esac
   done < <(commands_of "$root/$page")
