@@ -66,13 +66,15 @@ SCARP_FN vec3 scarp_scattered(ScarpSky sky, real3 direction) {
 }
 
 /// Colour of the sky at the horizon, in linear light, in the direction of a unit vector. Towards zenith and nadir,
-/// where horizontal directions converge, it becomes the mean of all.
+/// where horizontal directions converge, it becomes the mean of all. Below the horizon the angle to the sun is that of
+/// the vector, so the glow around a low sun fades downwards in haze as in the sky.
 SCARP_FN vec3 scarp_horizon_colour(ScarpSky sky, real3 direction) {
   if (sky.scattering == 0) return kScarpHorizon;
   real square = min(direction.x * direction.x + direction.y * direction.y, real(1.0));
   if (square < real(1e-12)) return sky.horizon;
   real level = sqrt(square);
-  vec3 there = scarp_scattered(sky, real3(direction.x / level, direction.y / level, real(0.0)));
+  real3 towards = direction.z < real(0.0) ? direction : real3(direction.x / level, direction.y / level, real(0.0));
+  vec3 there = scarp_scattered(sky, towards);
   return scarp_between(sky.horizon, there, square * square);
 }
 

@@ -194,6 +194,23 @@ TEST(Sky, HasOneColourTowardsTheNadir) {
   EXPECT_GT(length(glsl::scarp_sky_beyond(sky, direction(-5)) - glsl::scarp_sky_beyond(sky, direction(-5, 180))), 0.1f);
 }
 
+// Haze scatters less light away from the sun: its glow does not reach down over the ground.
+TEST(Sky, GlowBelowTheHorizonFadesWithTheAngleToTheSun) {
+  for (const double altitude : {2.0, 5.0, 20.0}) {
+    const glsl::ScarpSky sky = scattering(altitude).numbers();
+    const auto haze = [&](double up) { return glsl::scarp_sky_beyond(sky, direction(up)); };
+    EXPECT_LT(length(haze(-0.001) - haze(0)), 1e-3f * length(haze(0))) << altitude;
+    for (double up = 0; up > -40; up -= 5)
+      EXPECT_LT(luminance(haze(up - 5)), luminance(haze(up))) << altitude << ", " << up;
+    // The colour of the horizon at the same angle to the sun, with the mean that is mixed in towards the nadir.
+    const double turn =
+        glm::degrees(std::acos(std::cos(glm::radians(20 + altitude)) / std::cos(glm::radians(altitude))));
+    const auto share = static_cast<float>(std::pow(std::cos(glm::radians(20.0)), 4));
+    const vec3 expected = share * glsl::scarp_sky_beyond(sky, direction(0, turn)) + (1 - share) * sky.horizon;
+    EXPECT_LT(length(haze(-20) - expected), 1e-5f * length(expected)) << altitude;
+  }
+}
+
 TEST(Sky, RejectsValuesOutOfRange) {
   EXPECT_THROW(find_sky("clear"), Error);
   EXPECT_EQ(find_sky("scattering"), SkyKind::scattering);
