@@ -124,4 +124,8 @@ void end_progress_line() {
   line_open = false;
 }
 
+void print_notes(std::span<const std::string> notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
 }  // namespace scarp::cli

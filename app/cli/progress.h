@@ -2,6 +2,8 @@
 // Progress on a terminal, and interruption by Ctrl-C.
 #pragma once
 
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "scarp/base/progress.h"
@@ -37,5 +39,8 @@ class SilentProgress {
 
 /// Ends an incomplete progress line, so that a message starts on its own line.
 void end_progress_line();
+
+/// Prints "note: NOTE" lines to stderr. Called last: a run that fails prints only one line.
+void print_notes(std::span<const std::string> notes);
 
 }  // namespace scarp::cli

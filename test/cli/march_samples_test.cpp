@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -16,16 +17,21 @@
 #include "cli/csv_rows.h"
 #include "cli/program.h"
 #include "cli/refused.h"
+#include "full_disk.h"
 
 namespace scarp {
 namespace {
 
+using test::Names;
 using test::number;
 using test::Row;
 using test::rows_of;
 using test::run;
 using test::text_of;
-using Names = std::vector<std::string>;
+using test::operator+;
+
+constexpr double kMetres = 0x1p-43;  // two roundings of numbers below 2^9
+constexpr double kSample = 0x1p-17;  // samples below 128 m are floats
 
 class MarchSamples : public testing::Test {
  protected:
@@ -93,15 +99,15 @@ TEST_F(MarchSamples, SamplesLieOnTheirRaysAboveTheGround) {
       if (row.at("t").empty()) continue;
       const auto& r = typed[static_cast<std::size_t>(ray)];
       const double t = number(row, "t"), x = r[0] + t * r[3], y = r[1] + t * r[4], z = r[2] + t * r[5];
-      EXPECT_NEAR(number(row, "x"), x, 1e-9) << march;
-      EXPECT_NEAR(number(row, "y"), y, 1e-9) << march;
-      EXPECT_NEAR(number(row, "z"), z, 1e-9) << march;
+      EXPECT_NEAR(number(row, "x"), x, kMetres) << march;
+      EXPECT_NEAR(number(row, "y"), y, kMetres) << march;
+      EXPECT_NEAR(number(row, "z"), z, kMetres) << march;
       if (row.at("kind") == "sample") {
-        EXPECT_NEAR(number(row, "clearance"), z - ground(x, y), 1e-3) << march << " t=" << t;  // float32 samples
+        EXPECT_NEAR(number(row, "clearance"), z - ground(x, y), kSample) << march << " t=" << t;
       }
       balls += !row.at("free").empty();
       if (row.at("kind") == "passed-block") {
-        EXPECT_GE(number(row, "maximum"), ground(x, y) - 1e-3) << march;
+        EXPECT_GE(number(row, "maximum"), ground(x, y) - kSample) << march;
       }
     }
     EXPECT_EQ(balls > 0, std::string(march) == "lipschitz");
@@ -122,14 +128,15 @@ TEST_F(MarchSamples, FixedStepsAreEquallyLong) {
   const std::vector<Row> rows = samples("fixed-step");
   const double step = number(rows.at(1), "t") - number(rows.at(0), "t");
   for (std::size_t i = 2; rows.at(i).at("kind") == "sample" && number(rows[i], "ray") == 0 && i < 20; ++i)
-    EXPECT_NEAR(number(rows[i], "t") - number(rows[i - 1], "t"), step, 1e-12);
+    EXPECT_NEAR(number(rows[i], "t") - number(rows[i - 1], "t"), step, kMetres);
 }
 
 TEST_F(MarchSamples, PlacesAreInTheCoordinatesOfRays) {
   const std::string table = scratch_.write("map.csv", "x,y,z,dx,dy,dz\n1005,2012,150,1,0.7,-0.4\n");
   ASSERT_EQ(run({"cast", hills(), "--rays", table, "--samples", path("s.csv"), "-o", path("h.csv")}).status, 0);
   const std::vector<Row> rows = rows_of(text_of(path("s.csv")));
-  for (const Row& row : rows) EXPECT_NEAR(number(row, "x"), 1005 + number(row, "t"), 1e-9);
+  for (const Row& row : rows)
+    EXPECT_NEAR(number(row, "x"), 1005 + number(row, "t"), 0x1p-41);  // four roundings below 2^11
 }
 
 TEST_F(MarchSamples, VoxelMarchesRecordWhatTheySkip) {
@@ -163,11 +170,7 @@ TEST_F(MarchSamples, VoxelMarchesRecordWhatTheySkip) {
 
 TEST_F(MarchSamples, SectionDrawsVisitedVoxelsAndEmptyBodies) {
   const Names section{"section", wall(), "--volume", "16x16x16:u8", "--solid-from", "1", "-o", path("s.svg")};
-  const auto draw = [&](const Names& more) {
-    Names arguments = section;
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
-  };
+  const auto draw = [&](const Names& more) { return run(section + more); };
   const auto count = [&](const std::string& part) {
     const std::string text = text_of(path("s.svg"));
     int found = 0;
@@ -238,19 +241,46 @@ TEST_F(MarchSamples, OutlinesCoverTheEmptyVoxels) {
 
 TEST_F(MarchSamples, ReportsBadInputInOneLineWithoutOutput) {
   const Names cast{"cast", hills(), "--rays", rays(), "--coords", "local", "-o", path("h.csv"), "--samples"};
-  const auto refused = [&](Names arguments, const Names& more, const std::string& fragment) {
-    const Names before = scratch_.files();
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    test::expect_refused(run(arguments), fragment);
-    EXPECT_EQ(scratch_.files(), before) << fragment;
+  const auto refused = [&](const Names& arguments, const Names& more, const std::string& fragment) {
+    test::expect_refused(scratch_, arguments + more, fragment);
   };
   refused(cast, {path("s.npy")}, "end the name in .csv");
   refused(cast, {path("none/s.csv")}, "none");
   refused(cast, {path("hills.asc")}, "hills.asc");
   refused(cast, {path("rays.csv")}, "is the input");
+  refused(cast, {path("h.csv")}, "--samples '" + path("h.csv") + "': is the output");
+  refused(cast, {path("./h.csv")}, "': is the output");
   refused(cast, {path("s.csv"), "--march", "exhaustive"}, "the march exhaustive records no steps (use max-mip");
   refused({"cast", "--function", "ridges", "--rays", rays(), "--samples", path("s.csv")}, {},
           "the march lipschitz-local records no steps (use naive");
+}
+
+// A virtual raster that reads a table of points.
+TEST_F(MarchSamples, NeverOverwritesFilesThatTheInputReads) {
+  const std::string points = "x,y,z\n0,10,1\n10,10,2\n0,0,3\n10,0,4\n", source = scratch_.write("points.csv", points);
+  const std::string raster = scratch_.write("points.vrt", R"(<VRTDataset rasterXSize="2" rasterYSize="2">
+<GeoTransform>-5,10,0,15,0,-10</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource>
+<SourceFilename relativeToVRT="1">points.csv</SourceFilename><SourceBand>1</SourceBand>
+</SimpleSource></VRTRasterBand></VRTDataset>)");
+  const Names cast{"cast", raster, "--rays", rays(), "--coords", "local", "-o", path("h.csv"), "--samples"};
+  const auto with = [&](const std::string& samples) { return run(cast + Names{samples}); };
+  test::expect_refused(with(source), "output '" + source + "': is the input");
+  EXPECT_EQ(text_of(source), points);
+  EXPECT_FALSE(std::filesystem::exists(path("h.csv")));
+  ASSERT_EQ(with(path("s.csv")).status, 0);
+}
+
+TEST_F(MarchSamples, FullDiskLeavesNeitherHitsNorSamples) {
+  const Names cast{"cast",    hills(), "--rays", rays(),        "--coords",  "local",
+                   "--march", "naive", "-o",     path("h.csv"), "--samples", path("s.csv")};
+  const Names before = scratch_.files();
+  const auto result = [&] {
+    constexpr std::uint64_t kHitsOnly = 2000;
+    const test::FullDisk disk(kHitsOnly);
+    return test::Program(cast).result();
+  }();
+  test::expect_refused(result, "s.csv: cannot be written");
+  EXPECT_EQ(scratch_.files(), before);
 }
 
 }  // namespace

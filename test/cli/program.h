@@ -24,6 +24,14 @@
 
 namespace scarp::test {
 
+/// Words of a command line, or names of files.
+using Names = std::vector<std::string>;
+
+inline Names operator+(Names a, const Names& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 inline std::string text_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -19,4 +19,11 @@ inline void expect_refused(const Result& result, const std::string& fragment) {
   EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
 }
 
+/// The same of a call, which leaves the folder as it was.
+inline void expect_refused(const Scratch& scratch, const Names& arguments, const std::string& fragment) {
+  const Names before = scratch.files();
+  expect_refused(run(arguments), fragment);
+  EXPECT_EQ(scratch.files(), before) << fragment;
+}
+
 }  // namespace scarp::test

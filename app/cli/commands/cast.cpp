@@ -328,7 +328,7 @@ struct WholeInput {
 WholeInput open_whole(const CastOptions& options, InputKind kind, const std::optional<CastPart>& part) {
   const MeshInput mesh(options.mesh);
   OpenedInput input = open_input(kind, options);
-  keep_inputs(options.output, input.files);
+  for (const std::string& written : {options.output, options.samples}) keep_inputs(written, input.files);
   std::vector<std::string> notes = input.notes;
   Places places = places_of(options, input, part);
   if (kind == InputKind::terrain) {
@@ -380,12 +380,15 @@ void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntr
     }
     if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
   }
+  // The hits become visible last: where they are, the samples are complete.
+  if (samples) {
+    write_samples(*samples, scene, rays, frame);
+    samples->commit();
+  }
   out.commit();
-  if (samples) write_samples(*samples, scene, rays, frame);
-  // Last: on failure only one line is printed.
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-  if (const std::string note = finding_of(caster, options.any, rays, scene, places, part.has_value()); !note.empty())
-    fmt::print(stderr, "note: {}\n", note);
+  if (std::string note = finding_of(caster, options.any, rays, scene, places, part.has_value()); !note.empty())
+    notes.push_back(std::move(note));
+  print_notes(notes);
   if (::isatty(STDERR_FILENO) != 0) {
     constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
     fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
@@ -413,13 +416,8 @@ void run(CastOptions options, const Command& command) {
   command.require_effect({kind, {}, march_of(options, kind)});
   const HeightMarchEntry* const all = all_hits_of(options);  // refuses before files are read
   validate(options.march_settings);
+  keep_apart("--samples", options.samples, options.output, options.typed);
   keep_inputs(options.output, options.typed);
-  if (!options.samples.empty()) {
-    std::vector<std::string> others = options.typed;
-    if (const auto own = std::find(others.begin(), others.end(), options.samples); own != others.end())
-      others.erase(own);
-    keep_inputs(options.samples, others);
-  }
   const ThreadLimit limit(options.threads);
   // The reader of the table may close the pipe, as `head` does: the program then ends silently, as others do.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);

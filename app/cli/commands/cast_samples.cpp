@@ -57,7 +57,6 @@ void write_samples(TraceTable& table, const Scene& scene, std::span<const Ray> r
     table.add(static_cast<std::int64_t>(i), trace.steps, positions, hit);
     stop_if_interrupted();
   }
-  table.commit();
 }
 
 }  // namespace scarp::cli

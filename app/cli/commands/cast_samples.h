@@ -18,7 +18,7 @@ inline constexpr const char* kSampleColumns =
 /// Throws Error unless the scene is one field whose march records its steps.
 void require_samples(const Scene& scene);
 
-/// Traces the rays again and writes their steps, in the coordinates of `frame`.
+/// Traces the rays again and adds their steps, in the coordinates of `frame`, to the table, which the caller commits.
 void write_samples(TraceTable& table, const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame);
 
 }  // namespace scarp::cli

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -20,6 +21,17 @@ void keep_inputs(const std::string& output, const std::vector<std::string>& inpu
       throw Error(fmt::format("output '{}': is the input{} (name another file)", output,
                               input == output ? "" : fmt::format(" '{}'", input)));
   }
+}
+
+void keep_apart(std::string_view option, const std::string& file, const std::string& output,
+                std::vector<std::string> typed) {
+  if (file.empty()) return;
+  std::error_code no_file;
+  const auto place = [&](const std::string& name) { return fs::weakly_canonical(fs::absolute(name), no_file); };
+  if (!output.empty() && (place(file) == place(output) || fs::equivalent(file, output, no_file)))
+    throw Error(fmt::format("{} '{}': is the output (name another file)", option, file));
+  if (const auto own = std::find(typed.begin(), typed.end(), file); own != typed.end()) typed.erase(own);
+  keep_inputs(file, typed);
 }
 
 }  // namespace scarp::cli

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <vector>
 
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/picture/map_preview.h"
+#include "app/cli/progress.h"
 #include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
@@ -56,11 +56,7 @@ void settle_output(RasterOutput& options, const MapOptions& map, std::string_vie
   if (!options.dry_run) const ReplaceFile writable(map.output);
   if (options.preview.empty()) return;
   preview_format_of(options.preview);
-  if (std::filesystem::path(options.preview).lexically_normal() == std::filesystem::path(map.output).lexically_normal())
-    throw Error(fmt::format("--preview '{}': is the output (name another file)", options.preview));
-  std::vector<std::string> others = map.typed;
-  std::erase(others, options.preview);
-  keep_inputs(options.preview, others);
+  keep_apart("--preview", options.preview, map.output, map.typed);
 }
 
 MapArea map_area(const MapInput& input, const RasterOutput& options, const RasterWindow& whole,
@@ -129,7 +125,7 @@ void print_dry_run(const MapInput& input, const MapArea& area, const std::string
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
                        const std::string& output, const std::string& what,
                        std::chrono::steady_clock::time_point begin) {
-  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(input.notes);
   if (options.quiet) return;
   fmt::print("{}: {} x {} pixels, {}; {:.2f} s\n", output, area.output.cols, area.output.rows, what,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
