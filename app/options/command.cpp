@@ -185,7 +185,7 @@ std::string Command::typed_words(const std::vector<std::string_view>& left_out) 
   return text;
 }
 
-void Command::require_effect(const Use& use) const {
+void Command::require_effect_of_any(std::span<const Use> uses) const {
   std::vector<const Declared*> seen;
   const std::function<void(const Declared&)> check = [&](const Declared& one) {
     if (std::find(seen.begin(), seen.end(), &one) != seen.end()) return;
@@ -195,7 +195,8 @@ void Command::require_effect(const Use& use) const {
         if (const Typed* other = typed(word.substr(0, word.find(',')))) check(*other->option);
       }
     }
-    cli::require_effect(one, use);
+    if (std::none_of(uses.begin(), uses.end(), [&](const Use& use) { return has_effect(one, use); }))
+      cli::require_effect(one, uses.front());
   };
   for (const Typed& one : typed_) check(*one.option);
 }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,9 +48,10 @@ class Command {
   std::vector<std::string> typed_values() const;
   /// The typed words, without the options in `left_out`, quoted for a shell where necessary.
   std::string typed_words(const std::vector<std::string_view>& left_out) const;
-  /// Throws Error for the first option, in the order typed, that has no effect. An option is checked before others that
-  /// need it.
-  void require_effect(const Use& use) const;
+  /// Throws Error for the first option, in the order typed, that has no effect in any of the uses, with its reason in
+  /// the first one. An option is checked before others that need it.
+  void require_effect_of_any(std::span<const Use> uses) const;
+  void require_effect(const Use& use) const { require_effect_of_any(std::span(&use, 1)); }
 
   /// The values typed for one option.
   struct Typed {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
+#include <string_view>
 #include <utility>
 
 #include "app/cli/options/march_options.h"
@@ -24,6 +24,7 @@
 namespace scarp::cli {
 namespace {
 
+constexpr std::string_view kNoMarch = "none";  // for messages: no march has this name
 constexpr const char* kRayForm = "X,Y,Z,DX,DY,DZ, for example 692000,5143000,2500,1,0.5,-0.2";
 
 // The part of the ray over the field, down to its lowest ground.
@@ -108,7 +109,7 @@ std::vector<MarchFigurePoint> ground_below(const HeightField& field, const Ray& 
   return simplified(ground, kSmoothing * std::max(high - low, 0.0));
 }
 
-// "12.3 m after the hit", against an exact march.
+// " (12.3 m late)", against an exact march.
 std::string error_of(const Hit& hit, const Hit& exact, double metre) {
   if (hit && exact) {
     const double metres = (hit.t - exact.t) * metre;
@@ -194,21 +195,11 @@ void add_profile_march_options(Command& command, ProfileMarchOptions& options, c
 }
 
 void check_marches(const Command& command, const ProfileMarchOptions& options) {
-  command.require_effect({InputKind::terrain, {}, {}});
   // Settings of marches need one of those that are drawn.
-  std::set<std::string> useless;
-  const std::vector<std::string> none{"-"};
-  for (bool first = true; const std::string& name : options.names.empty() ? none : options.names) {
-    const std::vector<std::string> here = command.without_effect({InputKind::terrain, {}, name});
-    std::set<std::string> both;
-    for (const std::string& option : here) {
-      if (first || useless.contains(option)) both.insert(option);
-    }
-    useless = std::move(both);
-    first = false;
-  }
-  if (useless.empty()) return;
-  command.require_effect({InputKind::terrain, {}, options.names.empty() ? none.front() : options.names.front()});
+  std::vector<Use> uses;
+  for (const std::string& name : options.names) uses.push_back({InputKind::terrain, {}, name});
+  if (uses.empty()) uses.push_back({InputKind::terrain, {}, kNoMarch});
+  command.require_effect_of_any(uses);
 }
 
 ProfileRay typed_ray(MapInput& input, const std::string& text) {
