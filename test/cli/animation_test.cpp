@@ -13,11 +13,13 @@
 #include <vector>
 
 #include "cli/program.h"
+#include "cli/refused.h"
 
 namespace scarp {
 namespace {
 
-using Names = std::vector<std::string>;
+using test::Names;
+using test::operator+;
 
 class Animate : public testing::Test {
  protected:
@@ -29,9 +31,7 @@ class Animate : public testing::Test {
   ~Animate() override { ::setenv("PATH", path_.c_str(), 1); }
 
   Names arguments(const std::string& to, const Names& options) const {
-    Names all{"render", dem_, "-o", scratch_.path(to), "--size", "40x30"};
-    all.insert(all.end(), options.begin(), options.end());
-    return all;
+    return Names{"render", dem_, "-o", scratch_.path(to), "--size", "40x30"} + options;
   }
   std::string picture(const Names& options) const {
     const auto result = test::run(arguments("one.png", options));
@@ -40,9 +40,8 @@ class Animate : public testing::Test {
   }
   // The frames are the pictures of these options.
   void expect_frames(const Names& animation, const std::vector<Names>& frames) const {
-    Names options = animation;
-    options.insert(options.end(), {"--frames", std::to_string(frames.size()), "--overwrite"});
-    const auto result = test::run(arguments("f-##.png", options));
+    const Names options{"--frames", std::to_string(frames.size()), "--overwrite"};
+    const auto result = test::run(arguments("f-##.png", animation + options));
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.out.find(": " + std::to_string(frames.size()) + " frames, "), std::string::npos) << result.out;
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -85,7 +84,6 @@ TEST_F(Animate, KeepsFramesThatExist) {
 }
 
 TEST_F(Animate, RejectsWhatCannotChange) {
-  const Names before = scratch_.files();
   const struct {
     Names options;
     std::string fragment, to = "f-##.png";
@@ -110,31 +108,28 @@ TEST_F(Animate, RejectsWhatCannotChange) {
       {{"--animate", "fov=20..30"}, "name it frame-####.png", "f.png"},
       {{}, "a film needs frames", "f.gif"},
   };
-  for (const auto& c : cases) {
-    const auto result = test::run(arguments(c.to, c.options));
-    EXPECT_NE(result.status, 0) << c.fragment;
-    EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find(c.fragment), std::string::npos) << result.err;
-    EXPECT_EQ(scratch_.files(), before) << c.fragment;
-  }
+  for (const auto& c : cases) test::expect_refused(scratch_, arguments(c.to, c.options), c.fragment);
 }
 
 TEST_F(Animate, MakesFilms) {
-  // Writes its arguments and the number of frames to the last argument.
-  set_ffmpeg(
-      "for last; do :; done\n"
-      "while [ $# -gt 1 ]; do words=\"$words $1\"; [ \"$1\" = -i ] && folder=${2%/*}; shift; done\n"
-      "set -- \"$folder\"/frame-*.png\necho \"$# frames,$words\" > \"$last\"\n");
+  // Writes its arguments and its input to the last argument.
+  set_ffmpeg("for last; do :; done\necho \"$*\" > \"$last\"\n/bin/cat >> \"$last\"\n");
+  const Names turn{"--turntable", "--frames", "2", "--view", "10,40"},
+      change{"--animate", "fov=20..30", "--frames", "3", "--fps", "12"};
+  const std::string turned = picture({"--view", "10,40"}) + picture({"--view", "190,40"}),
+                    changed = picture({"--fov", "20"}) + picture({"--fov", "25"}) + picture({"--fov", "30"});
   for (const std::string film : {"film.gif", "film.mp4"}) {
-    const Names turn{"--turntable", "--frames", "4"}, change{"--animate", "fov=20..30", "--frames", "3", "--fps", "12"};
     for (const Names& options : {turn, change}) {
+      const Names before = scratch_.files();
       const auto result = test::Program(arguments(film, options)).result();
       ASSERT_EQ(result.status, 0) << result.err;
       EXPECT_EQ(test::lines(result.out), 1) << result.out;
-      const std::string text = test::text_of(scratch_.path(film));
-      EXPECT_EQ(text.find(options == turn ? "4 frames, " : "3 frames, "), 0u) << text;
-      EXPECT_NE(text.find(options == turn ? "-framerate 25 " : "-framerate 12 "), std::string::npos) << text;
-      EXPECT_NE(text.find(film == "film.gif" ? "palettegen" : "yuv420p"), std::string::npos) << text;
+      const std::string text = test::text_of(scratch_.path(film)), words = text.substr(0, text.find('\n'));
+      EXPECT_NE(words.find(options == turn ? "-framerate 25 " : "-framerate 12 "), std::string::npos) << words;
+      EXPECT_NE(words.find(film == "film.gif" ? "palettegen" : "yuv420p"), std::string::npos) << words;
+      EXPECT_TRUE(text.substr(words.size() + 1) == (options == turn ? turned : changed)) << film;
+      std::filesystem::remove(scratch_.path(film));
+      EXPECT_EQ(scratch_.files(), before);
     }
   }
 }
@@ -143,30 +138,40 @@ TEST_F(Animate, ReportsFilmsThatFail) {
   std::filesystem::create_directory(scratch_.path("tmp"));
   std::filesystem::create_directory(scratch_.path("bin"));
   ::setenv("TMPDIR", scratch_.path("tmp").c_str(), 1);
+  const auto expect_nothing_left = [&] {
+    for (const auto& left : std::filesystem::recursive_directory_iterator(scratch_.path(".")))
+      EXPECT_EQ(left.path().filename().string().find("film"), std::string::npos) << left.path();
+  };
   const Names options{"--animate", "fov=20..30", "--frames", "2"};
   const auto expect_error = [&](const std::string& fragment) {
     const Names before = scratch_.files();
-    const auto result = test::Program(arguments("film.gif", options)).result();
-    EXPECT_EQ(result.status, 1);
-    EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find(fragment), std::string::npos) << result.err;
+    test::expect_refused(test::Program(arguments("film.gif", options)).result(), fragment);
     EXPECT_EQ(scratch_.files(), before);
   };
   set_ffmpeg("");
   expect_error("films need the program ffmpeg, which is not installed");
   set_ffmpeg("echo one >&2\necho 'no such encoder' >&2\nexit 3\n");
   expect_error("film.gif': ffmpeg failed (no such encoder)");
-  // Interrupted while ffmpeg writes.
-  set_ffmpeg("for last; do :; done\necho part > \"$last\"\n: > \"${0%/*}/started\"\nwhile :; do :; done\n");
-  test::Program program(arguments("film.gif", options));
-  while (!std::filesystem::exists(scratch_.path("bin/started")))
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  ::kill(program.pid(), SIGINT);
-  const auto result = program.result();
-  EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
-  EXPECT_FALSE(std::filesystem::exists(scratch_.path("film.gif")));
-  for (const auto& left : std::filesystem::recursive_directory_iterator(scratch_.path(".")))
-    EXPECT_EQ(left.path().filename().string().find("film"), std::string::npos) << left.path();
+  // It fails after it has read all frames.
+  set_ffmpeg("/bin/cat > /dev/null\necho 'disk full' >&2\nexit 3\n");
+  expect_error("film.gif': ffmpeg failed (disk full)");
+  // Interrupted while ffmpeg writes and ignores that it is to end, by one signal and by two.
+  set_ffmpeg(
+      "trap '' TERM\nfor last; do :; done\necho part > \"$last\"\n: > \"${0%/*}/started\"\n"
+      "while :; do :; done\n");
+  for (const int signals : {1, 2}) {
+    test::Program program(arguments("film.gif", options));
+    while (!std::filesystem::exists(scratch_.path("bin/started")))
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (int i = 0; i < signals; ++i) {
+      ::kill(program.pid(), SIGINT);
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    const auto result = program.result();
+    EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+    expect_nothing_left();
+    std::filesystem::remove(scratch_.path("bin/started"));
+  }
   ::unsetenv("TMPDIR");
 }
 

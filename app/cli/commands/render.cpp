@@ -2,7 +2,6 @@
 // `scarp render`: renders an elevation model, a voxel model or a scene to a picture.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -35,7 +34,7 @@ void check_output(const RenderOptions& options) {
                             options.depth.range || options.depth.fitted ? "--depth-range" : "--depth-reversed"));
   }
   if (options.depth.buffer() && !options.depth.range && options.frames.several())
-    throw Error("frames share the planes of their depths, which are not known beforehand (add --depth-range NEAR,FAR)");
+    throw Error("all frames need the same planes of depth (give --depth-range NEAR,FAR)");
   check_figure(options.figure, picture, format);
   check_comparison(options, format);
   if (format.layers && !entry_of(picture.look).lit && picture.look != Look::error) {
@@ -51,17 +50,12 @@ void check_output(const RenderOptions& options) {
   }
 }
 
-// An option has an effect on a comparison if one of its marches reads it.
 void require_effect(const RenderOptions& options, InputKind kind, const Command& command) {
   std::vector<Use> uses;
   const std::string_view look = name_of(options.picture.look);
   for (const std::string& march : options.compared) uses.push_back({kind, look, march});
   if (uses.empty()) return command.require_effect({kind, look, march_of(options, kind)});
-  command.require_effect({kind, look, {}});
-  for (const Command::Typed& typed : command.all_typed()) {
-    if (std::none_of(uses.begin(), uses.end(), [&](const Use& use) { return has_effect(*typed.option, use); }))
-      cli::require_effect(*typed.option, uses.front());
-  }
+  command.require_effect_of_any(uses);
 }
 
 // Everything that is known before a file is read.
@@ -109,8 +103,9 @@ void run(RenderOptions& options, Command& command) {
   }
   keep_inputs(options.output, options.typed);
   Film film(options.output);
-  options.frames.film = std::exchange(options.output, film.frames());
-  options.frames.encode = [&] { film.finish(options.frames.per_second); };
+  options.frames.film = std::exchange(options.output, film.frame());
+  options.frames.add_to_film = [&] { film.add_frame(options.frames.per_second); };
+  options.frames.end_film = [&] { film.finish(); };
   run_frames(options, command);
 }
 

@@ -150,25 +150,28 @@ std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& vie
 std::string frame_name(const std::string& output, int i) {
   const Place place = place_of_number(output);
   std::string name = output;
+  if (place.count == 0) return name;
   return name.replace(place.first, place.count, fmt::format("{:0{}}", i, place.count));
 }
 
 void make_frames(const FrameOptions& o, const std::string& output, int frames,
-                 const std::function<void(int, const std::string&)>& make) {
+                 const std::function<void(int, const FrameFile&)>& make) {
   const Progress progress = terminal_progress("frames");
+  const bool film = !o.film.empty();
   int kept = 0;
   for (int i = 0; i < frames; ++i) {
     const std::string name = frame_name(output, i);
-    if (!o.overwrite && std::filesystem::exists(name)) {
+    if (!film && !o.overwrite && std::filesystem::exists(name)) {
       ++kept;
       continue;
     }
     stop_if_interrupted();
-    make(i, name);
+    make(i, {name, film ? fmt::format("{}, frame {}", o.film, i) : name});
+    if (film) o.add_to_film();
     if (progress) progress((i + 1.0) / frames);
   }
-  if (!o.film.empty()) {
-    o.encode();
+  if (film) {
+    o.end_film();
     fmt::print("{}: {} frames, {:g} per second\n", o.film, frames, o.per_second);
     return;
   }

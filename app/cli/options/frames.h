@@ -17,10 +17,10 @@ struct FrameOptions {
   std::string path;
   int frames = 0;  // 0: one per row of the path
   bool turntable = false, overwrite = false;
-  std::vector<std::string> animated;  // values of --animate
-  double per_second = 25;             // of films
-  std::string film{};                 // output that the frames are for; empty: the frames themselves
-  std::function<void()> encode{};     // makes it of the frames
+  std::vector<std::string> animated;                // values of --animate
+  double per_second = 25;                           // of films
+  std::string film{};                               // output that the frames are for; empty: the frames themselves
+  std::function<void()> add_to_film{}, end_film{};  // after each frame, and after the last
 
   /// Whether the frames have their own cameras.
   bool fly() const { return turntable || !path.empty(); }
@@ -48,12 +48,18 @@ struct PathPlaces {
 std::vector<Camera> frame_cameras(const FrameOptions& options, const ViewSettings& view, int width, int height,
                                   const std::function<Camera(const ViewSettings&)>& framed, const PathPlaces& path);
 
-/// The output's name with the number of frame i (from 0) in place of its #s, padded to that many digits.
+/// The output's name with the number of frame i (from 0) in place of its #s, padded to that many digits. Without #s the
+/// name itself.
 std::string frame_name(const std::string& output, int i);
 
-/// Calls make(i, name) for those of `count` frames that do not exist yet, and prints a summary. Stops at the first
-/// frame that fails; earlier frames are kept. Encodes films.
+/// A frame: the file to write, and its name in messages.
+struct FrameFile {
+  std::string path, shown;
+};
+
+/// Calls make(i, file) for those of `count` frames that do not exist yet, and prints a summary. Stops at the first
+/// frame that fails; earlier frames are kept. Each frame of a film has the same file, from which the film takes it.
 void make_frames(const FrameOptions& options, const std::string& output, int count,
-                 const std::function<void(int, const std::string&)>& make);
+                 const std::function<void(int, const FrameFile&)>& make);
 
 }  // namespace scarp::cli

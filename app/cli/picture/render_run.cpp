@@ -30,15 +30,12 @@
 namespace scarp::cli {
 namespace {
 
-// Called last: a run that fails prints only one line.
-void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-}
-
 class Render {
  public:
-  Render(InputKind kind, const RenderOptions& options)
-      : march_(march_of(options, kind)),
+  // `blank` collects the blank pictures.
+  Render(InputKind kind, const RenderOptions& options, BlankPictures& blank)
+      : blank_(blank),
+        march_(march_of(options, kind)),
         prepared_(kind, options.compared.empty() ? options : with_march(options, options.compared.front())),
         comparison_(kind, prepared_, options.compared) {}
 
@@ -66,17 +63,15 @@ class Render {
     comparison_ ? comparison_.print() : print_findings(picture);
   }
 
-  // A frame of an animation. Adds its warning to `blank`; prints nothing.
-  void make_frame(BlankPictures& blank) {
+  // A frame of an animation, called `shown` in messages. Prints nothing.
+  void make_frame(const std::string& shown) {
     const SilentProgress silence;
     ReplaceFile file(options().output);
     prepared_.open();
     comparison_.open();
     Camera camera = prepared_.camera();
     prepared_.finish(camera);
-    std::swap(blank, blank_);
-    make(file, options().output, prepared_.picture(camera), camera, [](double) { return caught_signal() == 0; });
-    std::swap(blank, blank_);
+    make(file, shown, prepared_.picture(camera), camera, [](double) { return caught_signal() == 0; });
   }
 
   std::vector<std::string> notes() const {
@@ -122,22 +117,22 @@ class Render {
     // Without --overwrite no file is overwritten.
     for (int i = 0; frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options().output, i), inputs);
-    make_frames(frames, options().output, static_cast<int>(cameras.size()), [&](int i, const std::string& name) {
+    make_frames(frames, options().output, static_cast<int>(cameras.size()), [&](int i, const FrameFile& frame) {
       Camera camera = cameras[static_cast<std::size_t>(i)];
       prepared_.finish(camera);
-      ReplaceFile file(name);
+      ReplaceFile file(frame.path);
       const int blank_before = blank_.count();
-      make(file, name, prepared_.picture(), camera, [](double) { return caught_signal() == 0; });
+      make(file, frame.shown, prepared_.picture(), camera, [](double) { return caught_signal() == 0; });
       look_for_mesh(prepared_.picture(), camera);
       if (!format().layers && blank_.count() == blank_before)
-        tell_if_buried(camera, fmt::format("the eye of '{}'", name));
+        tell_if_buried(camera, fmt::format("the eye of '{}'", frame.shown));
     });
     print_notes(notes());
     if (!cameras.empty()) tell_of_contours(prepared_.picture(), cameras.front());
     blank_.tell();
   }
 
-  // Renders and writes one picture. Returns the findings; layers have none.
+  // Renders and writes one picture, called `name` in messages. Returns the findings; layers have none.
   Picture make(ReplaceFile& file, const std::string& name, const PictureSettings& settings, const Camera& camera,
                const Progress& progress) {
     look_through(prepared_.there(), camera, entry_of(settings.look).antialiased ? settings.aa : 1);
@@ -219,11 +214,11 @@ class Render {
     fmt::print(stderr, "note: {} is {} m below the ground\n", whose, metres_text(*ground - camera.eye().z));
   }
 
+  BlankPictures& blank_;
   const std::string march_;  // empty: of a scene file
   PreparedScene prepared_;
   Comparison comparison_;
   WrittenSize written_;
-  BlankPictures blank_;
   std::string depth_note_;  // of the first picture that has one
   bool mesh_seen_ = false;
   std::string mesh_unseen_;  // why no picture so far shows the mesh; empty: one does, or there is no mesh
@@ -235,18 +230,21 @@ void render_animation(InputKind kind, const RenderOptions& options,
                       const std::function<RenderOptions(int)>& options_of) {
   BlankPictures blank;
   std::optional<std::vector<std::string>> notes;  // those of the first frame stand for all
-  make_frames(options.frames, options.output, options.frames.chosen(), [&](int i, const std::string& name) {
+  make_frames(options.frames, options.output, options.frames.chosen(), [&](int i, const FrameFile& file) {
     RenderOptions frame = options_of(i);
-    frame.output = name;
-    if (options.frames.overwrite) keep_inputs(name, frame.typed);
-    Render render(kind, frame);
-    render.make_frame(blank);
+    frame.output = file.path;
+    if (options.frames.overwrite) keep_inputs(file.path, frame.typed);
+    Render render(kind, frame, blank);
+    render.make_frame(file.shown);
     if (!notes) notes = render.notes();
   });
   if (notes) print_notes(*notes);
   blank.tell();
 }
 
-void render_input(InputKind kind, const RenderOptions& options) { Render(kind, options).run(); }
+void render_input(InputKind kind, const RenderOptions& options) {
+  BlankPictures blank;
+  Render(kind, options, blank).run();
+}
 
 }  // namespace scarp::cli
