@@ -53,12 +53,15 @@ std::vector<double> ground_numbers_from(std::string_view text, std::size_t least
   return numbers;
 }
 
-std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example) {
+std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example,
+                               const NumberRange& range) {
   constexpr double kMost = 1e9;  // catches typing errors; the limit of pictures is far lower
-  const std::string form = fmt::format("WIDTHxHEIGHT in pixels, for example {}", example);
+  const std::string form =
+      fmt::format("WIDTHxHEIGHT in pixels{}, for example {}",
+                  std::isfinite(range.most) ? fmt::format(", {} to {} each", range.least, range.most) : "", example);
   const auto numbers = numbers_from(text, 'x', 2, 2, option, form);
   for (const double number : numbers) {
-    if (number != std::floor(number) || std::abs(number) > kMost)
+    if (number != std::floor(number) || std::abs(number) > kMost || number < range.least || number > range.most)
       throw Error(fmt::format("{} '{}': expected {}", option, text, form));
   }
   return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};

@@ -38,8 +38,10 @@ std::function<std::string(const std::string& text)> number_in(const NumberRange&
 std::vector<double> ground_numbers_from(std::string_view text, std::size_t least, std::size_t most,
                                         std::string_view option, std::string_view form);
 
-/// Width and height in pixels, "WIDTHxHEIGHT". Throws Error as numbers_from() does; `example` is "1280x720".
-std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example);
+/// Width and height in pixels, "WIDTHxHEIGHT", each within `range`. Throws Error as numbers_from() does; `example` is
+/// "1280x720".
+std::array<int, 2> pixels_from(std::string_view text, std::string_view option, std::string_view example,
+                               const NumberRange& range = kAnyNumber);
 
 /// Formats a length above 0 for messages, with at least three digits and no exponent: "0.25", "17.3", "3660".
 std::string metres_text(double metres);

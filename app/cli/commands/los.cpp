@@ -243,7 +243,7 @@ void run(LosOptions options, const Command& command) {
   } else {
     write_whole_file(options.output, text);
   }
-  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(input.notes);
   std::size_t visible = 0;
   for (const Answer& one : answers) visible += one.line.visible;
   if (!options.output.empty())

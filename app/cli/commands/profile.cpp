@@ -48,11 +48,7 @@ constexpr int kWidth = 1200, kHeight = 480;  // of figures
 // Width and height of --size; without it a height of `height`.
 std::array<int, 2> size_of(const ProfileOptions& options, int height) {
   if (options.size.empty()) return {kWidth, height};
-  const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, 200 to 8192 each");
-  for (const double n : size)
-    if (!(n >= 200 && n <= 8192 && n == std::floor(n)))
-      throw Error(fmt::format("--size '{}': expected WIDTHxHEIGHT in pixels, 200 to 8192 each", options.size));
-  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  return pixels_from(options.size, "--size", "1200x480", {.least = 200, .most = 8192});
 }
 
 std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vector<ProfilePoint>& points) {
@@ -129,7 +125,7 @@ void run_marches(const ProfileOptions& options, const PlaceTable& table) {
     lines = draw_marches(options.march, typed_ray(input, options.march.ray), "ray " + options.march.ray, width, height,
                          options.output);
   }
-  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(input.notes);
   for (const std::string& line : lines) fmt::print("{}: {}\n", options.output, line);
 }
 
@@ -172,7 +168,7 @@ void run(ProfileOptions options, const Command& command) {
   } else {
     write_whole_file(options.output, csv_of(input, ends.ends, points));
   }
-  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(input.notes);
   if (!options.output.empty())
     fmt::print("{}: {} points over {:.6g} m, {}; {}\n", options.output, points.size(), line.distance(),
                sight.visible ? "target visible" : "target blocked", input.curvature_text());

@@ -202,7 +202,7 @@ void run_scan(const ScanOptions& options, ScannerFile file, const ScannedScene& 
   }
   out.commit();
   if (const std::string note = scan_finding(counts, scanned, scan); !note.empty()) all_notes.push_back(note);
-  for (const std::string& note : all_notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(all_notes);
   if (::isatty(STDERR_FILENO) != 0) {
     constexpr double kTick_s = 1e-9;  // resolution of the clock
     fmt::print(stderr, "{} rays, {} points; {:.3g} s, {:.3g} Mrays/s{}\n", counts.rays, counts.hits, seconds,

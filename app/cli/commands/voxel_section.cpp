@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,12 +13,13 @@
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/vox_input.h"
+#include "app/cli/progress.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/voxel_bytes.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
-#include "scarp/base/replace_file.h"
+#include "scarp/source/whole_file.h"
 
 namespace scarp::cli {
 namespace {
@@ -149,15 +149,6 @@ std::string svg_of(const VoxelGrid& grid, const SectionOptions& options, int axi
   return svg + "</svg>\n";
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  ReplaceFile place(path);
-  std::ofstream out(place.temporary_path(), std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
-  place.commit();
-}
-
 int axis_of(const SectionOptions& options) { return options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2; }
 
 void draw_ray(const SectionOptions& options, const VoxelModel& model, const std::vector<std::string>& notes) {
@@ -170,8 +161,8 @@ void draw_ray(const SectionOptions& options, const VoxelModel& model, const std:
   require_size(options.input, model.grid().size() + 2 * options.margin, ray.axis);
   const SectionDrawing drawing =
       draw_section([&] { return with_margin(model.grid(), options.margin); }, options.margin, ray, options.marches);
-  write_text(options.output, drawing.svg);
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  write_whole_file(options.output, drawing.svg);
+  print_notes(notes);
   for (const std::string& line : drawing.lines) fmt::print("{}: {}\n", options.output, line);
 }
 
@@ -203,8 +194,8 @@ void run(const SectionOptions& options) {
     const EmptyCubes cubes(grid);
     svg = svg_of(grid, options, axis, at + options.margin, [&](const ivec3& v) { return cubes.distance(v) - 1; });
   }
-  write_text(options.output, svg);
-  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  write_whole_file(options.output, svg);
+  print_notes(input.notes);
   fmt::print("{}: model {}, layer {} of {} along {}, radii of {}\n", options.output, options.model, at, side,
              kAxes[axis], options.radii);
 }
@@ -223,7 +214,7 @@ void add_section(Program& program) {
   add_output_option(command, o.output, "SVG to write", "svg");
   command.add(&o.radii, {.names = "--radii",
                          .value = "KIND",
-                         .help = "largest empty bodies around each empty voxel",
+                         .help = "shape of the empty bodies",
                          .choices = {"spheres", "cubes"},
                          .closed = true,
                          .excludes = {"--ray"}});
@@ -248,7 +239,7 @@ void add_section(Program& program) {
                         .help = "axis perpendicular to the layer",
                         .choices = {"x", "y", "z"},
                         .closed = true,
-                        .fallback = "z; of rays: along which they do not travel"});
+                        .fallback = "z; with --ray an axis the ray does not follow"});
   command.add(&o.at, {.names = "--at",
                       .help = "index of the layer in the box around the voxels",
                       .range = {0, VoxelGrid::kMaxModelSide - 1},

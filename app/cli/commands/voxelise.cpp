@@ -124,7 +124,7 @@ void run(const VoxeliseOptions& options, const Command& command) {
     });
     write_binvox(options.output, binvox);
   }
-  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(input.notes);
   if (!exact_colours)
     fmt::print(stderr, "note: more than 255 colours; each is the nearest of 252 evenly spaced ones\n");
   fmt::print("{}: {} x {} x {} voxels of {:.6g} m, {} solid\n", options.output, grid.size().x, grid.size().y,

@@ -33,12 +33,14 @@ std::optional<DepthRange> fitting_range(const std::vector<float>& view_depths) {
 std::string note_on(const std::vector<float>& view_depths, const DepthRange& range) {
   std::ptrdiff_t before = 0, beyond = 0;
   for (const float z : view_depths) {
-    if (std::isfinite(z)) before += z<range.near_m, beyond += z> range.far_m;
+    if (!std::isfinite(z)) continue;
+    before += (z < range.near_m);
+    beyond += (z > range.far_m);
   }
   const auto fitting = fitting_range(view_depths);
   if (before + beyond == 0 || !fitting) return {};
   std::string text = fmt::format("--depth-range {}:", planes_text(range));
-  if (before > 0) text += fmt::format(" {} pixels are before the near plane and get its depth;", before);
+  if (before > 0) text += fmt::format(" {} pixels are in front of the near plane and get its depth;", before);
   if (beyond > 0) text += fmt::format(" {} pixels are beyond the far plane and get its depth;", beyond);
   return text + fmt::format(" --depth-range {} encloses all", planes_text(*fitting));
 }
