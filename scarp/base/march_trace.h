@@ -56,7 +56,9 @@ struct TraceStep {
   int size = 0;  ///< side of a cube, radius of a sphere
 };
 
-/// `steps` are at least as many as MarchStats counts: a cell or voxel that is decided at once counts as no step.
+/// `steps` are at least as many as MarchStats counts: a cell or voxel that is decided at once counts as no step. They
+/// are empty if the march is not followed: for rays that miss its bounds, and for those along a grid line of a height
+/// field with holes, which `max-mip` tests against every cell.
 struct MarchTrace {
   std::vector<TraceStep> steps;
 

@@ -112,8 +112,8 @@ class SceneField {
 
   /// Returns why the march records nothing; empty if it records its steps.
   virtual std::string no_trace() const;
-  /// Returns closest_hit(ray, nullptr, stats); `trace` receives the steps of the march. Throws Error if no_trace()
-  /// returns a reason.
+  /// Returns closest_hit(ray, nullptr, stats); `trace` receives the steps of the march, none for rays that MarchTrace
+  /// names. Throws Error if no_trace() returns a reason.
   virtual Hit traced_hit(const Ray& ray, MarchStats* stats, MarchTrace& trace) const;
 
   /// Returns why the field has no contacts, overlaps and closest points; empty if it has.

@@ -144,7 +144,7 @@ TEST_F(QueriesOnDevice, HitHoleRimsParallelToTheRay) {
   constexpr double kRelief = 5, kLeastFall = 0.1;
   // Floats position a hit to within 2^-18 of a cell (max_mip_lean.glsl.h); the ground rises by at most the relief per
   // cell.
-  constexpr double kOff = 0x1p-18 * kRelief / kLeastFall;
+  constexpr double kFarthestOff = 0x1p-18 * kRelief / kLeastFall;
   Random random(6);
   std::vector<float> samples(kNodes * kNodes);
   for (float& sample : samples) {
@@ -175,7 +175,7 @@ TEST_F(QueriesOnDevice, HitHoleRimsParallelToTheRay) {
       EXPECT_EQ(hits[i].status, exact.status);
       EXPECT_EQ(blocked[i] != 0, static_cast<bool>(exact));
       if (exact && hits[i]) {
-        EXPECT_NEAR(hits[i].t, exact.t, kOff);
+        EXPECT_NEAR(hits[i].t, exact.t, kFarthestOff);
       }
       hit_count += static_cast<bool>(exact);
     }
