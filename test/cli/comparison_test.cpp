@@ -8,27 +8,26 @@
 #include <vector>
 
 #include "cli/program.h"
+#include "cli/refused.h"
+#include "cli/spike.h"
 #include "output/read_png.h"
 
 namespace scarp {
 namespace {
 
 using nlohmann::json;
-using Names = std::vector<std::string>;
+using test::Names;
+using test::operator+;
 
 class Compare : public testing::Test {
  protected:
-  // Steep ground, through which `naive` passes.
-  Compare() {
-    std::string text = "ncols 9\nnrows 9\nxllcorner 0\nyllcorner 0\ncellsize 4\n";
-    for (int i = 0; i < 81; ++i) text += i == 40 ? "20 " : std::to_string(i * 7919 % 23 / 8) + " ";
-    dem_ = scratch_.write("spike.asc", text);
+  Names arguments(const Names& options, const std::string& to = "out.png") const {
+    return Names{"render",      dem_,    "-o",        scratch_.path(to), "--size", "264x76",
+                 "--no-plinth", "--eye", "16,-10,12", "--target",        "16,16,6"} +
+           options;
   }
   test::Result render(const Names& options, const std::string& to = "out.png") const {
-    Names all{"render",      dem_,    "-o",        scratch_.path(to), "--size", "264x76",
-              "--no-plinth", "--eye", "16,-10,12", "--target",        "16,16,6"};
-    all.insert(all.end(), options.begin(), options.end());
-    return test::run(all);
+    return test::run(arguments(options, to));
   }
   test::Rgb picture(const Names& options) const {
     const auto result = render(options);
@@ -43,21 +42,16 @@ class Compare : public testing::Test {
   }
 
   test::Scratch scratch_;
-  std::string dem_;
+  const std::string dem_ = test::spike_dem(scratch_);
 };
 
 const Names kCoarse{"--naive-min-step", "0.2"};
 
-Names with(Names options, const Names& more) {
-  options.insert(options.end(), more.begin(), more.end());
-  return options;
-}
-
 TEST_F(Compare, ShowsAStripOfEachMarch) {
   for (const std::string look : {"shaded", "error"}) {
     const Names same{"--look", look};
-    const test::Rgb both = picture(with(with({"--compare", "naive,max-mip"}, kCoarse), same));
-    const test::Rgb left = picture(with(with({"--march", "naive"}, kCoarse), same)), right = picture(same);
+    const test::Rgb both = picture(Names{"--compare", "naive,max-mip"} + kCoarse + same);
+    const test::Rgb left = picture(Names{"--march", "naive"} + kCoarse + same), right = picture(same);
     ASSERT_EQ(both.width, 264);
     ASSERT_NE(left.bytes, right.bytes);
     // Below the labels, beside the divider.
@@ -76,16 +70,16 @@ TEST_F(Compare, ShowsAStripOfEachMarch) {
 }
 
 TEST_F(Compare, CountsTheWholeView) {
-  const json compared = report(with({"--compare", "naive,max-mip"}, kCoarse))["compared"];
+  const json compared = report(Names{"--compare", "naive,max-mip"} + kCoarse)["compared"];
   ASSERT_EQ(compared.size(), 2u);
-  const Names marches[] = {with({"--march", "naive"}, kCoarse), {"--march", "max-mip"}};
+  const Names marches[] = {Names{"--march", "naive"} + kCoarse, {"--march", "max-mip"}};
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(compared[i]["march"], marches[i][1]);
-    EXPECT_EQ(compared[i]["errors"], report(with(marches[i], {"--look", "error"}))["errors"]) << i;
-    EXPECT_EQ(compared[i]["steps"], report(with(marches[i], {"--look", "steps"}))["steps"]) << i;
+    EXPECT_EQ(compared[i]["errors"], report(marches[i] + Names{"--look", "error"})["errors"]) << i;
+    EXPECT_EQ(compared[i]["steps"], report(marches[i] + Names{"--look", "steps"})["steps"]) << i;
   }
   EXPECT_GT(compared[0]["errors"]["lost"]["pixels"], 0);
-  const auto text = render(with({"--compare", "naive,max-mip"}, kCoarse));
+  const auto text = render(Names{"--compare", "naive,max-mip"} + kCoarse);
   EXPECT_NE(text.out.find("\nmax-mip: "), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("pixels: lost 0, false 0, early 0, late 0, gave up 0;"), std::string::npos) << text.out;
 }
@@ -93,12 +87,11 @@ TEST_F(Compare, CountsTheWholeView) {
 // Without a range, the marches share the one from the fewest steps to the most.
 TEST_F(Compare, SharesTheScaleOfSteps) {
   const json naive = report({"--march", "naive", "--look", "steps"})["steps"],
-             exact = report({"--march", "max-mip", "--look", "steps"})["steps"];
-  ASSERT_NE(naive, exact);
-  const auto range = std::to_string(std::min(naive["least"].get<int>(), exact["least"].get<int>())) + "," +
-                     std::to_string(std::max(naive["most"].get<int>(), exact["most"].get<int>()));
-  const Names compare{"--compare", "naive,max-mip", "--look", "steps"};
-  EXPECT_EQ(picture(compare).bytes, picture(with(compare, {"--steps-range", range})).bytes);
+             exhaustive = report({"--march", "exhaustive", "--look", "steps"})["steps"];
+  const auto range = std::to_string(std::min(naive["least"].get<int>(), exhaustive["least"].get<int>())) + "," +
+                     std::to_string(std::max(naive["most"].get<int>(), exhaustive["most"].get<int>()));
+  const Names compare{"--compare", "naive,exhaustive", "--look", "steps"};
+  EXPECT_EQ(picture(compare).bytes, picture(compare + Names{"--steps-range", range}).bytes);
 }
 
 TEST_F(Compare, WorksForFunctionsAndVoxels) {
@@ -106,14 +99,13 @@ TEST_F(Compare, WorksForFunctionsAndVoxels) {
                     plain = scratch_.write("plain.json", R"({"type": "fbm", "octaves": 1})");
   for (const Names& input : {Names{"--function", plain, "--compare", "relaxed,lipschitz-local"},
                              {church, "--compare", "voxel-planes,voxel-bricks"}}) {
-    const auto result = test::run(with({"render", "-o", out, "--size", "264x70", "--json"}, input));
+    const auto result = test::run(Names{"render", "-o", out, "--size", "280x70", "--json"} + input);
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(json::parse(result.out)["compared"].size(), 2u);
   }
 }
 
 TEST_F(Compare, RejectsWhatItCannotShow) {
-  const Names before = scratch_.files();
   const struct {
     Names options;
     std::string fragment, to = "out.png";
@@ -127,17 +119,10 @@ TEST_F(Compare, RejectsWhatItCannotShow) {
       {{"--compare", "naive,max-mip"}, "name the output *.png", "out.exr"},
       {{"--compare", "naive,relaxed,fixed-step,lipschitz,max-mip"}, "its strip is 53 wide"},
   };
-  for (const auto& c : cases) {
-    const auto result = render(c.options, c.to);
-    EXPECT_NE(result.status, 0) << c.fragment;
-    EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find(c.fragment), std::string::npos) << result.err;
-    EXPECT_EQ(scratch_.files(), before);
-  }
-  const auto turn =
-      test::run({"render", dem_, "-o", scratch_.path("out-##.png"), "--turntable", "--compare", "naive,max-mip"});
-  EXPECT_NE(turn.err.find("--compare describes one picture, without --path or --turntable"), std::string::npos)
-      << turn.err;
+  for (const auto& c : cases) test::expect_refused(scratch_, arguments(c.options, c.to), c.fragment);
+  test::expect_refused(scratch_,
+                       {"render", dem_, "-o", scratch_.path("out-##.png"), "--turntable", "--compare", "naive,max-mip"},
+                       "--compare describes one picture, without --path or --turntable");
 }
 
 }  // namespace

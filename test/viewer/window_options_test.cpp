@@ -259,7 +259,7 @@ TEST_F(WindowOptions, SidesDifferInOneOption) {
   const auto wrong = [&](std::size_t side) {
     const auto judged = sides[side].judge(camera, {});
     int rays = 0;
-    for (const Verdict verdict : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up})
+    for (const Verdict verdict : {Verdict::lost, Verdict::false_hit, Verdict::early, Verdict::late, Verdict::gave_up})
       rays += (*judged)[verdict];
     EXPECT_GT(judged->mean_steps, 0);
     return rays;

@@ -23,6 +23,11 @@ std::vector<std::string> label_of(const std::string& march, double steps, std::i
   return {march, fmt::format("{:.1f} steps per ray", steps), fmt::format("{} lost, {} late", lost, late)};
 }
 
+// The counts per ray of a picture, if it has any.
+const std::optional<StepRange>& counts_of(const Picture& picture) {
+  return picture.steps ? picture.steps : picture.cost;
+}
+
 }  // namespace
 
 void check_comparison(const RenderOptions& options, const PictureFormat& format) {
@@ -35,7 +40,7 @@ void check_comparison(const RenderOptions& options, const PictureFormat& format)
       throw Error(fmt::format("{}: names {} twice (leave one out)", text, *one));
   }
   if (!format.holds.empty()) {
-    throw Error(fmt::format("--compare draws labels, {} holds the picture alone (name the output *.png)", format.name));
+    throw Error(fmt::format("--compare: {} files cannot hold its labels (name the output *.png)", format.name));
   }
 #ifndef SCARP_CAIRO
   throw Error("--compare: this scarp was built without Cairo (SCARP_CAIRO=OFF)");
@@ -98,7 +103,7 @@ bool Comparison::share_scale(PictureRequest& request) const {
   };
   for (const Side& side : sides_) {
     const Picture& picture = side.picture;
-    if (const auto& counts = picture.steps ? picture.steps : picture.cost) widen(steps, counts->least, counts->most);
+    if (const auto& counts = counts_of(picture)) widen(steps, counts->least, counts->most);
     if (picture.heights) widen(heights, picture.heights->low, picture.heights->high);
   }
   const bool by_steps = steps && steps->low < steps->high && !request.step_scale;
@@ -131,16 +136,18 @@ Picture Comparison::render(const Camera& camera) {
 Picture Comparison::joined() const {
   Picture whole = sides_.front().picture;
   const auto count = static_cast<int>(sides_.size());
+  std::vector<std::string> counted;  // "samples", "blocks and cells"
+  if (const auto& counts = counts_of(whole)) counted.push_back(counts->of);
   for (int i = 1; i < count; ++i) {
     const Picture& picture = sides_[static_cast<std::size_t>(i)].picture;
     const int from = i * whole.image.width / count, to = (i + 1) * whole.image.width / count;
     for (int y = 0; y < whole.image.height; ++y)
       std::copy_n(picture.image.pixel(from, y), 3 * (to - from), whole.image.pixel(from, y));
     if (!whole.legend || !picture.legend) continue;
-    if (const std::string& title = picture.legend->title; title != whole.legend->title) {
-      // "steps per ray: samples, blocks and cells"
-      const std::string more = title.substr(std::min(title.find(": ") + 2, title.size()));
-      if (whole.legend->title.find(more) == std::string::npos) whole.legend->title += ", " + more;
+    if (const auto& counts = counts_of(picture);
+        counts && std::find(counted.begin(), counted.end(), counts->of) == counted.end()) {
+      counted.push_back(counts->of);
+      whole.legend->title += ", " + counts->of;
     }
     for (const PictureLegend::Class& one : picture.legend->classes) {
       std::vector<PictureLegend::Class>& classes = whole.legend->classes;
@@ -155,7 +162,7 @@ void Comparison::print() const {
   for (const Side& side : sides_) {
     const ErrorCounts& errors = *side.errors.errors;
     std::string wrong;
-    for (const Verdict verdict : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up})
+    for (const Verdict verdict : {Verdict::lost, Verdict::false_hit, Verdict::early, Verdict::late, Verdict::gave_up})
       wrong += fmt::format("{}{} {}", wrong.empty() ? "" : ", ", name_of(verdict), errors[verdict]);
     fmt::print("{}: {:.1f} steps per ray ({}); pixels: {}; build {:.2f} s, render {:.2f} s\n", side.march,
                side.steps.steps->mean, side.steps.steps->of, wrong, side.scene->build_seconds(), side.render_s);

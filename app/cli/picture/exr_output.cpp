@@ -51,7 +51,7 @@ void write_layers(ReplaceFile& file, const std::string& path, const PictureLayer
 }
 
 void write_error_layers(ReplaceFile& file, const std::string& path, const Picture& picture, const Camera& camera) {
-  constexpr std::array kErrors = {Verdict::early, Verdict::late, Verdict::lost, Verdict::invented};
+  constexpr std::array kErrors = {Verdict::early, Verdict::late, Verdict::lost, Verdict::false_hit};
   const Image& image = picture.image;
   std::vector<float> colours;
   colours.reserve(image.rgb.size());

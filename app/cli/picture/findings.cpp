@@ -24,7 +24,7 @@ void print_counts(std::string_view what, const StepRange& counts) {
 std::string metres_of(const ErrorCounts& errors, Verdict verdict) {
   if (!has_metres(verdict) || errors[verdict] == 0) return {};
   const ErrorMetres& metres = errors.of(verdict);
-  const bool place = verdict == Verdict::lost || verdict == Verdict::invented;
+  const bool place = verdict == Verdict::lost || verdict == Verdict::false_hit;
   return fmt::format("  {}{:.3g} m on average, 99 % up to {:.3g} m", place ? "at a distance of " : "", metres.mean,
                      metres.p99);
 }

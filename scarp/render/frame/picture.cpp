@@ -233,6 +233,11 @@ Picture render_level(const Scene& scene, const Camera& camera, const PictureSett
     std::uint8_t* grey = picture.image.rgb.data() + 3 * i;
     std::fill_n(grey, 3, static_cast<std::uint8_t>(std::lround(shades[i] * static_cast<float>(*grey))));
   }
+  if (settings.alpha) {
+    // Boxes cover more than the ground: holes, and sky above it. Where there is none, the image is black.
+    picture.image.make_transparent();
+    for (std::size_t i = 0; i < heights.size(); ++i) picture.image.alpha[i] = std::isnan(heights[i]) ? 0 : 255;
+  }
   return picture;
 }
 

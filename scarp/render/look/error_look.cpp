@@ -52,7 +52,7 @@ vec3 srgb_of(Verdict verdict) { return style_of(verdict).srgb; }
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
   if (truth.status == HitStatus::below) return Verdict::not_judged;
   if (answer.status == HitStatus::exhausted) return Verdict::gave_up;
-  if (!truth) return answer ? Verdict::invented : Verdict::right_miss;
+  if (!truth) return answer ? Verdict::false_hit : Verdict::right_miss;
   if (!answer) return Verdict::lost;
   if (std::abs(answer.t - truth.t) <= tolerance) return Verdict::right_hit;
   return answer.t < truth.t ? Verdict::early : Verdict::late;
@@ -60,9 +60,9 @@ Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
 
 double error_metres(Verdict verdict, const Ray& ray, const Hit& answer, const Hit& truth) {
   if (!has_metres(verdict)) return 0;
-  const double t = verdict == Verdict::lost       ? truth.t
-                   : verdict == Verdict::invented ? answer.t
-                                                  : std::abs(answer.t - truth.t);
+  const double t = verdict == Verdict::lost        ? truth.t
+                   : verdict == Verdict::false_hit ? answer.t
+                                                   : std::abs(answer.t - truth.t);
   return t * length(ray.direction);
 }
 

@@ -34,7 +34,7 @@
 
 namespace scarp {
 
-enum class Verdict : std::uint8_t { right_hit, right_miss, lost, invented, early, late, gave_up, not_judged };
+enum class Verdict : std::uint8_t { right_hit, right_miss, lost, false_hit, early, late, gave_up, not_judged };
 constexpr int kVerdicts = 8;
 
 /// "right hit", "lost", ...
@@ -46,7 +46,7 @@ vec3 srgb_of(Verdict verdict);
 /// Compares a march's result with the true one. Hits agree if their t differ by at most `tolerance`.
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance);
 
-/// Whether pixels of the verdict have an error in metres: lost, false (`invented`), early and late.
+/// Whether pixels of the verdict have an error in metres: lost, false, early and late.
 constexpr bool has_metres(Verdict verdict) { return verdict >= Verdict::lost && verdict <= Verdict::late; }
 /// Returns that error; 0 for all other verdicts.
 double error_metres(Verdict verdict, const Ray& ray, const Hit& answer, const Hit& truth);

@@ -112,7 +112,7 @@ TEST_P(EveryInput, HasNoErrorsWithExactMarches) {
   with.look = Look::error;
   const ErrorCounts errors = render_picture(GetParam().make(), camera(), with).errors.value();
   EXPECT_GT(errors[Verdict::right_hit], kWidth * kHeight / 11) << errors.judges;
-  for (const Verdict wrong : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up})
+  for (const Verdict wrong : {Verdict::lost, Verdict::false_hit, Verdict::early, Verdict::late, Verdict::gave_up})
     EXPECT_EQ(errors[wrong], 0) << name_of(wrong) << ", judged by " << errors.judges;
   EXPECT_EQ(errors.contradictions, 0);
 }
