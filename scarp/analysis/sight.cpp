@@ -9,16 +9,16 @@
 namespace scarp {
 
 void validate(const SightCurvature& curvature) {
-  require_setting("line of sight", curvature.coefficient >= 0 && curvature.coefficient <= 1, "curvature coefficient",
+  require_setting("curvature", curvature.coefficient >= 0 && curvature.coefficient <= 1, "the coefficient",
                   curvature.coefficient, "0..1");
-  require_setting("line of sight", curvature.diameter > 0 && std::isfinite(curvature.diameter), "diameter",
+  require_setting("curvature", curvature.diameter > 0 && std::isfinite(curvature.diameter), "the diameter",
                   curvature.diameter, "> 0");
 }
 
 SightGround::SightGround(const HeightField& field) : field_(&field) {
-  if (field.wraps()) throw Error("line of sight: wrapped fields have no border (use a field without wrap)");
+  if (field.wraps()) throw Error("height field: maps need its borders (use a field without wrap)");
   if (field.cols() > kMaxSightSide || field.rows() > kMaxSightSide)
-    throw Error(fmt::format("line of sight: {} x {} samples are too many (limit: {} per side)", field.cols(),
+    throw Error(fmt::format("height field: {} x {} samples are too many for maps (limit: {} per side)", field.cols(),
                             field.rows(), kMaxSightSide));
   field.visit([&](const auto& grid) {
     samples_ = grid.data;

@@ -124,10 +124,17 @@ class MarchDrawing {
     const CairoSurface surface(cairo_recording_surface_create(CAIRO_CONTENT_COLOR, nullptr));
     const CairoContext context(cairo_create(surface.get()));
     const FigurePen pen(context.get(), kPanelText);
+    place_keys(pen, [&](const Key&, double, int line) { legend_lines_ = line + 1; });
+  }
+  // Calls place(key, x, line) with the places of the legend, from the left, in as many lines as the width requires.
+  template <class Place>
+  void place_keys(const FigurePen& pen, const Place& place) const {
     double at = left();
+    int line = 0;
     for (const Key& key : keys_) {
-      const double wide = key_width(pen, key);
-      if (at > left() && at + wide > figure_.width - kPanelText) at = left(), ++legend_lines_;
+      const double wide = 3.7 * kPanelText + pen.width_of(key.text);
+      if (at > left() && at + wide > figure_.width - kPanelText) at = left(), ++line;
+      place(key, at, line);
       at += wide;
     }
   }
@@ -386,17 +393,13 @@ class MarchDrawing {
     dot(x(t), y(t), 2, kHit);
   }
 
-  double key_width(const FigurePen& pen, const Key& key) const { return 3.7 * kPanelText + pen.width_of(key.text); }
   void legend(const FigurePen& pen) {
     cr_ = pen.cr();
-    double at = left(), base = height() - (0.6 + 1.4 * (legend_lines_ - 1)) * kPanelText;
-    for (const Key& key : keys_) {
-      const double wide = key_width(pen, key);
-      if (at > left() && at + wide > figure_.width - kPanelText) at = left(), base += 1.4 * kPanelText;
+    place_keys(pen, [&](const Key& key, double at, int line) {
+      const double base = height() - (0.6 + 1.4 * (legend_lines_ - 1 - line)) * kPanelText;
       symbol(key, at, base - kPanelText / 3);
       pen.write(at + 2.3 * kPanelText, base, key.text);
-      at += wide;
-    }
+    });
   }
   void symbol(const Key& key, double at, double middle) const {
     const double wide = 1.8 * kPanelText, half = 0.45 * kPanelText;

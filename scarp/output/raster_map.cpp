@@ -106,7 +106,8 @@ CPLStringList options_of(const RasterMap& map) {
     for (const char* option : {"TILED=YES", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
     options.SetNameValue("PREDICTOR", floats ? "3" : "2");
-    // Some other programs do not read files that omit tiles, so small maps are complete.
+    // Some other programs do not read files that omit tiles, so maps are complete up to this size, for which empty
+    // tiles take 1 MB and a second of processor time.
     constexpr double kLargestComplete = 1 << 26;
     if (map.part && static_cast<double>(map.cols) * map.rows > kLargestComplete)
       options.SetNameValue("SPARSE_OK", "TRUE");

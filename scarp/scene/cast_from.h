@@ -5,12 +5,11 @@
 //   scarp::FanAnswers answers(camera.columns, camera.rows);
 //   scarp::cast_from(terrain, camera, answers);       // answers.t[row * columns + column]
 //
-// Three to eight times as fast as cast() for each ray over whole ground: rays of one eye share their way
-// (march/height/max_mip_fan.h). Half of that or less over scattered holes, over ground that wraps, from rolled or steep
-// cameras, with fewer than 5 columns, and for an eye below the ground, where there is nothing to share. A ray hits here
-// if it hits there. t, u and v are floats, with the tolerance of fans in doc/dev/numerics.md. Cameras and scanners
-// generate directions on demand, without an array of rays. Rays from eyes below the ground are traced in batches;
-// answers are the same.
+// Faster than cast() for each ray, because rays of one eye share their way (march/height/max_mip_fan.h; results:
+// `heights-fans` in bench/README.md). The gain is smaller over scattered holes, over ground that wraps, from rolled or
+// steep cameras, and with fewer than 5 columns. A ray hits here if it hits there. t, u and v are floats, with the
+// tolerance of fans in doc/dev/numerics.md. Cameras and scanners generate directions on demand, without an array of
+// rays. Rays from eyes below the ground, where there is nothing to share, are traced in batches; answers are the same.
 #pragma once
 
 #include <cstddef>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/look/cost_look.h"
 
-#include <fmt/format.h>
-
+#include <cstdint>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,8 +15,14 @@ namespace {
 
 constexpr std::uint32_t kCorners = 4;  // heights of a cell
 
-// The reads of recorded steps.
-std::uint32_t reads_of(const MarchTrace& trace, bool heights) {
+// Reads of a cell test beyond the step that it counts as. `steps` of functions and shapes lack some evaluations, which
+// count as tests.
+std::uint32_t more_per_test(std::string_view kind) {
+  if (kind == "heights") return kCorners - 1;
+  return kind == "function" || kind == "shape" ? 1 : 0;
+}
+
+std::uint32_t recorded_reads(const MarchTrace& trace, bool heights) {
   std::uint32_t reads = 0;
   for (const TraceStep& step : trace.steps)
     reads += heights && (is_sample(step.kind) || is_cell(step.kind)) ? kCorners : 1;
@@ -27,7 +33,10 @@ std::uint32_t reads_of(const MarchTrace& trace, bool heights) {
 class CountingField final : public SceneField {
  public:
   explicit CountingField(SceneFieldPtr field)
-      : field_(std::move(field)), heights_(field_->kind() == "heights"), records_(field_->no_trace().empty()) {
+      : field_(std::move(field)),
+        heights_(field_->kind() == "heights"),
+        records_(field_->no_trace().empty()),
+        more_per_test_(more_per_test(field_->kind())) {
     if (field_->kind() == "tiles") throw Error("picture: the look cost does not count the reads of tiles");
   }
 
@@ -52,26 +61,20 @@ class CountingField final : public SceneField {
     if (!stats) return field_->closest_hit(ray, from, nullptr);
     if (!records_) {
       const Hit hit = field_->closest_hit(ray, from, stats);
-      stats->steps = reads_of(*stats);
+      stats->steps += more_per_test_ * stats->cell_tests;
       return hit;
     }
     // One per thread: fixed-step records thousands of steps per ray.
     thread_local MarchTrace trace;
     const Hit hit = field_->traced_hit(ray, stats, trace);
-    stats->steps = reads_of(trace, heights_);
+    stats->steps = recorded_reads(trace, heights_);
     return hit;
   }
 
  private:
-  std::uint32_t reads_of(const MarchStats& stats) const {
-    // `steps` counts blocks and cells of heights together, and not all evaluations of functions and shapes.
-    if (heights_) return stats.steps + (kCorners - 1) * stats.cell_tests;
-    return field_->kind() == "function" || field_->kind() == "shape" ? stats.steps + stats.cell_tests : stats.steps;
-  }
-  static std::uint32_t reads_of(const MarchTrace& trace, bool heights) { return scarp::reads_of(trace, heights); }
-
   const SceneFieldPtr field_;
   const bool heights_, records_;
+  const std::uint32_t more_per_test_;
 };
 
 }  // namespace

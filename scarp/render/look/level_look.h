@@ -8,7 +8,7 @@
 //   ------>--|->     +-------+
 //            |       |       |
 //
-// Holes have no boxes where a block has no ground at all.
+// A block without any ground has no box.
 #pragma once
 
 #include <optional>

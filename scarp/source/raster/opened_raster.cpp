@@ -148,7 +148,7 @@ Raster OpenedRaster::State::read(const std::optional<RasterWindow>& part, const 
   });
 }
 
-// Adds what only the opened files tell.
+// Adds what is known only once the files are opened: name, type, files, warnings and notes.
 void OpenedRaster::State::complete(Raster& raster, const std::vector<std::string>& more_warnings) const {
   raster.path = name;
   if (!opened.file_type.empty()) raster.file_type = opened.file_type;
