@@ -12,7 +12,8 @@ namespace scarp {
 namespace {
 
 constexpr std::size_t kLayers = 5, kTerms = 4 * kLayers;
-// Added to the diagonal of the normal equations, relative to it: below a sun at the zenith, terms coincide.
+// Added to the diagonal of the normal equations, relative to it: below a sun at the zenith, terms coincide. From 1e-10
+// to 1e-5, errors of the fit change by less than 2 %.
 constexpr double kRidge = 1e-7;
 
 using Terms = std::array<double, kTerms>;
@@ -78,6 +79,7 @@ void fit_sky(const Atmosphere& atmosphere, glsl::ScarpSky& sky) {
   right.fill(dvec3(0.0));
   for (const dvec3& direction : directions_around(atmosphere.to_sun())) {
     const dvec3 radiance = atmosphere.radiance(direction);
+    // Luminance of the primaries of sRGB, IEC 61966-2-1.
     const double brightness = dot(radiance, dvec3(0.2126, 0.7152, 0.0722)), weight = 1 / (brightness * brightness);
     const Terms terms = terms_of(direction, atmosphere.to_sun());
     for (std::size_t i = 0; i < kTerms; ++i) {
