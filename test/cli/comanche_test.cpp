@@ -333,7 +333,7 @@ TEST(Comanche, WritesTheDepthOfItsSteps) {
   for (const float z : planes) {
     if (!std::isfinite(z)) continue;
     ++hits;
-    EXPECT_NEAR(z, 10 * std::round(z / 10), 1e-3);
+    EXPECT_EQ(z, 10 * std::round(z / 10));
   }
   EXPECT_GT(hits, 100);
   // On shells it is the distance from the eye.
@@ -341,10 +341,11 @@ TEST(Comanche, WritesTheDepthOfItsSteps) {
   std::vector<std::vector<float>> place;
   for (const char* axis : {"P.X", "P.Y", "P.Z", "Z"})
     place.push_back(read_exr_channel(scratch.path("shells.exr"), axis).values);
+  constexpr double kPosition = 1.7320509 * 0x1p-16;  // three coordinates below 512 m, each rounded to float
   for (std::size_t i = 0; i < place[0].size(); ++i) {
     if (!std::isfinite(place[3][i])) continue;
     const double away = std::hypot(place[0][i] - 40, place[1][i] + 40, place[2][i] - 120);
-    EXPECT_NEAR(away, 10 * std::round(away / 10), 1e-3);
+    EXPECT_NEAR(away, 10 * std::round(away / 10), kPosition);
   }
   // Exact rays have the depth of the look shaded.
   EXPECT_EQ(depths("exact.exr", {"--look", "comanche", "--lowres", "24x18", "--pixel-size", "1"}),
@@ -353,7 +354,8 @@ TEST(Comanche, WritesTheDepthOfItsSteps) {
   EXPECT_EQ(depths("large.exr", {"--lowres", "12x9", "--pixel-size", "2"}).size(), planes.size());
   const std::vector<float> device = read_exr_channel(scratch.path("planes.exr"), "depth").values;
   for (std::size_t i = 0; i < planes.size(); ++i)
-    EXPECT_NEAR(device[i], std::isfinite(planes[i]) ? 1000.0 / 999 * (1 - 1 / planes[i]) : 1, 1e-5);
+    EXPECT_EQ(device[i],
+              std::isfinite(planes[i]) ? static_cast<float>(1000.0 / 999 * (1 - 1 / double{planes[i]})) : 1.0f);
   // A plate at 105 m hides everything behind it.
   std::vector<float> zero(planes.size(), 0.0f), one(planes.size(), 1.0f), plate(planes.size(), 105.0f);
   write_exr(scratch.path("plate.exr"),
@@ -474,11 +476,14 @@ TEST(Composite, DepthsBeyondThePlanesStayInFrontOfTheSky) {
       }
       EXPECT_GT(surfaces.size(), 20U);
       EXPECT_LT(surfaces.size(), z.size());
-      // The nearer surface is in front; without planes in the way, strictly.
+      // The nearer surface is in front; without planes in the way strictly, if the depths differ by more than a float's
+      // rounding of 2^-24 each: far / (far - near) near / z^2 per metre.
+      const double near = std::stod(fitting);
       std::sort(surfaces.begin(), surfaces.end());
       for (std::size_t i = 1; i < surfaces.size(); ++i) {
         EXPECT_LE(surfaces[i - 1].second, surfaces[i].second);
-        if (range == "auto" && surfaces[i].first - surfaces[i - 1].first > 0.01f) {
+        const double z0 = surfaces[i - 1].first, z1 = surfaces[i].first;
+        if (range == "auto" && near * (z1 - z0) > z0 * z1 * 0x1p-23) {
           EXPECT_LT(surfaces[i - 1].second, surfaces[i].second);
         }
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `los`, `profile` and `viewshed` read only the part of a raster that they need. Their answers are those of the whole
-// raster, which a second question in the same run forces them to read.
+// `los`, `profile` and `viewshed` read only the part of a raster that they need. Lines of sight and viewsheds are those
+// of the whole raster, which a second question in the same run forces them to read; profiles follow the samples.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -15,12 +15,11 @@
 
 #include "cli/csv_rows.h"
 #include "cli/program.h"
+#include "cli/refused.h"
 #include "scarp/base/vec.h"
 
 namespace scarp::test {
 namespace {
-
-using Names = std::vector<std::string>;
 
 constexpr int kModelCols = 700, kModelRows = 600;
 
@@ -84,9 +83,8 @@ class MapParts : public testing::Test {
     return highest + 5;
   }
 
-  static Result answer(Names words, const Names& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    Result result = run(words);
+  static Result answer(const Names& words, const Names& more) {
+    Result result = run(words + more);
     EXPECT_EQ(result.status, 0) << result.err;
     return result;
   }
@@ -121,11 +119,13 @@ void expect_same(const Row& a, const Row& b, bool exact, const std::string& what
     EXPECT_EQ(a, b) << what;
     return;
   }
-  // Local coordinates differ, and with them the rounding of the last of ten digits.
+  // Local coordinates differ, and with them the rounding of the last of ten digits, which is at most 1e-9 of a number.
+  constexpr double kLastDigit = 0x1p-29;  // less than two of it
   ASSERT_EQ(a.size(), b.size()) << what;
   for (const auto& [column, text] : a) {
     EXPECT_EQ(text.empty(), b.at(column).empty()) << what << ": " << column;
-    EXPECT_NEAR(number(a, column), number(b, column), 1e-9 * std::abs(number(b, column))) << what << ": " << column;
+    EXPECT_NEAR(number(a, column), number(b, column), kLastDigit * std::abs(number(b, column)))
+        << what << ": " << column;
   }
 }
 
@@ -172,7 +172,7 @@ TEST_F(MapParts, LinesOfSightAreThoseOfTheWholeRaster) {
     }
 }
 
-TEST_F(MapParts, ProfilesAreThoseOfTheWholeRaster) {
+TEST_F(MapParts, ProfilesFollowTheSamples) {
   for (const std::string& dem : {utm_, degrees_})
     for (int i = 0; i < 4; ++i) {
       const dvec2 a = position(i), b{std::clamp(a.x + whole(-30, 30), 0.0, kModelCols - 1.0),
@@ -184,25 +184,27 @@ TEST_F(MapParts, ProfilesAreThoseOfTheWholeRaster) {
                                                   .out);
       ASSERT_GT(points.size(), 2u);
       for (const Row& point : points) {
-        // The ground is linear between the two samples beside a crossing.
+        // The ground is linear between the two samples beside a crossing. Ten digits of 46 degrees are 3.6e-5 of a
+        // cell, those of 5,000,000 m are 5e-5. Both coordinates and each of up to four weights are wrong by that.
+        constexpr double kDigits = 5e-5, kLeastWeight = 2 * kDigits, kTallest = 400 + 300 + 40;
         const double col = dem == utm_ ? (number(point, "x") - 500000) / 10 - 0.5
                                        : (number(point, "x") - 12) * 7200 - 0.5,
                      row = dem == utm_ ? (5000000 - number(point, "y")) / 10 - 0.5
                                        : (46 - number(point, "y")) * 7200 - 0.5;
-        const int c = std::clamp(static_cast<int>(std::floor(col + 1e-4)), 0, kModelCols - 1),
-                  r = std::clamp(static_cast<int>(std::floor(row + 1e-4)), 0, kModelRows - 1);
+        const int c = std::clamp(static_cast<int>(std::floor(col + kDigits)), 0, kModelCols - 1),
+                  r = std::clamp(static_cast<int>(std::floor(row + kDigits)), 0, kModelRows - 1);
         if (point.at("ground").empty()) continue;  // an end on a hole
         const double u = std::max(0.0, col - c), v = std::max(0.0, row - r);
         double sum = 0;
         for (const int south : {0, 1})
           for (const int east : {0, 1}) {
             const double weight = (east ? u : 1 - u) * (south ? v : 1 - v);
-            // Ten digits of degrees are 1e-5 of a cell, and steps between samples at most 10 000 m, if one is a hole.
-            if (weight > 1e-4)
+            // A sample beside the line may be a hole.
+            if (weight > kLeastWeight)
               sum += weight * samples_[static_cast<std::size_t>(std::min(r + south, kModelRows - 1)) * kModelCols +
                                        std::min(c + east, kModelCols - 1)];
           }
-        EXPECT_NEAR(number(point, "ground"), sum, 1) << dem << ": " << col << ' ' << row;
+        EXPECT_NEAR(number(point, "ground"), sum, 5 * kDigits * kTallest) << dem << ": " << col << ' ' << row;
       }
     }
 }
@@ -297,10 +299,7 @@ TEST_F(MapParts, ErrorsNamePlacesOfTheWholeRaster) {
         {"los", utm_, "--from=" + other, "--to=" + text},
         {"profile", utm_, "--from=" + text, "--to=" + other},
         {"viewshed", utm_, "--observer=" + text, "--max-distance", "90", "-o", scratch_.path("a.tif")}}) {
-    const Result result = run(words);
-    EXPECT_NE(result.status, 0);
-    EXPECT_EQ(lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find(text + " is on nodata"), std::string::npos) << result.err;
+    expect_refused(scratch_, words, text + " is on nodata");
   }
 }
 
