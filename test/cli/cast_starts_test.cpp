@@ -12,8 +12,6 @@
 namespace scarp::test {
 namespace {
 
-using Names = std::vector<std::string>;
-
 class CastStarts : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return scratch_.path(name); }

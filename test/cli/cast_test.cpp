@@ -17,11 +17,11 @@
 namespace scarp {
 namespace {
 
-using test::run;
-using Names = std::vector<std::string>;
+using test::Names;
 using test::number;
 using test::Row;
 using test::rows_of;
+using test::run;
 
 class Cast : public testing::Test {
  protected:

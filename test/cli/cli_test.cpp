@@ -24,8 +24,8 @@
 namespace scarp {
 namespace {
 
+using test::Names;
 using test::run;
-using Names = std::vector<std::string>;
 
 class Cli : public testing::Test {
  protected:

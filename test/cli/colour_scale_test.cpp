@@ -14,7 +14,6 @@
 namespace scarp::test {
 namespace {
 
-using Names = std::vector<std::string>;
 constexpr int kSlopeSide = 33;
 
 class ColourScale : public testing::Test {

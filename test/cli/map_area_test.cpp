@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-using Names = std::vector<std::string>;
+using test::Names;
 
 // 65 x 65 samples of 32 m.
 class MapArea : public testing::Test {

@@ -16,7 +16,7 @@
 namespace scarp {
 namespace {
 
-using Names = std::vector<std::string>;
+using test::Names;
 
 struct Rgba {
   int width = 0, height = 0;

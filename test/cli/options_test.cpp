@@ -27,8 +27,8 @@
 namespace scarp {
 namespace {
 
+using test::Names;
 using test::run;
-using Names = std::vector<std::string>;
 
 // The declarations of the program.
 const cli::Program& declared() {

@@ -13,8 +13,6 @@ namespace scarp::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
-
 constexpr int kValleySide = 21;
 
 class Places : public testing::Test {

@@ -24,11 +24,11 @@
 namespace scarp {
 namespace {
 
+using test::Names;
 using test::number;
 using test::Row;
 using test::rows_of;
 using test::run;
-using Names = std::vector<std::string>;
 
 // Runs `cast`; an ESRI grid gets --crs none, because a note would mention the missing CRS.
 test::Result cast(Names arguments) {

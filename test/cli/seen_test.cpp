@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-using Names = std::vector<std::string>;
+using test::Names;
 
 class Seen : public testing::Test {
  protected:

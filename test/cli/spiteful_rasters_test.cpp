@@ -20,9 +20,9 @@ namespace scarp {
 namespace {
 
 using test::Expected;
+using test::Names;
 using test::Result;
 using test::SpitefulRaster;
-using Names = std::vector<std::string>;
 using Problems = std::vector<std::string>;
 
 // A picture with a smaller fraction of terrain counts as blank.
