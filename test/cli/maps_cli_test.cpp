@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp viewshed`, `shadow`, `horizon`, `skyview`, `sunhours`, `los` and `profile`: their output, and their one-line
-// errors.
+// `scarp viewshed`, `shadow`, `los` and `profile`: their output, and their one-line errors; and what all maps share.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -15,65 +14,13 @@
 #include <thread>
 #include <vector>
 
-#include "cli/program.h"
+#include "cli/maps_cli.h"
 #include "full_disk.h"
 
 namespace scarp::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
-
-Names operator+(Names a, const Names& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-class MapsCli : public testing::Test {
- protected:
-  // 30 x 20 samples of 10 m, a wall 50 m high at column 20, a hole in the north-west corner. The south-west sample is
-  // at (500005, 5000005) of UTM zone 33.
-  MapsCli() {
-    std::string text = "ncols 30\nnrows 20\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\nNODATA_value -1\n";
-    for (int row = 0; row < 20; ++row) {
-      for (int col = 0; col < 30; ++col) text += fmt::format("{} ", col + row == 0 ? -1 : col == 20 ? 50 : 0);
-      text += '\n';
-    }
-    dem_ = scratch_.write("dem.asc", text);
-  }
-  std::string path(const std::string& name) const { return scratch_.path(name); }
-  Names on_dem(const std::string& command) const { return {command, dem_, "--crs", "EPSG:32633"}; }
-
-  void expect_refused(const Names& arguments, const std::string& what) const {
-    const auto before = scratch_.files();
-    const auto result = run(arguments);
-    EXPECT_NE(result.status, 0);
-    EXPECT_EQ(lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
-    EXPECT_EQ(scratch_.files(), before);
-  }
-
-  struct Pixels {
-    int cols, rows;
-    std::vector<float> samples;
-    float at(int col, int row) const { return samples[static_cast<std::size_t>(row * cols + col)]; }
-  };
-  static Pixels pixels_of(GDALDataset& dataset, int band = 1) {
-    Pixels pixels{dataset.GetRasterXSize(), dataset.GetRasterYSize(), {}};
-    pixels.samples.resize(static_cast<std::size_t>(pixels.cols) * pixels.rows);
-    EXPECT_EQ(dataset.GetRasterBand(band)->RasterIO(GF_Read, 0, 0, pixels.cols, pixels.rows, pixels.samples.data(),
-                                                    pixels.cols, pixels.rows, GDT_Float32, 0, 0, nullptr),
-              CE_None);
-    return pixels;
-  }
-  static GDALDatasetUniquePtr open(const std::string& name) {
-    GDALAllRegister();
-    return GDALDatasetUniquePtr(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER));
-  }
-
-  Scratch scratch_;
-  std::string dem_;
-};
 
 TEST_F(MapsCli, ViewshedIsAGeoreferencedRaster) {
   const auto result = run(on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("seen.tif")});
@@ -316,74 +263,6 @@ TEST_F(MapsCli, SupportsBilinearSurface) {
   expect_refused({"shadow", row, "--sun", "90,45", "--surface", "bilinear", "-o", path("x.tif")}, "row.asc: ");
 }
 
-// The wall is 50 m high and 100 m on the map, 100.04 m on the ground, east of column 10.
-TEST_F(MapsCli, HorizonsAreMeasuredFromEveryPixel) {
-  const Names flat = on_dem("horizon") + Names{"--cc", "0"};
-  const auto result = run(flat + Names{"--azimuths", "4", "--distance", "-o", path("h.tif")});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("4 azimuths, highest 78.69 degrees"), std::string::npos) << result.out;  // 50 m, 10 m away
-  const auto map = open(path("h.tif"));
-  ASSERT_EQ(map->GetRasterCount(), 8);
-  EXPECT_STREQ(map->GetRasterBand(2)->GetDescription(), "horizon 90");
-  EXPECT_NEAR(pixels_of(*map, 2).at(10, 9), 26.5559f, 1e-3f);  // atan(50 / 100.04)
-  EXPECT_NEAR(pixels_of(*map, 6).at(10, 9), 100.04f, 1e-3f);
-  EXPECT_FLOAT_EQ(pixels_of(*map, 4).at(10, 9), 0);     // west: flat
-  EXPECT_FLOAT_EQ(pixels_of(*map, 4).at(0, 9), -90);    // the border
-  EXPECT_FLOAT_EQ(pixels_of(*map, 2).at(0, 0), -9999);  // the hole
-  const auto points = run(flat + Names{"--azimuths", "4", "--clamp", "--at", "500105,5000105,25"});
-  ASSERT_EQ(points.status, 0) << points.err;
-  EXPECT_EQ(lines(points.out), 5);
-  EXPECT_TRUE(points.out.starts_with("point,horizon_azimuth,horizon_elevation,distance\n1,0,0.000000,90.036"))
-      << points.out;
-  EXPECT_NE(points.out.find("\n1,90,14.0308"), std::string::npos) << points.out;  // atan(25 / 100.04)
-}
-
-// The top of the wall sees the whole sky, its foot a little more than the half away from it.
-TEST_F(MapsCli, SkyviewNamesItsMeasures) {
-  const auto result = run(on_dem("skyview") + Names{"--cc", "0", "--measure", "sky-fraction", "--measure",
-                                                    "positive-openness", "-o", path("s.tif")});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto map = open(path("s.tif"));
-  ASSERT_EQ(map->GetRasterCount(), 2);
-  EXPECT_STREQ(map->GetRasterBand(1)->GetDescription(), "sky-fraction");
-  EXPECT_STREQ(map->GetRasterBand(2)->GetUnitType(), "degrees");
-  EXPECT_STREQ(map->GetMetadataItem("FORMULA sky-fraction"), "mean of 1 - sin h, h the horizon, at least 0");
-  const auto fraction = pixels_of(*map, 1), openness = pixels_of(*map, 2);
-  EXPECT_FLOAT_EQ(fraction.at(20, 9), 1);
-  EXPECT_GT(fraction.at(19, 9), 0.5f);
-  EXPECT_LT(fraction.at(19, 9), 0.6f);
-  EXPECT_GT(openness.at(20, 9), 90);
-  EXPECT_EQ(fraction.at(0, 0), -9999);
-}
-
-// On a plain at 45.15 degrees north, the sun's centre is up for 2 acos(-tan(latitude) tan(declination)) / 15 degrees.
-// Steps of a minute are off by one at both ends.
-TEST_F(MapsCli, SunHoursOfAPlainAreTheDay) {
-  std::string text = "ncols 3\nnrows 3\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n";
-  for (int i = 0; i < 9; ++i) text += "0 ";
-  const std::string plain = scratch_.write("plain.asc", text);
-  const auto result = run({"sunhours", plain, "--crs", "EPSG:32633", "--date", "2026-06-21", "--step", "1",
-                           "--first-last", "-o", path("sun.tif")});
-  if (result.err.find("unknown") != std::string::npos) GTEST_SKIP() << "built without ERFA";
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("UTC+01:00"), std::string::npos) << result.err;
-  const auto map = open(path("sun.tif"));
-  ASSERT_EQ(map->GetRasterCount(), 3);
-  constexpr double kRadian = 0.017453292519943295;
-  const double day = 2 * std::acos(-std::tan(45.1529 * kRadian) * std::tan(23.437 * kRadian)) / kRadian / 15;
-  EXPECT_NEAR(static_cast<double>(pixels_of(*map, 1).at(1, 1)), day, 2.0 / 60);
-  const double first = static_cast<double>(pixels_of(*map, 2).at(1, 1));
-  const double last = static_cast<double>(pixels_of(*map, 3).at(1, 1));
-  EXPECT_NEAR(last - first, day, 3.0 / 60);
-  EXPECT_NEAR((first + last) / 2, 12, 5.0 / 60) << "solar noon at 15 degrees east, equation of time 2 minutes";
-  const Names sun{"sunhours", plain, "--crs", "EPSG:32633", "-o", path("x.tif")};
-  expect_refused(sun, "--date DATE is required");
-  expect_refused(sun + Names{"--date", "2026-02-30"}, "expected a date");
-  expect_refused(sun + Names{"--date", "2026-06-21", "--to", "2026-06-20"}, "is before");
-  expect_refused(sun + Names{"--date", "2026-06-21", "--utc-offset", "5"}, "+HH:MM");
-  expect_refused({"sunhours", plain, "--crs", "none", "--date", "2026-06-21", "-o", path("x.tif")}, "CRS");
-}
-
 TEST_F(MapsCli, LosWritesCsvAndGeoJson) {
   const Names places{"--from", "500105,5000105,2", "--to", "500185,5000105", "--to", "500285,5000105,5", "--cc", "0"};
   const auto csv = run(on_dem("los") + places);
@@ -537,13 +416,6 @@ TEST_F(MapsCli, ReportsBadInputInOneLineWithoutOutput) {
   expect_refused(on_dem("shadow") + Names{"-o", out}, "no sun");
   expect_refused(on_dem("shadow") + Names{"-o", out, "--sun", "90,-1"}, "--sun");
   expect_refused(on_dem("shadow") + Names{"-o", out, "--sun", "90"}, "--sun");
-  expect_refused(on_dem("horizon"), "-o FILE is required");
-  expect_refused(on_dem("horizon") + Names{"-o", out, "--azimuths", "0"}, "--azimuths");
-  expect_refused(on_dem("horizon") + Names{"--at", "500005,5000195"}, "no sample under the point");
-  expect_refused(on_dem("horizon") + Names{"--at", "500105,5000105,-2"}, "at least 0 metres");
-  expect_refused(on_dem("horizon") + Names{"--at", "500105,5000105", "-o", out}, "expected .csv");
-  expect_refused(on_dem("skyview") + Names{"-o", out, "--measure", "svf"}, "--measure");
-  expect_refused(on_dem("skyview") + Names{"-o", path("x.png")}, "cannot store Float32 samples");
   expect_refused(on_dem("los") + Names{"--from", "500105,5000105"}, "--to");
   expect_refused(on_dem("los") + Names{"--from", "500105,5000105", "--to", "499999,5000105"},
                  "--to: 499999,5000105 is outside");
