@@ -5,13 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
-#include <numbers>
 #include <optional>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/commands.h"
@@ -21,8 +20,7 @@
 #include "app/cli/options/map_part.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
-#include "app/cli/picture/map_preview.h"
-#include "app/cli/picture/raster_output.h"
+#include "app/cli/picture/map_run.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -33,8 +31,6 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kHorizonDegrees = 180 / std::numbers::pi;
-constexpr float kNoHorizon = -9999;
 constexpr int kMapAzimuths = 16, kPointAzimuths = 360;
 constexpr const char* kHorizonMethod = "exact horizons; ground linear at crossings of grid lines (scarp horizon)";
 constexpr const char* kHorizonFooter =
@@ -43,14 +39,13 @@ below zero are kept (--clamp: 0 instead). -90: no ground in that direction, as a
 With --at or --points the output is CSV: point, horizon_azimuth, horizon_elevation (degrees) and
 distance (metres to the ground that is the horizon; empty: no ground). pvlib takes the middle two.)";
 
-struct HorizonOptions : MapOptions {
+struct HorizonOptions : MapCommand {
   std::optional<int> azimuths;
   double first_azimuth = 0;
   HorizonInput horizon;
   std::vector<std::string> at;
   std::string points;
   bool clamp = false, distance = false;
-  RasterOutput raster_output;
 };
 
 bool asks_points(const HorizonOptions& options) { return !options.at.empty() || !options.points.empty(); }
@@ -91,10 +86,10 @@ void run_points(const HorizonOptions& options, MapInput& input) {
     const SightEnd local = in_part(input, SightEnd{at.x, at.y});
     const double grid_north = input.grid_north_at(at.x, at.y, settings.max_distance);
     for (const double azimuth : azimuths_of(options)) {
-      const auto view = horizon_from(field, local.col, local.row, azimuth / kHorizonDegrees - grid_north, settings);
+      const auto view = horizon_from(field, local.col, local.row, azimuth / kDegreesPerRadian - grid_north, settings);
       if (!view) throw Error(fmt::format("{}: there is no sample under the point", what));
       const double angle = options.clamp ? std::max(view->angle, 0.0) : view->angle;
-      text += fmt::format("{},{:.10g},{:.6f},{}\n", i + 1, azimuth, angle * kHorizonDegrees,
+      text += fmt::format("{},{:.10g},{:.6f},{}\n", i + 1, azimuth, angle * kDegreesPerRadian,
                           view->distance ? fmt::format("{:.10g}", *view->distance) : "");
     }
   }
@@ -107,76 +102,48 @@ void run_points(const HorizonOptions& options, MapInput& input) {
   for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
 }
 
-// Degrees, and nodata for NaN.
-void finish(std::vector<float>& angles, bool clamp) {
-  for (float& angle : angles) {
-    if (std::isnan(angle)) {
-      angle = kNoHorizon;
-    } else {
-      angle = clamp && angle < 0 ? 0 : static_cast<float>(static_cast<double>(angle) * kHorizonDegrees);
-    }
-  }
-}
-
-void run_map(HorizonOptions& options, MapInput& input, std::chrono::steady_clock::time_point begin) {
-  const MapArea area = map_area(input, options.raster_output, input.whole(), input.whole());
+void run_map(HorizonOptions& options, const Command& command) {
+  if (options.output.empty()) throw WrongUsage("-o FILE is required (see 'scarp horizon --help')");
+  MapRun run(options, command, "Float32");
   const std::vector<double> azimuths = azimuths_of(options);
-  if (options.raster_output.dry_run) {
-    const double nodes = static_cast<double>(area.computed.cols) * area.computed.rows;
-    constexpr double kNodeAzimuth_s = 4e-8;
-    const double bands = static_cast<double>(azimuths.size());
-    print_dry_run(input, area, options.output, 13 + 4 * bands * (options.distance ? 2 : 1),
-                  nodes * bands * kNodeAzimuth_s);
-    return;
-  }
-  input.read(area.read, terminal_progress("read"));
-  input.close();
-  const HorizonPlane plane = horizon_plane(input);
-  const HorizonSettings settings = horizon_settings(options.horizon, input);
-  const RowBand rows = area.rows();
-  std::optional<MapPreview> preview;
-  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
-  RasterMap map = map_of(input, options.raster_output, area, kHorizonMethod, horizon_metadata(settings));
-  const Progress progress = terminal_progress("horizon");
-  const Horizons horizons(plane.field, settings, progress);
-  std::vector<HorizonRows> found;
+  const auto count = static_cast<double>(azimuths.size());
+  if (!run.begin(13 + 4 * count * (options.distance ? 2 : 1), count * kNodeAzimuth_s)) return;
+  MapInput& input = run.input();
   double highest = -90;
-  for (const double azimuth : azimuths) {
-    found.push_back(
-        horizons.rows(azimuth / kHorizonDegrees - plane.grid_north, rows.first, rows.last, options.distance, progress));
-    finish(found.back().angle, options.clamp);
-    for (float& distance : found.back().distance) distance = std::isnan(distance) ? kNoHorizon : distance;
-    for (const float angle : found.back().angle) highest = std::max(highest, static_cast<double>(angle));
-  }
-  for (std::size_t i = 0; i < azimuths.size(); ++i)
-    map.bands.push_back({fmt::format("horizon {:.10g}", azimuths[i]), "degrees", std::span<const float>(found[i].angle),
-                         static_cast<double>(kNoHorizon)});
-  for (std::size_t i = 0; i < azimuths.size() && options.distance; ++i)
-    map.bands.push_back({fmt::format("distance {:.10g}", azimuths[i]), "m", std::span<const float>(found[i].distance),
-                         static_cast<double>(kNoHorizon)});
-  write_raster_map(options.output, map, terminal_progress("write"));
-  if (preview) preview->write(map, rows, "viridis");
-  print_map_summary(
-      input, options.raster_output, area, options.output,
-      fmt::format("{} azimuths, highest {:.4g} degrees; {}", azimuths.size(), highest, input.curvature_text()), begin);
+  const auto compute = [&](const RowBand& rows, const Progress& progress) {
+    const HorizonPlane plane = horizon_plane(input);
+    const Horizons horizons(plane.field, horizon_settings(options.horizon, input), progress);
+    std::vector<ComputedBand> bands, distances;
+    for (const double azimuth : azimuths) {
+      HorizonRows found = horizons.rows(azimuth / kDegreesPerRadian - plane.grid_north, rows.first, rows.last,
+                                        options.distance, progress);
+      for (float& angle : found.angle) {
+        angle = options.clamp && angle < 0 ? 0 : static_cast<float>(static_cast<double>(angle) * kDegreesPerRadian);
+        highest = std::fmax(highest, static_cast<double>(angle));
+      }
+      bands.push_back(number_band(fmt::format("horizon {:.10g}", azimuth), "degrees", std::move(found.angle)));
+      if (options.distance)
+        distances.push_back(number_band(fmt::format("distance {:.10g}", azimuth), "m", std::move(found.distance)));
+    }
+    std::move(distances.begin(), distances.end(), std::back_inserter(bands));
+    return bands;
+  };
+  const auto summary = [&] {
+    return fmt::format("{} azimuths, highest {:.4g} degrees; {}", azimuths.size(), highest, input.curvature_text());
+  };
+  run.write({kHorizonMethod, horizon_metadata(options.horizon, input), "viridis", compute, summary});
 }
 
 void run(HorizonOptions options, const Command& command) {
-  command.require_effect({});
+  if (!asks_points(options)) return run_map(options, command);
+  if (options.output == "-") options.output.clear();
+  if (!options.output.empty() && extension_of(options.output) != ".csv")
+    throw Error(fmt::format("output '{}': expected .csv with --at or --points", options.output));
+  keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
-  const auto begin = std::chrono::steady_clock::now();
-  if (!asks_points(options)) {
-    if (options.output.empty()) throw WrongUsage("-o FILE is required (see 'scarp horizon --help')");
-    settle_output(options.raster_output, options, "Float32");
-  } else {
-    if (options.output == "-") options.output.clear();
-    if (!options.output.empty() && extension_of(options.output) != ".csv")
-      throw Error(fmt::format("output '{}': expected .csv with --at or --points", options.output));
-    keep_inputs(options.output, options.typed);
-  }
   MapInput input(options);
   keep_inputs(options.output, input.files());
-  asks_points(options) ? run_points(options, input) : run_map(options, input, begin);
+  run_points(options, input);
 }
 
 }  // namespace
@@ -185,7 +152,8 @@ void add_horizon(Program& program) {
   Command& command = program.add("horizon", "Find the horizon of each pixel of an elevation model, or of points");
   const auto options = std::make_shared<HorizonOptions>();
   HorizonOptions& o = *options;
-  const Rule map = needs("a map, without --at or --points", [&o] { return !asks_points(o); });
+  // With these, the output is a table.
+  const std::vector<std::string> point_options{"--at", "--points"};
   command.add(&o.azimuths, {.names = "--azimuths",
                             .help = "number of directions, equally spaced",
                             .range = {1, 3600},
@@ -215,17 +183,14 @@ void add_horizon(Program& program) {
   command.add(&o.distance, {.names = "--distance",
                             .help = "bands of the distance to the ground that is the horizon, too",
                             .common = true,
-                            .rules = {map}});
+                            .excludes = point_options});
   add_horizon_options(command, o.horizon, o.curvature);
-  add_raster_output_options(command, o.raster_output);
-  add_map_options(command, o);
+  add_map_coordinates_option(command, o.coordinates, {needs("--at or --points", [&o] { return asks_points(o); })});
+  add_map_command(
+      command, o, [options, &command] { run(*options, command); }, point_options);
   command.footer(kHorizonFooter);
   command.example("scarp horizon dem.tif --azimuths 36 -o horizon.tif");
   command.example("scarp horizon dem.tif --at 692000,5143000,2 -o skyline.csv");
-  command.runs([options, &command] {
-    options->typed = command.typed_values();
-    run(*options, command);
-  });
 }
 
 }  // namespace scarp::cli

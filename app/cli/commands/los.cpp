@@ -265,6 +265,7 @@ void add_los(Program& program) {
   add_sight_heights(command, o.heights);
   add_surface_option(command, o.surface);
   add_curvature_option(command, o.curvature);
+  add_map_coordinates_option(command, o.coordinates);
   add_map_options(command, o);
   command.footer(kOutput);
   command.example("scarp los dem.tif --from 692000,5143000,2 --to 698500,5149000,10");

@@ -193,6 +193,7 @@ void add_profile(Program& program) {
   add_profile_march_options(command, o.march, o.output);
   add_sight_heights(command, o.heights);
   add_curvature_option(command, o.curvature);
+  add_map_coordinates_option(command, o.coordinates);
   add_map_options(command, o);
   command.footer(kColumns);
   command.example("scarp profile dem.tif --from 692000,5143000,400 --to 692900,5143500 --march max-mip -o ray.svg");

@@ -11,15 +11,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/commands.h"
-#include "app/cli/options/kept_inputs.h"
-#include "app/cli/options/map_input.h"
 #include "app/cli/options/shared_options.h"
-#include "app/cli/picture/map_preview.h"
-#include "app/cli/picture/raster_output.h"
-#include "app/cli/progress.h"
+#include "app/cli/picture/map_run.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/analysis/sun_disc.h"
 #ifdef SCARP_ERFA
@@ -27,12 +24,10 @@
 #include "scarp/source/raster/node_places.h"
 #endif
 #include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 
 namespace scarp::cli {
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr int kShadowNodata = 255;
 constexpr const char* kShadowFooter = R"(Pixels:
   0  lit
@@ -40,10 +35,9 @@ constexpr const char* kShadowFooter = R"(Pixels:
   2  cast shadow: ground farther away hides the sun
 With --fraction: share of the sun's disc above the terrain, 0 to 1.)";
 
-struct ShadowOptions : MapOptions {
+struct ShadowOptions : MapCommand {
   std::vector<std::string> suns, times;
   bool fraction = false, refraction = false, per_cell = false;
-  RasterOutput raster_output;
 };
 
 // A sun over the field. The azimuth is relative to grid north.
@@ -61,10 +55,8 @@ std::string place_text(double azimuth, double altitude) {
                      altitude * kDegreesPerRadian);
 }
 
-dvec2 centre_of(const MapInput& input) { return {(input.cols() - 1) / 2.0, (input.rows() - 1) / 2.0}; }
-
 // Azimuth of grid north on the plane of the whole raster.
-double grid_north_of(MapInput& input) { return input.grid_north_at(centre_of(input).x, centre_of(input).y, HUGE_VAL); }
+double grid_north_of(MapInput& input) { return input.grid_north_at(input.centre().x, input.centre().y, HUGE_VAL); }
 
 #ifdef SCARP_ERFA
 // The variation of the sun over a raster at one time.
@@ -180,76 +172,71 @@ std::string method_of(const ShadowOptions& options) {
                      options.per_cell ? " of every pixel" : "", surface_text(options.surface));
 }
 
+// Estimated time of one sun of one node, on one thread.
+double node_seconds(const ShadowOptions& options) {
+  const double codes = options.per_cell ? 4e-6 : options.surface == "bilinear" ? 1e-6 : 1e-7;
+  return codes * (!options.fraction ? 1 : options.per_cell ? 2 : 16);
+}
+
+// Pixels of all bands.
+struct LitPixels {
+  double lit = 0, with_sample = 0;
+  double percent() const { return with_sample > 0 ? 100 * lit / with_sample : 0; }
+};
+
+ComputedBand band_of(const Sun& sun, const std::vector<float>& shares, LitPixels& pixels) {
+  for (const float share : shares) pixels.lit += std::max(share, 0.0f);
+  pixels.with_sample +=
+      static_cast<double>(shares.size()) - static_cast<double>(std::count(shares.begin(), shares.end(), kNoShare));
+  return {fmt::format("lit share, {}", sun.name), "", shares, kNoShare};
+}
+
+ComputedBand band_of(const Sun& sun, const std::vector<Shade>& shades, LitPixels& pixels) {
+  std::vector<std::uint8_t> codes;
+  codes.reserve(shades.size());
+  for (const Shade shade : shades) {
+    codes.push_back(shade == Shade::hole ? kShadowNodata : static_cast<std::uint8_t>(shade));
+    pixels.lit += shade == Shade::lit;
+    pixels.with_sample += shade != Shade::hole;
+  }
+  return {sun.name,
+          "",
+          std::move(codes),
+          kShadowNodata,
+          {{0, "lit", {255, 246, 214, 255}},
+           {1, "self-shaded", {136, 134, 158, 255}},
+           {2, "cast shadow", {52, 56, 92, 255}},
+           {kShadowNodata, "no sample", {255, 255, 255, 0}}}};
+}
+
 void run(ShadowOptions options, const Command& command) {
-  command.require_effect({});
-  settle_output(options.raster_output, options, options.fraction ? "Float32" : "Byte");
-  const ThreadLimit limit(options.threads);
-  const auto begin = std::chrono::steady_clock::now();
-  MapInput input(options);
-  keep_inputs(options.output, input.files());
-  const MapArea area = map_area(input, options.raster_output, input.whole(), input.whole());
-  const bool dry_run = options.raster_output.dry_run;
-  if (!dry_run) {
-    input.read(area.read, terminal_progress("read"));
-    input.close();
-  }
+  MapRun run(options, command, options.fraction ? "Float32" : "Byte");
+  MapInput& input = run.input();
   double lowest = std::numbers::pi / 2;
+  if (options.raster_output.dry_run) suns_of(input, options, lowest);  // reports wrong suns
+  const auto bands = static_cast<double>(options.suns.size() + options.times.size());
+  if (!run.begin(bands * (options.fraction ? 4 : 1) + 1, bands * node_seconds(options))) return;
   const std::vector<Sun> suns = suns_of(input, options, lowest);
-  const double nodes = static_cast<double>(area.computed.cols) * area.computed.rows;
-  if (dry_run) {
-    const double kNode_s = options.per_cell ? 4e-6 : options.surface == "bilinear" ? 1e-6 : 1e-7;
-    print_dry_run(input, area, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
-                  nodes * kNode_s * static_cast<double>(suns.size()) *
-                      (!options.fraction  ? 1
-                       : options.per_cell ? 2
-                                          : 16));
-    return;
-  }
-  // A single sun needs a plane for the whole raster; rays per cell need one only as far as a shadow reaches.
-  const double relief = input.field().max_height() - input.field().min_height();
-  const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
-  const HeightField field =
-      input.field_at(centre_of(input).x, centre_of(input).y, whole ? HUGE_VAL : relief / std::tan(lowest));
-  const RowBand rows = area.rows();
-  std::optional<MapPreview> preview;
-  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
-  RasterMap map = map_of(input, options.raster_output, area, method_of(options), {{"SUN", places}});
-  const Progress progress = terminal_progress("shadow");
-  const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
-  const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
-  std::vector<std::vector<std::uint8_t>> codes(suns.size());
-  std::vector<std::vector<float>> fractions(suns.size());
-  double lit = 0, with_sample = 0;  // pixels of all bands
-  for (std::size_t i = 0; i < suns.size(); ++i) {
-    if (options.fraction) {
-      fractions[i] = shares_of(ground, suns[i], rows, progress);
-      for (const float share : fractions[i]) lit += std::max(share, 0.0f);
-      with_sample += nodes - static_cast<double>(std::count(fractions[i].begin(), fractions[i].end(), kNoShare));
-      map.bands.push_back(
-          {fmt::format("lit share, {}", suns[i].name), "", std::span<const float>(fractions[i]), kNoShare});
-      continue;
-    }
-    const auto shades = shades_of(ground, suns[i], rows, progress);
-    codes[i].reserve(shades.size());
-    for (const Shade shade : shades)
-      codes[i].push_back(shade == Shade::hole ? kShadowNodata : static_cast<std::uint8_t>(shade));
-    lit += static_cast<double>(std::count(codes[i].begin(), codes[i].end(), 0));
-    with_sample += nodes - static_cast<double>(std::count(codes[i].begin(), codes[i].end(), kShadowNodata));
-    map.bands.push_back({suns[i].name,
-                         "",
-                         std::span<const std::uint8_t>(codes[i]),
-                         kShadowNodata,
-                         {{0, "lit", {255, 246, 214, 255}},
-                          {1, "self-shaded", {136, 134, 158, 255}},
-                          {2, "cast shadow", {52, 56, 92, 255}},
-                          {kShadowNodata, "no sample", {255, 255, 255, 0}}}});
-  }
-  write_raster_map(options.output, map, terminal_progress("write"));
-  if (preview) preview->write(map, rows, "grey");
-  print_map_summary(input, options.raster_output, area, options.output,
-                    fmt::format("{}; {:.3g} % lit", places, with_sample > 0 ? 100 * lit / with_sample : 0), begin);
+  LitPixels pixels;
+  const auto compute = [&](const RowBand& rows, const Progress& progress) {
+    // A single sun needs a plane for the whole raster; rays per cell need one only as far as a shadow reaches.
+    const double relief = input.field().max_height() - input.field().min_height();
+    const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
+    const HeightField field =
+        input.field_at(input.centre().x, input.centre().y, whole ? HUGE_VAL : relief / std::tan(lowest));
+    const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
+    const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
+    std::vector<ComputedBand> computed;
+    for (const Sun& sun : suns)
+      computed.push_back(options.fraction ? band_of(sun, shares_of(ground, sun, rows, progress), pixels)
+                                          : band_of(sun, shades_of(ground, sun, rows, progress), pixels));
+    return computed;
+  };
+  run.write({method_of(options), {{"SUN", places}}, "grey", compute, [&] {
+               return fmt::format("{}; {:.3g} % lit", places, pixels.percent());
+             }});
 }
 
 }  // namespace
@@ -283,15 +270,10 @@ void add_shadow(Program& program) {
                             .common = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
   add_surface_option(command, o.surface);
-  add_raster_output_options(command, o.raster_output);
-  add_map_options(command, o);
+  add_map_command(command, o, [options, &command] { run(*options, command); });
   command.footer(kShadowFooter);
   command.example("scarp shadow dem.tif --sun 135,20 -o shadow.tif");
   command.example("scarp shadow dem.tif --time 2026-06-21T09:00+02:00 --time 2026-06-21T18:00+02:00 -o shadow.tif");
-  command.runs([options, &command] {
-    options->typed = command.typed_values();
-    run(*options, command);
-  });
 }
 
 }  // namespace scarp::cli

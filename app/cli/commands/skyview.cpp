@@ -3,30 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/options/horizon_options.h"
-#include "app/cli/options/kept_inputs.h"
-#include "app/cli/options/map_input.h"
 #include "app/cli/options/shared_options.h"
-#include "app/cli/picture/map_preview.h"
-#include "app/cli/picture/raster_output.h"
-#include "app/cli/progress.h"
+#include "app/cli/picture/map_run.h"
 #include "scarp/analysis/sky_view.h"
-#include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 
 namespace scarp::cli {
 namespace {
 
-constexpr float kNoSky = -9999;
 constexpr const char* kSkyMethod =
     "exact horizons; ground linear at crossings of grid lines; directions equally spaced (scarp skyview)";
 
@@ -53,11 +45,21 @@ constexpr const char* kSkyFooter = R"(Measures, means over all azimuths of the h
   negative-openness  the same of the ground upside down
 The 45 degree slope of an endless plane has 0.75, 0.854, 90 and 90.)";
 
-struct SkyviewOptions : MapOptions {
+struct SkyviewOptions : MapCommand {
   std::vector<std::string> measures;
   int azimuths = 64;
   HorizonInput horizon;
-  RasterOutput raster_output;
+};
+
+// The mean of the pixels that are not holes.
+struct Mean {
+  double sum = 0, count = 0;
+
+  void add(std::span<const float> pixels) {
+    for (const float pixel : pixels)
+      if (!std::isnan(pixel)) sum += static_cast<double>(pixel), ++count;
+  }
+  double value() const { return count > 0 ? sum / count : 0; }
 };
 
 const MeasureText& measure_of(const std::string& name) {
@@ -66,59 +68,39 @@ const MeasureText& measure_of(const std::string& name) {
 }
 
 void run(SkyviewOptions options, const Command& command) {
-  command.require_effect({});
-  settle_output(options.raster_output, options, "Float32");
   if (options.measures.empty()) options.measures.emplace_back(kMeasures[0].name);
-  const ThreadLimit limit(options.threads);
-  const auto begin = std::chrono::steady_clock::now();
-  MapInput input(options);
-  keep_inputs(options.output, input.files());
-  const MapArea area = map_area(input, options.raster_output, input.whole(), input.whole());
-  if (options.raster_output.dry_run) {
-    const double nodes = static_cast<double>(area.computed.cols) * area.computed.rows;
-    constexpr double kNodeAzimuth_s = 4e-8;
-    print_dry_run(input, area, options.output, 13 + 8 * static_cast<double>(options.measures.size()),
-                  nodes * options.azimuths * kNodeAzimuth_s);
-    return;
-  }
-  input.read(area.read, terminal_progress("read"));
-  input.close();
-  const HorizonPlane plane = horizon_plane(input);
-  const HorizonSettings settings = horizon_settings(options.horizon, input);
-  const RowBand rows = area.rows();
-  std::optional<MapPreview> preview;
-  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
+  MapRun run(options, command, "Float32");
+  if (!run.begin(13 + 8 * static_cast<double>(options.measures.size()), options.azimuths * kNodeAzimuth_s)) return;
+  MapInput& input = run.input();
   std::vector<SkyMeasure> measures;
-  auto metadata = horizon_metadata(settings);
+  Metadata metadata = horizon_metadata(options.horizon, input);
   metadata.emplace_back("AZIMUTHS", fmt::format("{}", options.azimuths));
   for (const std::string& name : options.measures) {
     measures.push_back(measure_of(name).measure);
     metadata.emplace_back("FORMULA " + name, measure_of(name).formula);
   }
-  RasterMap map = map_of(input, options.raster_output, area, kSkyMethod, metadata);
-  const Progress progress = terminal_progress("skyview");
-  const SkyView sky(plane.field, settings, options.azimuths, measures, progress);
-  auto values = sky.rows(rows.first, rows.last, progress);
-  std::string means;
-  for (std::size_t m = 0; m < values.size(); ++m) {
-    const MeasureText& text = measure_of(options.measures[m]);
-    const bool degrees = *text.unit != 0;
-    double sum = 0, count = 0;
-    for (float& value : values[m]) {
-      if (std::isnan(value)) {
-        value = kNoSky;
-        continue;
-      }
-      if (degrees) value *= static_cast<float>(180 / std::numbers::pi);
-      sum += static_cast<double>(value), ++count;
+  std::vector<Mean> means(measures.size());
+  const auto compute = [&](const RowBand& rows, const Progress& progress) {
+    const HorizonPlane plane = horizon_plane(input);
+    const SkyView sky(plane.field, horizon_settings(options.horizon, input), options.azimuths, measures, progress);
+    auto values = sky.rows(rows.first, rows.last, progress);
+    std::vector<ComputedBand> bands;
+    for (std::size_t m = 0; m < values.size(); ++m) {
+      const MeasureText& text = measure_of(options.measures[m]);
+      if (*text.unit != 0)
+        for (float& value : values[m]) value *= static_cast<float>(kDegreesPerRadian);
+      means[m].add(values[m]);
+      bands.push_back(number_band(text.name, text.unit, std::move(values[m])));
     }
-    map.bands.push_back({text.name, text.unit, std::span<const float>(values[m]), static_cast<double>(kNoSky)});
-    means += fmt::format("{}mean {} {:.4g}", means.empty() ? "" : ", ", text.name, count > 0 ? sum / count : 0);
-  }
-  write_raster_map(options.output, map, terminal_progress("write"));
-  if (preview) preview->write(map, rows, "grey");
-  print_map_summary(input, options.raster_output, area, options.output,
-                    fmt::format("{}; {}", means, input.curvature_text()), begin);
+    return bands;
+  };
+  const auto summary = [&] {
+    std::string text;
+    for (std::size_t m = 0; m < means.size(); ++m)
+      text += fmt::format("{}mean {} {:.4g}", m == 0 ? "" : ", ", options.measures[m], means[m].value());
+    return fmt::format("{}; {}", text, input.curvature_text());
+  };
+  run.write({kSkyMethod, metadata, "grey", compute, summary});
 }
 
 }  // namespace
@@ -143,15 +125,10 @@ void add_skyview(Program& program) {
       {.names = "--azimuths", .help = "number of directions, equally spaced", .range = {1, 3600}, .common = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
   add_horizon_options(command, o.horizon, o.curvature);
-  add_raster_output_options(command, o.raster_output);
-  add_map_options(command, o);
+  add_map_command(command, o, [options, &command] { run(*options, command); });
   command.footer(kSkyFooter);
   command.example("scarp skyview dem.tif -o sky.tif");
   command.example("scarp skyview dem.tif --measure sky-view-factor --measure positive-openness -o sky.tif");
-  command.runs([options, &command] {
-    options->typed = command.typed_values();
-    run(*options, command);
-  });
 }
 
 }  // namespace scarp::cli

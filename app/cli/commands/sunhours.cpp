@@ -5,33 +5,25 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
-#include <numbers>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/options/horizon_options.h"
-#include "app/cli/options/kept_inputs.h"
-#include "app/cli/options/map_input.h"
 #include "app/cli/options/shared_options.h"
-#include "app/cli/picture/map_preview.h"
-#include "app/cli/picture/raster_output.h"
-#include "app/cli/progress.h"
+#include "app/cli/picture/map_run.h"
 #include "scarp/analysis/sun_hours.h"
 #include "scarp/analysis/sun_position.h"
 #include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 
 namespace scarp::cli {
 namespace {
 
 namespace chrono = std::chrono;
 
-constexpr float kNoSunHours = -9999;
 constexpr int kMinutesPerDay = 24 * 60;
 constexpr const char* kSunHoursMethod =
     "exact horizons towards the centre of the sun; ground linear at crossings of grid lines (scarp sunhours)";
@@ -40,12 +32,11 @@ constexpr const char* kSunHoursFooter =
 time of day, in hours, of the middle of the first and the last step with sun (nodata: none).
 The sun of each step is that in its middle, at the centre of the raster.)";
 
-struct SunHoursOptions : MapOptions {
+struct SunHoursOptions : MapCommand {
   std::string from, to, offset, sum = "range";
   int step = 30;  // minutes
   bool refraction = false, first_last = false;
   HorizonInput horizon;
-  RasterOutput raster_output;
 };
 
 chrono::sys_days day_of(const std::string& text, std::string_view option) {
@@ -123,88 +114,63 @@ Moments moments_of(const Period& period, const SunHoursOptions& options, const E
   return up;
 }
 
-struct Band {
-  std::string name;
-  std::vector<float> values;
-};
-
 // The bands of a period.
-void add_bands(std::vector<Band>& bands, const std::string& name, const SunHours& found, const Moments& up,
+void add_bands(std::vector<ComputedBand>& bands, const std::string& name, SunHours found, const Moments& up,
                bool first_last) {
-  bands.push_back({"hours of sun " + name, found.hours});
-  for (float& hours : bands.back().values) hours = std::isnan(hours) ? kNoSunHours : hours;
+  bands.push_back(number_band("hours of sun " + name, "h", std::move(found.hours)));
   if (!first_last) return;
-  const std::pair<const char*, const std::vector<std::int32_t>*> ends[] = {{"first sun ", &found.first},
-                                                                           {"last sun ", &found.last}};
-  for (const auto& [text, indices] : ends) {
-    bands.push_back({text + name, {}});
-    for (const std::int32_t i : *indices)
-      bands.back().values.push_back(i < 0 ? kNoSunHours : up.time[static_cast<std::size_t>(i)]);
+  const auto time_of = [&](std::int32_t moment) {
+    return moment < 0 ? std::numeric_limits<float>::quiet_NaN() : up.time[static_cast<std::size_t>(moment)];
+  };
+  for (const auto& [what, moments] : {std::pair("first sun ", &found.first), std::pair("last sun ", &found.last)}) {
+    std::vector<float> times(moments->size());
+    std::transform(moments->begin(), moments->end(), times.begin(), time_of);
+    bands.push_back(number_band(what + name, "h", std::move(times)));
   }
 }
 
 void run(SunHoursOptions options, const Command& command) {
-  command.require_effect({});
-  settle_output(options.raster_output, options, "Float32");
   if (options.from.empty()) throw WrongUsage("--date DATE is required (see 'scarp sunhours --help')");
   const chrono::sys_days from = day_of(options.from, "--date");
   const chrono::sys_days to = options.to.empty() ? from : day_of(options.to, "--to");
   if (to < from) throw Error(fmt::format("--to {}: is before --date {}", options.to, options.from));
   const std::vector<Period> periods = periods_of(options, from, to);
-  const ThreadLimit limit(options.threads);
-  const auto begin = chrono::steady_clock::now();
-  MapInput input(options);
-  keep_inputs(options.output, input.files());
-  const auto lonlat = input.lonlat_of((input.cols() - 1) / 2.0, (input.rows() - 1) / 2.0);
+  MapRun run(options, command, "Float32");
+  MapInput& input = run.input();
+  const auto lonlat = input.lonlat_of(input.centre().x, input.centre().y);
   if (!lonlat) throw Error(fmt::format("{}: the sun's position needs a raster with a CRS (give --crs)", input.path()));
   // Local time by longitude: noon is within half an hour of the sun's highest position.
   const int offset =
       options.offset.empty() ? static_cast<int>(std::lround(lonlat->x / 15)) * 60 : offset_of(options.offset);
   if (options.offset.empty())
     input.notes.push_back(fmt::format("days are those of UTC{}, by the longitude (--utc-offset)", offset_text(offset)));
-  const MapArea area = map_area(input, options.raster_output, input.whole(), input.whole());
-  const double bands_per_period = options.first_last ? 3 : 1;
-  if (options.raster_output.dry_run) {
-    constexpr double kNodeStep_s = 4e-8;
-    const double nodes = static_cast<double>(area.computed.cols) * area.computed.rows;
-    const double days = static_cast<double>((to - from).count() + 1);
-    print_dry_run(input, area, options.output, 29 + 4 * bands_per_period * static_cast<double>(periods.size()),
-                  nodes * days * kMinutesPerDay / options.step / 2 * kNodeStep_s);
+  const double bands_per_period = options.first_last ? 3 : 1, days = static_cast<double>((to - from).count() + 1);
+  if (!run.begin(29 + 4 * bands_per_period * static_cast<double>(periods.size()),
+                 days * kMinutesPerDay / options.step / 2 * kNodeAzimuth_s))
     return;
-  }
-  input.read(area.read, terminal_progress("read"));
-  input.close();
-  const HorizonPlane plane = horizon_plane(input);
-  const RowBand rows = area.rows();
-  std::optional<MapPreview> preview;
-  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
-  const double degree = std::numbers::pi / 180;
-  const EarthPlace place{lonlat->x * degree, lonlat->y * degree,
-                         0.5 * (plane.field.min_height() + plane.field.max_height())};
-  const HorizonSettings settings = horizon_settings(options.horizon, input);
-  auto metadata = horizon_metadata(settings);
+  const EarthPlace place{lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian,
+                         0.5 * (input.field().min_height() + input.field().max_height())};
+  Metadata metadata = horizon_metadata(options.horizon, input);
   metadata.emplace_back("STEP", fmt::format("{} minutes", options.step));
   metadata.emplace_back("UTC_OFFSET", offset_text(offset));
-  RasterMap map = map_of(input, options.raster_output, area, kSunHoursMethod, metadata);
-  const Progress progress = terminal_progress("sunhours");
-  const Horizons horizons(plane.field, settings, progress);
-  std::vector<Band> bands;
-  double longest = 0;
-  for (const Period& period : periods) {
-    const Moments up = moments_of(period, options, place, offset, plane.grid_north);
-    const SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last, progress);
-    for (const float hours : found.hours)
-      longest = std::max(longest, std::isnan(hours) ? 0 : static_cast<double>(hours));
-    add_bands(bands, period.name, found, up, options.first_last);
-  }
-  for (const Band& band : bands)
-    map.bands.push_back({band.name, "h", std::span<const float>(band.values), static_cast<double>(kNoSunHours)});
-  write_raster_map(options.output, map, terminal_progress("write"));
-  if (preview) preview->write(map, rows, "viridis");
-  print_map_summary(input, options.raster_output, area, options.output,
-                    fmt::format("{} {}, at most {:.4g} hours of sun", periods.size(),
-                                periods.size() == 1 ? "period" : "periods", longest),
-                    begin);
+  float longest = 0;
+  const auto compute = [&](const RowBand& rows, const Progress& progress) {
+    const HorizonPlane plane = horizon_plane(input);
+    const Horizons horizons(plane.field, horizon_settings(options.horizon, input), progress);
+    std::vector<ComputedBand> bands;
+    for (const Period& period : periods) {
+      const Moments up = moments_of(period, options, place, offset, plane.grid_north);
+      SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last, progress);
+      for (const float hours : found.hours) longest = std::fmax(longest, hours);
+      add_bands(bands, period.name, std::move(found), up, options.first_last);
+    }
+    return bands;
+  };
+  const auto summary = [&] {
+    return fmt::format("{} {}, at most {:.4g} hours of sun", periods.size(), periods.size() == 1 ? "period" : "periods",
+                       static_cast<double>(longest));
+  };
+  run.write({kSunHoursMethod, metadata, "viridis", compute, summary});
 }
 
 }  // namespace
@@ -244,15 +210,10 @@ void add_sunhours(Program& program) {
       {.names = "--refraction", .help = "raise the sun by the refraction of a standard atmosphere", .common = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
   add_horizon_options(command, o.horizon, o.curvature);
-  add_raster_output_options(command, o.raster_output);
-  add_map_options(command, o);
+  add_map_command(command, o, [options, &command] { run(*options, command); });
   command.footer(kSunHoursFooter);
   command.example("scarp sunhours dem.tif --date 2026-06-21 -o hours.tif");
   command.example("scarp sunhours dem.tif --date 2026-01-01 --to 2026-12-31 --sum month --step 60 -o months.tif");
-  command.runs([options, &command] {
-    options->typed = command.typed_values();
-    run(*options, command);
-  });
 }
 
 }  // namespace scarp::cli

@@ -10,18 +10,16 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/commands.h"
-#include "app/cli/options/kept_inputs.h"
-#include "app/cli/options/map_input.h"
 #include "app/cli/options/map_part.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
-#include "app/cli/picture/map_preview.h"
-#include "app/cli/picture/raster_output.h"
-#include "app/cli/progress.h"
+#include "app/cli/picture/map_run.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
@@ -30,9 +28,7 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kNodata = 255;
-constexpr double kNoHeight = -9999;                                  // nodata of heights and angles
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();  // pixels before nodata is written
 constexpr const char* kMethod =
     "exact lines of sight; ground linear at crossings of grid lines; grazing is visible (scarp viewshed)";
@@ -50,7 +46,7 @@ the target is hidden. Visible pixels must differ from all others; others may be 
 Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
 -f -q, with the output as last word.)";
 
-struct ViewshedOptions : MapOptions {
+struct ViewshedOptions : MapCommand {
   std::vector<std::string> observers;
   std::string observers_file, mode = "visible", azimuth, pitch;
   SightHeights heights;
@@ -58,7 +54,6 @@ struct ViewshedOptions : MapOptions {
   std::optional<double> max_distance, nodata;
   int visible = 1, hidden = 0, out_of_range = -1;  // -1: nodata
   bool crop = false;
-  RasterOutput raster_output;
 };
 
 // The place of an observer, in columns and rows of the raster.
@@ -89,7 +84,7 @@ PlaceTable observer_table(const ViewshedOptions& options) {
 
 // Compass degrees from true north to radians from grid north.
 double grid_azimuth(double degrees, double grid_north) {
-  const double turn = 2 * std::numbers::pi, angle = std::remainder(degrees / kDegrees - grid_north, turn);
+  const double turn = 2 * std::numbers::pi, angle = std::remainder(degrees / kDegreesPerRadian - grid_north, turn);
   return angle < 0 ? angle + turn : angle;
 }
 
@@ -115,8 +110,8 @@ void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, doub
     const auto n = numbers_from(options.pitch, ',', 2, 2, "--pitch", "LOW,HIGH in degrees above horizontal, -90 to 90");
     if (!(n[0] >= -90 && n[0] <= n[1] && n[1] <= 90))
       throw Error(fmt::format("--pitch '{}': expected LOW,HIGH in degrees above horizontal, -90 to 90", options.pitch));
-    settings.low_pitch = n[0] / kDegrees;
-    settings.high_pitch = n[1] / kDegrees;
+    settings.low_pitch = n[0] / kDegreesPerRadian;
+    settings.high_pitch = n[1] / kDegreesPerRadian;
   }
 }
 
@@ -167,8 +162,6 @@ std::vector<Observer> observers_of(MapInput& input, const std::vector<Stand>& st
   return observers;
 }
 
-using Codes = std::vector<std::uint8_t>;
-
 // Pixel values of `visible`.
 struct PixelValues {
   int hidden, visible, out_of_range, nodata;
@@ -217,12 +210,12 @@ RasterWindow part_in_reach(MapInput& input, const std::vector<Stand>& stands) {
   return union_of(parts);
 }
 
-// The area of the map. If pixels out of range are not nodata, as holes are, all samples are read.
-MapArea area_of(MapInput& input, const ViewshedOptions& options, bool marks_range, const std::vector<Stand>& stands) {
-  const RasterWindow near = part_in_reach(input, stands);
-  if (options.crop) return map_area(input, options.raster_output, near, near);
+// If pixels out of range are not nodata, as holes are, all samples are read.
+void set_area(MapRun& run, const ViewshedOptions& options, bool marks_range, const std::vector<Stand>& stands) {
+  const RasterWindow near = part_in_reach(run.input(), stands), whole = run.input().whole();
+  if (options.crop) return run.set_area(near, near);
   const bool all = !options.raster_output.preview.empty() || marks_range;
-  return map_area(input, options.raster_output, input.whole(), all ? input.whole() : near);
+  run.set_area(whole, all ? whole : near);
 }
 
 std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
@@ -231,50 +224,62 @@ std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
   return views;
 }
 
-struct VisiblePixels {
-  Codes pixels;
-  std::size_t visible = 0, hidden = 0;  // number of targets within the limits
+// Numbers of targets within the limits.
+struct TargetCount {
+  double visible = 0, hidden = 0;
+
+  void add(std::span<const Seen> seen) {
+    visible += static_cast<double>(std::count(seen.begin(), seen.end(), Seen::visible));
+    hidden += static_cast<double>(std::count(seen.begin(), seen.end(), Seen::hidden));
+  }
+  std::string text() const {
+    const double all = visible + hidden;
+    return fmt::format("{:.3g} % visible", all > 0 ? 100 * visible / all : 0);
+  }
 };
 
-// Pixels of `visible`: the best visibility of a node over all observers.
-VisiblePixels visible_pixels(const std::vector<Observer>& observers, const PixelValues& values, const RowBand& rows,
-                             const Progress& progress) {
-  VisiblePixels result;
-  const auto add = [&](Seen seen) {
-    const int value_of[] = {values.hidden, values.visible, values.out_of_range, values.nodata};
-    result.pixels.push_back(static_cast<std::uint8_t>(value_of[static_cast<std::size_t>(seen)]));
-    result.visible += seen == Seen::visible;
-    result.hidden += seen == Seen::hidden;
-  };
+// The best visibility of each node over all observers.
+std::vector<Seen> best_seen(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
   if (observers.size() == 1) {
     const Observer& one = observers.front();
-    const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
-    result.pixels.reserve(codes.size());
-    for (const Seen code : codes) add(code);
-    return result;
+    return viewshed_rows(one.field, one.node, one.settings, rows, progress);
   }
   const auto counts = observer_count_rows(views_of(observers), rows, progress);
-  result.pixels.reserve(counts.size());
+  std::vector<Seen> best;
+  best.reserve(counts.size());
   for (const std::uint16_t count : counts)
-    add(count == kCountHole         ? Seen::hole
-        : count == kCountOutOfRange ? Seen::out_of_range
-        : count > 0                 ? Seen::visible
-                                    : Seen::hidden);
-  return result;
+    best.push_back(count == kCountHole         ? Seen::hole
+                   : count == kCountOutOfRange ? Seen::out_of_range
+                   : count > 0                 ? Seen::visible
+                                               : Seen::hidden);
+  return best;
 }
 
-std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const RowBand& rows,
-                                          const Progress& progress) {
-  auto counts = observer_count_rows(views_of(observers), rows, progress);
-  for (std::uint16_t& count : counts)
-    if (count == kCountOutOfRange) count = kCountHole;
-  return counts;
+ComputedBand visible_band(const std::vector<Observer>& observers, const PixelValues& values, const RowBand& rows,
+                          TargetCount& targets, const Progress& progress) {
+  const int value_of[] = {values.hidden, values.visible, values.out_of_range, values.nodata};
+  std::vector<std::uint8_t> pixels;
+  if (rows.rows() > 0) {
+    const auto seen = best_seen(observers, rows, progress);
+    pixels.reserve(seen.size());
+    for (const Seen code : seen) pixels.push_back(static_cast<std::uint8_t>(value_of[static_cast<std::size_t>(code)]));
+    targets.add(seen);
+  }
+  return {"visible", "", std::move(pixels), static_cast<double>(values.nodata), values.classes()};
+}
+
+ComputedBand count_band(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
+  std::vector<std::uint16_t> counts;
+  if (rows.rows() > 0) counts = observer_count_rows(views_of(observers), rows, progress);
+  std::replace(counts.begin(), counts.end(), kCountOutOfRange, kCountHole);
+  return {"observers that see the pixel", "", std::move(counts), kCountHole};
 }
 
 // Returns NaN for pixels without a value.
 std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, const RowBand& rows,
                                 const Progress& progress) {
   std::vector<float> pixels;
+  if (rows.rows() == 0) return pixels;
   for (const Observer& one : observers) {
     const auto least = least_visible_rows(one.field, one.node, one.settings, rows, progress);
     const Viewpoint view(one.field, one.node, one.settings);
@@ -292,29 +297,29 @@ std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDa
 }
 
 // The same for angles.
-std::vector<float> angle_pixels(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
+std::vector<float> angle_pixels(const std::vector<Observer>& observers, const RowBand& rows, TargetCount& targets,
+                                const Progress& progress) {
   std::vector<float> pixels;
+  std::vector<Seen> best;
+  if (rows.rows() == 0) return pixels;
   for (const Observer& one : observers) {
     const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
     const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
-    if (pixels.empty()) pixels.assign(angles.size(), kNothing);
-    for (std::size_t i = 0; i < angles.size(); ++i) pixels[i] = std::fmax(pixels[i], angles[i]);  // replaces NaN
+    if (pixels.empty()) pixels.assign(angles.size(), kNothing), best.assign(codes.size(), Seen::out_of_range);
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      pixels[i] = std::fmax(pixels[i], angles[i]);  // replaces NaN
+      if (codes[i] == Seen::visible || best[i] == Seen::out_of_range) best[i] = codes[i];
+    }
   }
+  targets.add(best);
   return pixels;
 }
 
-// Replaces NaN by nodata, and returns the number of replacements. Throws Error if a valid pixel has that value.
-std::size_t mark_nothing(std::vector<float>& pixels, double written) {
-  const auto nodata = static_cast<float>(written);
-  std::size_t count = 0;
-  for (float& pixel : pixels) {
-    if (pixel == nodata)
-      throw Error(fmt::format("--nodata-value {:.10g}: is also a value of the map (choose another)", written));
-    if (!std::isnan(pixel)) continue;
-    pixel = nodata;
-    ++count;
-  }
-  return count;
+// Throws Error if nodata is also a value of the map.
+ComputedBand checked_band(const std::string& name, const std::string& unit, std::vector<float> pixels, double nodata) {
+  if (std::find(pixels.begin(), pixels.end(), static_cast<float>(nodata)) != pixels.end())
+    throw Error(fmt::format("--nodata-value {:.10g}: is also a value of the map (choose another)", nodata));
+  return number_band(name, unit, std::move(pixels), nodata);
 }
 
 std::string mode_of(const std::string& typed) {
@@ -326,86 +331,54 @@ std::string mode_of(const std::string& typed) {
   return typed;
 }
 
-double share_of(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+std::string places_text(const std::vector<Stand>& stands) {
+  constexpr std::size_t kListed = 20;
+  std::string text;
+  for (std::size_t i = 0; i < stands.size() && i < kListed; ++i) {
+    const Stand& one = stands[i];
+    text += fmt::format("{}{:.10g},{:.10g} {}", i == 0 ? "" : "; ", one.at.x, one.at.y,
+                        one.settings.observer_z ? fmt::format("{:.10g} m above sea", *one.settings.observer_z)
+                                                : fmt::format("{:.10g} m above ground", one.settings.observer_height));
+  }
+  return text + (stands.size() > kListed ? "; ..." : "");
+}
 
 void run(ViewshedOptions options, const Command& command) {
-  command.require_effect({});
   options.mode = mode_of(options.mode);
-  const std::optional<PixelValues> values =
-      options.mode == "visible" ? std::optional(pixel_values(options)) : std::nullopt;
-  settle_output(options.raster_output, options, values ? "Byte" : options.mode == "count" ? "UInt16" : "Float32");
-  const ThreadLimit limit(options.threads);
-  const auto begin = std::chrono::steady_clock::now();
-  MapInput input(options);
-  keep_inputs(options.output, input.files());
-  const double number_nodata = options.nodata.value_or(kNoHeight);
+  const bool codes = options.mode == "visible", counts = options.mode == "count";
+  const std::optional<PixelValues> values = codes ? std::optional(pixel_values(options)) : std::nullopt;
+  MapRun run(options, command, codes ? "Byte" : counts ? "UInt16" : "Float32");
+  MapInput& input = run.input();
   const std::vector<Stand> stands = stands_of(input, options);
-  const MapArea area = area_of(input, options, values && values->out_of_range != values->nodata, stands);
-  if (options.raster_output.dry_run) {
-    // Time per node of one sweep per observer, on one thread.
-    constexpr double kNode_s = 6e-8;
-    print_dry_run(input, area, options.output, options.mode == "visible" || options.mode == "count" ? 3 : 12,
-                  static_cast<double>(stands.size()) * area.computed.cols * area.computed.rows * kNode_s);
-    return;
-  }
-  input.read(area.read, terminal_progress("read"));
-  input.close();
-  const std::vector<Observer> observers = observers_of(input, stands);
-  const RowBand rows = area.rows();
-  std::optional<MapPreview> preview;
-  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
-  std::string places;
-  for (const Observer& one : observers) {
-    constexpr std::size_t kListed = 20;
-    if (&one - observers.data() >= static_cast<std::ptrdiff_t>(kListed)) {
-      places += "; ...";
-      break;
-    }
-    places +=
-        fmt::format("{}{:.10g},{:.10g} {}", places.empty() ? "" : "; ", one.at.x, one.at.y,
-                    one.settings.observer_z ? fmt::format("{:.10g} m above sea", *one.settings.observer_z)
-                                            : fmt::format("{:.10g} m above ground", one.settings.observer_height));
-  }
-  const SightCurvature curvature = input.curvature();
-  RasterMap map = map_of(input, options.raster_output, area, kMethod,
-                         {{"MODE", options.mode},
-                          {"OBSERVERS", places},
-                          {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)},
-                          {"CURVATURE_COEFFICIENT", fmt::format("{:.10g}", curvature.coefficient)},
-                          {"DIAMETER", fmt::format("{:.10g} m", curvature.diameter)}});
-  const Progress progress = terminal_progress("viewshed");
-  VisiblePixels seen;
-  std::vector<std::uint16_t> counts;
-  std::vector<float> numbers;
-  std::string what;
-  if (values) {
-    if (rows.rows() > 0) seen = visible_pixels(observers, *values, rows, progress);
-    map.bands.push_back({"visible", "", std::span<const std::uint8_t>(seen.pixels), values->nodata, values->classes()});
-    what = fmt::format("{:.3g} % visible",
-                       share_of(static_cast<double>(seen.visible), static_cast<double>(seen.visible + seen.hidden)));
-  } else if (options.mode == "count") {
-    if (rows.rows() > 0) counts = counted_pixels(observers, rows, progress);
-    map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kCountHole});
-    what = fmt::format("{} observers", observers.size());
-  } else if (options.mode == "angle") {
-    if (rows.rows() > 0) numbers = angle_pixels(observers, rows, progress);
-    const std::size_t hidden = mark_nothing(numbers, number_nodata);
-    map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), number_nodata});
-    what = fmt::format("{:.3g} % visible", share_of(static_cast<double>(numbers.size() - hidden),
-                                                    static_cast<double>(map.cols) * map.rows));
-  } else {
+  set_area(run, options, values && values->out_of_range != values->nodata, stands);
+  constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
+  if (!run.begin(codes || counts ? 3 : 12, static_cast<double>(stands.size()) * kNode_s)) return;
+  Metadata metadata{{"MODE", options.mode},
+                    {"OBSERVERS", places_text(stands)},
+                    {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)}};
+  for (auto& pair : input.curvature_metadata()) metadata.push_back(std::move(pair));
+  TargetCount targets;
+  const double nodata = options.nodata.value_or(kNoNumber);
+  const auto band = [&](const RowBand& rows, const Progress& progress) {
+    const std::vector<Observer> observers = observers_of(input, stands);
+    if (values) return visible_band(observers, *values, rows, targets, progress);
+    if (counts) return count_band(observers, rows, progress);
+    if (options.mode == "angle")
+      return checked_band("angle above horizontal", "degrees", angle_pixels(observers, rows, targets, progress),
+                          nodata);
     const bool dem = options.mode == "dem";
-    if (rows.rows() > 0)
-      numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress);
-    mark_nothing(numbers, number_nodata);
-    map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
-                         std::span<const float>(numbers), number_nodata});
-    what = "least visible heights";
-  }
-  write_raster_map(options.output, map, terminal_progress("write"));
-  if (preview) preview->write(map, rows, "viridis");
-  print_map_summary(input, options.raster_output, area, options.output,
-                    fmt::format("{}; {}", what, input.curvature_text()), begin);
+    return checked_band(dem ? "least visible height above sea" : "least visible height above ground", "m",
+                        least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress), nodata);
+  };
+  const auto summary = [&] {
+    const std::string what = codes || options.mode == "angle" ? targets.text()
+                             : counts                         ? fmt::format("{} observers", stands.size())
+                                                              : "least visible heights";
+    return fmt::format("{}; {}", what, input.curvature_text());
+  };
+  run.write({kMethod, metadata, "viridis",
+             [&](const RowBand& rows, const Progress& progress) { return std::vector{band(rows, progress)}; },
+             summary});
 }
 
 }  // namespace
@@ -479,16 +452,12 @@ void add_viewshed(Program& program) {
                           .range = {-1e30, 1e30},
                           .fallback = "255, or the largest value left; heights and angles: -9999",
                           .rules = {marked}});
-  add_raster_output_options(command, o.raster_output);
-  add_map_options(command, o);
+  add_map_coordinates_option(command, o.coordinates);
+  add_map_command(command, o, [options, &command] { run(*options, command); });
   command.footer(kFooter);
   command.example("scarp viewshed dem.tif --observer 692000,5143000,2 -o seen.tif");
   command.example("scarp viewshed dem.tif --observers towers.csv --mode count -o count.tif");
   command.example("scarp viewshed -ox 692000 -oy 5143000 -md 20000 dem.tif seen.tif");
-  command.runs([options, &command] {
-    options->typed = command.typed_values();
-    run(*options, command);
-  });
 }
 
 }  // namespace scarp::cli

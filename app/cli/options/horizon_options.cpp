@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/options/numbers.h"
 
@@ -34,16 +35,16 @@ HorizonSettings horizon_settings(const HorizonInput& horizon, const MapInput& in
 }
 
 HorizonPlane horizon_plane(MapInput& input) {
-  const double col = (input.cols() - 1) / 2.0, row = (input.rows() - 1) / 2.0;
-  return {input.field_at(col, row, HUGE_VAL), input.grid_north_at(col, row, HUGE_VAL)};
+  const dvec2 at = input.centre();
+  return {input.field_at(at.x, at.y, HUGE_VAL), input.grid_north_at(at.x, at.y, HUGE_VAL)};
 }
 
-std::vector<std::pair<std::string, std::string>> horizon_metadata(const HorizonSettings& settings) {
-  return {{"OBSERVER_HEIGHT", fmt::format("{:.10g} m above ground", settings.eye_height)},
-          {"MAX_DISTANCE",
-           std::isinf(settings.max_distance) ? "unlimited" : fmt::format("{:.10g} m", settings.max_distance)},
-          {"CURVATURE_COEFFICIENT", fmt::format("{:.10g}", settings.curvature.coefficient)},
-          {"DIAMETER", fmt::format("{:.10g} m", settings.curvature.diameter)}};
+Metadata horizon_metadata(const HorizonInput& horizon, const MapInput& input) {
+  Metadata metadata{
+      {"OBSERVER_HEIGHT", fmt::format("{:.10g} m above ground", horizon.eye_height)},
+      {"MAX_DISTANCE", horizon.max_distance ? fmt::format("{:.10g} m", *horizon.max_distance) : "unlimited"}};
+  for (auto& pair : input.curvature_metadata()) metadata.push_back(std::move(pair));
+  return metadata;
 }
 
 }  // namespace scarp::cli

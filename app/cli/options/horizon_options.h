@@ -3,9 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "app/cli/options/map_input.h"
 #include "scarp/analysis/horizon.h"
@@ -30,7 +27,10 @@ struct HorizonPlane {
 };
 HorizonPlane horizon_plane(MapInput& input);
 
-/// OBSERVER_HEIGHT, MAX_DISTANCE, CURVATURE_COEFFICIENT and DIAMETER, for metadata.
-std::vector<std::pair<std::string, std::string>> horizon_metadata(const HorizonSettings& settings);
+/// OBSERVER_HEIGHT, MAX_DISTANCE, CURVATURE_COEFFICIENT and DIAMETER.
+Metadata horizon_metadata(const HorizonInput& horizon, const MapInput& input);
+
+/// Estimated time of one horizon of one node.
+inline constexpr double kNodeAzimuth_s = 4e-8;
 
 }  // namespace scarp::cli

@@ -30,17 +30,21 @@ HeightField with_cells(const HeightField& field, double cell_x, double cell_y) {
 
 void add_map_options(Command& command, MapOptions& options) {
   add_raster_inputs(command, options.inputs, "elevation model: anything GDAL reads, .npy, .npz, .exr");
-  add_coordinates_option(command, options.coordinates,
-                         {.names = "--coords",
-                          .help = "coordinates of places",
-                          .fallback = "map; local for inputs without a georeference",
-                          .common = true});
   command.add(&options.plane_error, {.names = "--plane-error",
                                      .help = "maximum displacement of a sample on the metric plane",
                                      .unit = "cells",
                                      .range = kAboveZero});
   add_threads_option(command, options.threads);
   add_raster_options(command, options.raster);
+}
+
+void add_map_coordinates_option(Command& command, std::string& coordinates, std::vector<Rule> rules) {
+  add_coordinates_option(command, coordinates,
+                         {.names = "--coords",
+                          .help = "coordinates of places",
+                          .fallback = "map; local for inputs without a georeference",
+                          .common = true,
+                          .rules = std::move(rules)});
 }
 
 void add_curvature_option(Command& command, std::optional<double>& coefficient) {
@@ -119,6 +123,12 @@ SightCurvature MapInput::curvature() const {
 std::string MapInput::curvature_text() const {
   const SightCurvature used = curvature();
   return fmt::format("curvature coefficient {:.6g}, diameter {:.0f} m", used.coefficient, used.diameter);
+}
+
+Metadata MapInput::curvature_metadata() const {
+  const SightCurvature used = curvature();
+  return {{"CURVATURE_COEFFICIENT", fmt::format("{:.10g}", used.coefficient)},
+          {"DIAMETER", fmt::format("{:.10g} m", used.diameter)}};
 }
 
 dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {

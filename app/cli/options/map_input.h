@@ -3,8 +3,10 @@
 // Samples are read in parts (map_part.h). Positions count from the raster's north-west sample, whatever part is read.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/options/places.h"
@@ -20,6 +22,11 @@
 
 namespace scarp::cli {
 
+inline constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+
+/// Keys and texts of a raster's metadata.
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
 /// Options as typed.
 struct MapOptions {
   std::vector<std::string> inputs;
@@ -33,8 +40,10 @@ struct MapOptions {
   std::vector<std::string> typed;
 };
 
-/// Declares IN, --coords, --plane-error, --threads and the raster options.
+/// Declares IN, --plane-error, --threads and the raster options.
 void add_map_options(Command& command, MapOptions& options);
+/// Declares --coords, for subcommands with places.
+void add_map_coordinates_option(Command& command, std::string& coordinates, std::vector<Rule> rules = {});
 /// Declares --cc.
 void add_curvature_option(Command& command, std::optional<double>& coefficient);
 
@@ -51,6 +60,8 @@ class MapInput {
   int cols() const { return header_.cols; }
   int rows() const { return header_.rows; }
   RasterWindow whole() const { return {0, 0, cols(), rows()}; }
+  /// The middle between the first and the last sample, in columns and rows.
+  dvec2 centre() const { return {(cols() - 1) / 2.0, (rows() - 1) / 2.0}; }
   const Georeference& georeference() const { return header_.georeference; }
   /// The georeference of a part of the raster, with the cell lengths and azimuth of the whole.
   Georeference georeference_of(const RasterWindow& part) const;
@@ -73,6 +84,8 @@ class MapInput {
   /// The coefficient of --cc, or by default 6/7 on Earth and 1 on other bodies.
   SightCurvature curvature() const;
   std::string curvature_text() const;
+  /// CURVATURE_COEFFICIENT and DIAMETER.
+  Metadata curvature_metadata() const;
 
   /// Position in columns and rows. Messages start with `what`. Throws Error for a position outside the samples.
   dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;

@@ -16,36 +16,42 @@
 
 namespace scarp::cli {
 
-void add_raster_output_options(Command& command, RasterOutput& options) {
+void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes) {
   command.add(&options.driver, {.names = "--of",
                                 .value = "FORMAT",
                                 .help = "GDAL's short name of the output format",
                                 .choices = {"GTiff", "COG"},
                                 .note = "any raster format of gdalinfo --formats that can be written",
                                 .fallback = "by the extension",
-                                .common = true});
+                                .common = true,
+                                .excludes = excludes});
   command.add(&options.creation, {.names = "--co",
                                   .value = "NAME=VALUE",
                                   .help = "creation option of the format",
                                   .note = "repeatable",
                                   .repeats = true,
                                   .fallback = "GTiff: tiled, DEFLATE",
-                                  .common = true});
+                                  .common = true,
+                                  .excludes = excludes});
   command.add(&options.part, {.names = "--part",
                               .value = "I/N",
                               .help = "part I of N of the output, as a separate raster",
                               .note = "bands of rows, from north to south",
                               .fallback = "all",
-                              .common = true});
+                              .common = true,
+                              .excludes = excludes});
   command.add(&options.preview, {.names = "--preview",
                                  .value = "FILE",
                                  .help = "picture of the first band over the shaded model, with a legend",
                                  .files = "png jpg pdf",
                                  .fallback = "none",
-                                 .common = true});
-  command.add(&options.dry_run,
-              {.names = "--dry-run", .help = "print size, memory and time, and write nothing", .common = true});
-  command.add(&options.quiet, {.names = "--quiet", .help = "no summary", .common = true});
+                                 .common = true,
+                                 .excludes = excludes});
+  command.add(&options.dry_run, {.names = "--dry-run",
+                                 .help = "print size, memory and time, and write nothing",
+                                 .common = true,
+                                 .excludes = excludes});
+  command.add(&options.quiet, {.names = "--quiet", .help = "no summary", .common = true, .excludes = excludes});
 }
 
 void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type) {

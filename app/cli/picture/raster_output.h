@@ -23,8 +23,9 @@ struct RasterOutput {
   bool dry_run = false, quiet = false;
 };
 
-/// Declares --of, --co, --part, --preview, --dry-run and --quiet.
-void add_raster_output_options(Command& command, RasterOutput& options);
+/// Declares --of, --co, --part, --preview, --dry-run and --quiet. `excludes`: options with which the output is not a
+/// raster.
+void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes = {});
 
 /// Throws Error, before hours of work, for formats and files that cannot be written, formats that cannot store samples
 /// of this type ("Float32"), and for files that are inputs. Sets the driver.
