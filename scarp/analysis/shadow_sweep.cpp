@@ -10,6 +10,7 @@
 #include "scarp/analysis/sight_rays.h"
 #include "scarp/analysis/sun_edges.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp {
 namespace {
@@ -219,7 +220,7 @@ SweepStatistics sweep_shadow(const SightGround& ground, const SunRay& ray, Shade
   SweepStatistics all;
   std::mutex mutex;
   field.visit([&]<class T>(const SampleGrid<T>& grid) {
-    mark_self_shaded(grid, field, ray, codes, progress);
+    mark_self_shaded(grid, field, ray, codes, progress_part(progress, 0, 2));
     // All u of the field.
     const std::int64_t rings = sun.frame.rings(), last_side = (sun.frame.sides() - 1) * SunRay::kUnit;
     const std::int64_t low = std::min(sun.across, rings * sun.across);
@@ -236,7 +237,7 @@ SweepStatistics sweep_shadow(const SightGround& ground, const SunRay& ray, Shade
             all.add(counts);
           }
         },
-        progress);
+        progress_part(progress, 1, 2));
   });
   return all;
 }

@@ -11,6 +11,7 @@
 #include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/progress_part.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
@@ -56,10 +57,12 @@ struct SkyView::State {
 SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths,
                  std::vector<SkyMeasure> measures, const Progress& progress) {
   require_setting("sky view", azimuths >= 1 && azimuths <= 3600, "number of azimuths", azimuths, "1 to 3600");
-  auto state = std::make_unique<State>(State{Horizons(field, settings, progress), {}, std::move(measures), {}});
+  const bool inverted = std::any_of(measures.begin(), measures.end(), is_inverted);
+  const double parts = inverted ? 2 : 1;
+  auto state = std::make_unique<State>(
+      State{Horizons(field, settings, progress_part(progress, 0, parts)), {}, std::move(measures), {}});
   for (int i = 0; i < azimuths; ++i) state->azimuths.push_back(2 * std::numbers::pi * i / azimuths);
-  if (std::any_of(state->measures.begin(), state->measures.end(), is_inverted))
-    state->inverted.emplace(field, settings.engine, -1, 0.0f, progress);
+  if (inverted) state->inverted.emplace(field, settings.engine, -1, 0.0f, progress_part(progress, 1, parts));
   state_ = std::move(state);
 }
 
@@ -86,7 +89,7 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
       }
     });
   }
-  const auto add = [&](const HorizonRelief& relief, bool inverted) {
+  const auto add = [&](const HorizonRelief& relief, bool inverted, const Progress& of_pass) {
     const auto add_block = [&](const HorizonBlock& block) {
       const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
       const double azimuth = state_->azimuths[block.azimuth];
@@ -108,10 +111,12 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
         }
       }
     };
-    for_each_horizon(state, relief, state_->azimuths, band, add_block, progress);
+    for_each_horizon(state, relief, state_->azimuths, band, add_block, of_pass);
   };
-  if (!std::all_of(state_->measures.begin(), state_->measures.end(), is_inverted)) add(state.relief, false);
-  if (state_->inverted) add(*state_->inverted, true);
+  const bool upright = !std::all_of(state_->measures.begin(), state_->measures.end(), is_inverted);
+  const double passes = upright && state_->inverted ? 2 : 1;
+  if (upright) add(state.relief, false, progress_part(progress, 0, passes));
+  if (state_->inverted) add(*state_->inverted, true, progress_part(progress, passes - 1, passes));
   const float share = 1 / static_cast<float>(state_->azimuths.size());
   for (auto& map : maps) {
     for (float& value : map) value *= share;

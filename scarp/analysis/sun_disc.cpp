@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/analysis/sun_disc.h"
+#include "scarp/base/progress_part.h"
 
 #include <array>
 #include <cmath>
@@ -32,10 +33,13 @@ std::span<const SunStrip> sun_strips() {
 std::vector<float> lit_share(const SunGround& ground, const SunDirection& sun, const RowBand& band,
                              const Progress& progress) {
   std::vector<float> lit(static_cast<std::size_t>(ground.field().cols()) * static_cast<std::size_t>(band.rows()), 0);
-  for (const SunStrip& strip : sun_strips()) {
+  const auto strips = sun_strips();
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    const SunStrip& strip = strips[i];
     const double altitude = sun.altitude + strip.rise;
     if (altitude <= 0 || altitude > std::numbers::pi / 2) continue;
-    const auto codes = ground.rows({sun.azimuth, altitude}, band, progress);
+    const auto codes = ground.rows({sun.azimuth, altitude}, band,
+                                   progress_part(progress, static_cast<double>(i), static_cast<double>(strips.size())));
     for (std::size_t k = 0; k < lit.size(); ++k) {
       if (codes[k] == Shade::lit) lit[k] += strip.share;
       if (codes[k] == Shade::hole) lit[k] = kNoShare;

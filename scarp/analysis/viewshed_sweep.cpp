@@ -9,6 +9,7 @@
 
 #include "scarp/analysis/viewshed_sector.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp {
 namespace {
@@ -69,7 +70,7 @@ SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progres
   if (!view.has_limits() && field.nodata_count() == 0) {
     std::fill(codes, codes + static_cast<std::ptrdiff_t>(field.cols()) * field.rows(), Seen::hidden);
   } else {
-    for_each_node(view, progress, [&](Node node, std::size_t i, double lowered) {
+    for_each_node(view, progress_part(progress, 0, 2), [&](Node node, std::size_t i, double lowered) {
       codes[i] = lowered == -std::numeric_limits<double>::infinity() ? Seen::hole
                  : view.in_range(node, view.target(lowered))         ? Seen::hidden
                                                                      : Seen::out_of_range;
@@ -79,7 +80,7 @@ SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progres
   if (maxima == nullptr) maxima = &own_maxima.emplace(field);
   Seen& own = codes[static_cast<std::ptrdiff_t>(view.observer().row) * field.cols() + view.observer().col];
   if (own == Seen::hidden) own = Seen::visible;
-  return sweep(view, {.codes = codes, .maxima = maxima}, progress);
+  return sweep(view, {.codes = codes, .maxima = maxima}, progress_part(progress, 1, 2));
 }
 
 SweepStatistics sweep_count(const Viewpoint& view, std::uint16_t* counts, const BlockMaxima& maxima) {
@@ -91,10 +92,10 @@ SweepStatistics sweep_count(const Viewpoint& view, std::uint16_t* counts, const 
 
 SweepStatistics sweep_least_visible(const Viewpoint& view, double* least, const Progress& progress) {
   constexpr double kNever = -std::numeric_limits<double>::infinity();
-  for_each_node(view, progress, [&](Node node, std::size_t i, double lowered) {
+  for_each_node(view, progress_part(progress, 0, 2), [&](Node node, std::size_t i, double lowered) {
     least[i] = lowered == kNever || !view.in_range(node, view.target(lowered)) ? kNan : kNever;
   });
-  return sweep(view, {.least = least}, progress);
+  return sweep(view, {.least = least}, progress_part(progress, 1, 2));
 }
 
 }  // namespace scarp

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "scarp/base/csv_text.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/output/little_endian.h"
@@ -70,20 +71,6 @@ std::span<const std::string_view> words_of(std::size_t column) {
   return {};
 }
 
-// RFC 4180: quotes text that contains a separator, a quote or a line break.
-void append_quoted(std::string& out, std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    out += text;
-    return;
-  }
-  out += '"';
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  out += '"';
-}
-
 std::string npy_header(std::span<const std::string_view> names, std::int64_t rows) {
   std::vector<NpyColumn> columns;
   for (const std::string_view name : names) columns.push_back({name});
@@ -128,7 +115,7 @@ void HitTable::put_header() {
   if (npy_) return file_->add(npy_header(columns, rows_));
   std::string text;
   for (const std::string& name : carried_.names) {
-    append_quoted(text, name);
+    append_csv_text(text, name);
     text += ',';
   }
   file_->add(text + fmt::format("{}\n", fmt::join(columns, ",")));
@@ -140,7 +127,7 @@ void HitTable::put(std::int64_t ray, std::span<const double> numbers) {
     for (const double number : numbers) append_little_endian(text_, number);
   } else {
     for (std::size_t i = 0; i < carried_.names.size(); ++i) {
-      append_quoted(text_, carried_.at(static_cast<std::size_t>(ray), i));
+      append_csv_text(text_, carried_.at(static_cast<std::size_t>(ray), i));
       text_ += ',';
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {

@@ -3,14 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "analysis/map_fields.h"
 #include "analysis/slow_judge.h"
 #include "cases.h"
 #include "scarp/analysis/crossing_sign.h"
+#include "scarp/analysis/map_part.h"
+#include "scarp/analysis/sky_view.h"
+#include "scarp/analysis/sun_disc.h"
 #include "scarp/base/error.h"
 
 namespace scarp::test {
@@ -124,6 +129,45 @@ TEST(Maps, ShadowsMatchTheJudge) {
 }
 
 // Terms that the filter cannot decide.
+// Passes over the field are parts of one task.
+TEST(Maps, ProgressNeverDecreases) {
+  std::vector<float> heights;
+  for (int i = 0; i < 200 * 200; ++i) heights.push_back(static_cast<float>(i * 7919 % 31));
+  const HeightField field = HeightField::own(std::move(heights), 200, 200);
+  const SunDirection sun{1, 0.3};
+  ViewshedSettings near;
+  near.max_distance = 90;
+  const std::pair<const char*, std::function<void(const Progress&)>> maps[] = {
+      {"viewshed",
+       [&](const Progress& progress) {
+         viewshed(field, {9, 9}, near, progress);
+       }},
+      {"least visible",
+       [&](const Progress& progress) {
+         least_visible(field, {9, 9}, near, progress);
+       }},
+      {"shadow", [&](const Progress& progress) { shadow(field, sun, progress); }},
+      {"lit share",
+       [&](const Progress& progress) {
+         lit_share(SunGround(field), sun, RowBand{0, field.rows()}, progress);
+       }},
+      {"heights of a sky view",
+       [&](const Progress& progress) { SkyView(field, {}, 4, {SkyMeasure::negative_openness}, progress); }},
+      {"sky view", [&](const Progress& progress) {
+         SkyView(field, {}, 4, {SkyMeasure::sky_fraction, SkyMeasure::negative_openness})
+             .rows(0, field.rows(), progress);
+       }}};
+  for (const auto& [name, map] : maps) {
+    double last = 0;
+    map([&](double share) {
+      EXPECT_GE(share, last) << name;
+      last = share;
+      return true;
+    });
+    EXPECT_EQ(last, 1) << name;
+  }
+}
+
 TEST(CrossingSign, IsExact) {
   const double tiny = 0x1p-40;
   EXPECT_EQ(sign_of({1, 3, 1, 5, 1, 6, 1, 2}), 0);

@@ -14,6 +14,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/executor.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp {
 namespace {
@@ -86,6 +87,22 @@ TEST(ParallelFor, ProgressNeverDecreases) {
         last = share;
         return true;
       });
+}
+
+TEST(ProgressPart, PartsDivideTheTask) {
+  double share = 0;
+  bool goes_on = true;
+  const Progress all = [&](double now) {
+    share = now;
+    return goes_on;
+  };
+  EXPECT_TRUE(progress_part(all, 1, 4)(0.5));
+  EXPECT_EQ(share, 0.375);
+  EXPECT_TRUE(progress_part(progress_part(all, 3, 4), 1, 2)(1));
+  EXPECT_EQ(share, 1);
+  goes_on = false;
+  EXPECT_FALSE(progress_part(all, 0, 2)(0.5));
+  EXPECT_FALSE(progress_part({}, 0, 2)) << "no reports without a callback";
 }
 
 TEST(ParallelFor, ThrowsInterruptedWhenProgressReturnsFalse) {

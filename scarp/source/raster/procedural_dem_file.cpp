@@ -10,6 +10,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/progress_part.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/source/gdal_errors.h"
 
@@ -89,14 +90,13 @@ void write_computed_dem(const std::string& path, const ComputedDem& settings, co
                            static_cast<std::size_t>(std::min(kBlock, settings.rows)));
   for (int s = 0; s < strips; ++s) {
     const int first = s * kBlock, rows = std::min(kBlock, settings.rows - first);
-    const Progress of_strip = !progress ? Progress() : [&](double share) { return progress((s + share) / strips); };
     parallel_for(
         rows, kRowsPerPiece,
         [&](std::int64_t begin, std::int64_t end) {
           settings.fill(first + static_cast<int>(begin), static_cast<int>(end - begin),
                         strip.data() + begin * settings.cols);
         },
-        of_strip);
+        progress_part(progress, s, strips));
     const CPLErr result = band.RasterIO(GF_Write, 0, first, settings.cols, rows, strip.data(), settings.cols, rows,
                                         GDT_Float32, 0, 0, nullptr);
     if (result != CE_None) refuse(path, session);
