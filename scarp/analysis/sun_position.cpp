@@ -5,7 +5,9 @@
 #include <erfam.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 
 #include "scarp/base/error.h"
@@ -19,30 +21,43 @@ constexpr int kFirstYear = 1900, kLastYear = 2100;
   throw Error(fmt::format("time '{}': {}", text, what));
 }
 
-// Minutes east of Greenwich of "Z", "+HH", "+HHMM" or "+HH:MM".
-int offset_from(const std::string& text, const char* rest) {
-  if (std::string_view(rest) == "Z" || std::string_view(rest) == "z") return 0;
-  int hours = 0, minutes = 0, used = 0;
-  const int sign = *rest == '-' ? -1 : 1;
-  const bool signs = *rest == '+' || *rest == '-';
-  const std::string_view digits = signs ? rest + 1 : "";
-  const bool good = (digits.size() == 2 && std::sscanf(digits.data(), "%2d%n", &hours, &used) == 1) ||
-                    (digits.size() == 4 && std::sscanf(digits.data(), "%2d%2d%n", &hours, &minutes, &used) == 2) ||
-                    (digits.size() == 5 && std::sscanf(digits.data(), "%2d:%2d%n", &hours, &minutes, &used) == 2);
-  if (!good || static_cast<std::size_t>(used) != digits.size() || hours > 14 || minutes > 59 || hours < 0 ||
-      minutes < 0)
-    refuse(text, "expected a UTC offset at its end, for example 2026-06-21T09:00+02:00 or ...T07:00Z");
-  return sign * (60 * hours + minutes);
+// Reads N numbers from text in the form of a pattern, whose digits stand for those of the numbers: "00:11" has two.
+// Returns nullopt for text in another form.
+template <std::size_t N>
+std::optional<std::array<int, N>> numbers_in(std::string_view text, std::string_view pattern) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.size() != pattern.size()) return std::nullopt;
+  std::array<int, N> numbers{};
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (is_digit(pattern[i]) ? !is_digit(text[i]) : text[i] != pattern[i]) return std::nullopt;
+    if (!is_digit(pattern[i])) continue;
+    int& number = numbers[static_cast<std::size_t>(pattern[i] - '0')];
+    number = 10 * number + (text[i] - '0');
+  }
+  return numbers;
 }
 
 }  // namespace
 
+std::optional<int> parse_utc_offset(std::string_view text) {
+  if (text == "Z" || text == "z") return 0;
+  if (text.empty() || (text.front() != '+' && text.front() != '-')) return std::nullopt;
+  const std::string_view digits = text.substr(1);
+  std::optional<std::array<int, 2>> numbers;
+  for (const std::string_view pattern : {"00", "0011", "00:11"})
+    if (!numbers) numbers = numbers_in<2>(digits, pattern);
+  if (!numbers || (*numbers)[0] > 14 || (*numbers)[1] > 59) return std::nullopt;
+  return (text.front() == '-' ? -1 : 1) * (60 * (*numbers)[0] + (*numbers)[1]);
+}
+
 UtcTime parse_time(const std::string& text) {
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[Tt ]%2d:%2d%n", &year, &month, &day, &hour, &minute, &used) != 5 ||
-      used != 16)
-    refuse(text, "expected YYYY-MM-DDTHH:MM[:SS] and an offset, for example 2026-06-21T09:00+02:00");
-  const char* rest = text.c_str() + used;
+  constexpr std::size_t kDateAndTime = 16;  // characters
+  std::string start = text.substr(0, kDateAndTime);
+  if (start.size() > 10 && (start[10] == 't' || start[10] == ' ')) start[10] = 'T';
+  const auto numbers = numbers_in<5>(start, "0000-11-22T33:44");
+  if (!numbers) refuse(text, "expected YYYY-MM-DDTHH:MM[:SS] and an offset, for example 2026-06-21T09:00+02:00");
+  const auto [year, month, day, hour, minute] = *numbers;
+  const char* rest = text.c_str() + kDateAndTime;
   double seconds = 0;
   if (*rest == ':') {
     int digits = 0;
@@ -50,13 +65,14 @@ UtcTime parse_time(const std::string& text) {
       refuse(text, "expected seconds from 0 to 60");
     rest += digits;
   }
-  const int offset = offset_from(text, rest);
+  const std::optional<int> offset = parse_utc_offset(rest);
+  if (!offset) refuse(text, "expected a UTC offset at its end, for example 2026-06-21T09:00+02:00 or ...T07:00Z");
   if (year < kFirstYear || year > kLastYear) refuse(text, fmt::format("year outside {} to {}", kFirstYear, kLastYear));
   UtcTime time;
   if (eraDtf2d("UTC", year, month, day, hour, minute, seconds, &time.day, &time.fraction) < 0)
     refuse(text, "no such date or time");
   constexpr double kMinutesPerDay = 1440;
-  time.fraction -= offset / kMinutesPerDay;
+  time.fraction -= *offset / kMinutesPerDay;
   return time;
 }
 

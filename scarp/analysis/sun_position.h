@@ -6,7 +6,9 @@
 // refraction, except for UT1 - UTC, which is taken as 0: at most 0.9 s, 0.004 degree.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace scarp {
 
@@ -18,6 +20,10 @@ struct UtcTime {
 /// Parses "2026-06-21T09:00+02:00": ISO 8601 with date, time and offset (Z, +HH, +HH:MM); seconds optional, with
 /// fractions. Throws Error for any other form, a date that does not exist, or a year outside 1900..2100.
 UtcTime parse_time(const std::string& text);
+
+/// Returns the minutes east of Greenwich of a UTC offset: Z, +HH, +HHMM or +HH:MM, at most 14 hours; nullopt for any
+/// other text.
+std::optional<int> parse_utc_offset(std::string_view text);
 
 /// A position on Earth, WGS 84.
 struct EarthPlace {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "scarp/base/error.h"
 
@@ -47,8 +49,18 @@ TEST(SunPosition, AppliesTimeZoneOffsets) {
 TEST(SunPosition, RejectsOtherTimeFormats) {
   for (const char* text :
        {"", "2026-06-21", "2026-06-21T09:00", "2026-02-30T09:00Z", "2026-06-21T25:00Z", "21.6.2026",
-        "2026-06-21T09:00+2", "2026-06-21T09:00+02:00x", "1492-06-21T09:00Z", "2026-06-21T09:00:99Z"})
+        "2026-06-21T09:00+2", "2026- 6-21T09:00Z", "2026-06-21T 9:00Z", " 026-06-21T09:00Z", "2026-+6-21T09:00Z",
+        "2026-06-21T09:00+ 4: 5", "2026-06-21T09:00: 5Z", "2026-06-21T09:00+0200Z", "2026-06-21T09:00+02:00x",
+        "1492-06-21T09:00Z", "2026-06-21T09:00:99Z"})
     EXPECT_THROW(parse_time(text), Error) << text;
+}
+
+TEST(SunPosition, ParsesUtcOffsets) {
+  for (const auto& [text, minutes] :
+       {std::pair("Z", 0), {"+01:00", 60}, {"-04:30", -270}, {"-0430", -270}, {"+14", 840}})
+    EXPECT_EQ(parse_utc_offset(text), minutes) << text;
+  for (const char* text : {"", "5", "+5", "+15:00", "+05:60", "+ 4: 5", "+-4:05", "+4:05", "+04:05 ", "04:05"})
+    EXPECT_EQ(parse_utc_offset(text), std::nullopt) << text;
 }
 
 }  // namespace
