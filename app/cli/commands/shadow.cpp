@@ -24,6 +24,7 @@
 #include "scarp/source/raster/node_places.h"
 #endif
 #include "scarp/base/error.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp::cli {
 namespace {
@@ -229,9 +230,12 @@ void run(ShadowOptions options, const Command& command) {
     const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
     const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
     std::vector<ComputedBand> computed;
-    for (const Sun& sun : suns)
-      computed.push_back(options.fraction ? band_of(sun, shares_of(ground, sun, rows, progress), pixels)
-                                          : band_of(sun, shades_of(ground, sun, rows, progress), pixels));
+    for (std::size_t i = 0; i < suns.size(); ++i) {
+      const Sun& sun = suns[i];
+      const Progress of_sun = progress_part(progress, static_cast<double>(i), bands);
+      computed.push_back(options.fraction ? band_of(sun, shares_of(ground, sun, rows, of_sun), pixels)
+                                          : band_of(sun, shades_of(ground, sun, rows, of_sun), pixels));
+    }
     return computed;
   };
   run.write({method_of(options), {{"SUN", places}}, "grey", compute, [&] {

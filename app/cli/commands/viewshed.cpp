@@ -24,6 +24,7 @@
 #include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp::cli {
 namespace {
@@ -280,8 +281,11 @@ std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDa
                                 const Progress& progress) {
   std::vector<float> pixels;
   if (rows.rows() == 0) return pixels;
-  for (const Observer& one : observers) {
-    const auto least = least_visible_rows(one.field, one.node, one.settings, rows, progress);
+  const auto count = static_cast<double>(observers.size());
+  for (std::size_t k = 0; k < observers.size(); ++k) {
+    const Observer& one = observers[k];
+    const auto least = least_visible_rows(one.field, one.node, one.settings, rows,
+                                          progress_part(progress, static_cast<double>(k), count));
     const Viewpoint view(one.field, one.node, one.settings);
     if (pixels.empty()) pixels.assign(least.size(), kNothing);
     const int cols = one.field.cols();
@@ -302,8 +306,11 @@ std::vector<float> angle_pixels(const std::vector<Observer>& observers, const Ro
   std::vector<float> pixels;
   std::vector<Seen> best;
   if (rows.rows() == 0) return pixels;
-  for (const Observer& one : observers) {
-    const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
+  const auto count = static_cast<double>(observers.size());
+  for (std::size_t k = 0; k < observers.size(); ++k) {
+    const Observer& one = observers[k];
+    const auto codes =
+        viewshed_rows(one.field, one.node, one.settings, rows, progress_part(progress, static_cast<double>(k), count));
     const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
     if (pixels.empty()) pixels.assign(angles.size(), kNothing), best.assign(codes.size(), Seen::out_of_range);
     for (std::size_t i = 0; i < angles.size(); ++i) {
