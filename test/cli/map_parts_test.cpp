@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `los`, `profile` and `viewshed` read only the part of a raster that they need. Lines of sight and viewsheds are those
-// of the whole raster, which a second question in the same run forces them to read; profiles follow the samples.
+// `los`, `profile`, `viewshed` and `horizon` at points read only the part of a raster that they need. Lines of sight,
+// viewsheds and horizons are those of the whole raster, which a second question in the same run forces them to read;
+// profiles follow the samples.
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -170,6 +171,43 @@ TEST_F(MapParts, LinesOfSightAreThoseOfTheWholeRaster) {
       EXPECT_GT(blocked, 0);
       EXPECT_LT(blocked, 8);
     }
+}
+
+TEST_F(MapParts, HorizonsAreThoseOfTheWholeRaster) {
+  constexpr std::size_t kPoints = 8, kInTurn = 3, kAzimuths = 7;
+  for (const std::string& dem : {utm_, degrees_}) {
+    const auto horizons_of = [&](const std::string& table) {
+      return run({"horizon", dem, "--azimuths", fmt::format("{}", kAzimuths), "--max-distance", "400", "--plane-error",
+                  "9", "--points", scratch_.write("points.csv", "x,y,z\n" + table)});
+    };
+    std::vector<std::string> points;
+    std::vector<Row> alone;
+    for (int i = 0; points.size() < kPoints; ++i) {
+      // Corners first, so that the first points are far apart.
+      const dvec2 at = i == 0 ? dvec2(0, 0) : i == 1 ? dvec2(kModelCols - 1, kModelRows - 1) : position(i);
+      const dvec2 typed = place(dem, at.x, at.y);
+      const std::string row = fmt::format("{:.17g},{:.17g},{}\n", typed.x, typed.y, i);
+      const Result result = horizons_of(row);
+      if (result.status != 0) continue;  // over a hole
+      points.push_back(row);
+      for (Row& one : rows_of(result.out)) {
+        one["point"] = fmt::format("{}", points.size());
+        alone.push_back(one);
+      }
+    }
+    const auto first = [&](std::size_t count) {
+      std::string table;
+      for (std::size_t i = 0; i < count; ++i) table += points[i];
+      const Result result = horizons_of(table);
+      EXPECT_EQ(result.status, 0) << result.err;
+      return rows_of(result.out);
+    };
+    // Eight points are read as one part, three one after the other.
+    EXPECT_EQ(first(kPoints), alone) << dem;
+    EXPECT_EQ(first(kInTurn), std::vector<Row>(alone.begin(), alone.begin() + kInTurn * kAzimuths)) << dem;
+    EXPECT_GT(std::count_if(alone.begin(), alone.end(), [](const Row& row) { return !row.at("distance").empty(); }),
+              20);
+  }
 }
 
 TEST_F(MapParts, ProfilesFollowTheSamples) {

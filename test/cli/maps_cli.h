@@ -35,6 +35,17 @@ class MapsCli : public testing::Test {
   std::string path(const std::string& name) const { return scratch_.path(name); }
   Names on_dem(const std::string& command) const { return {command, dem_, "--crs", "EPSG:32633"}; }
 
+  /// Each map subcommand, with the words for a map of the model but the output.
+  std::vector<Names> maps() const {
+    std::vector<Names> all{on_dem("viewshed") + Names{"--observer", "500105,5000105,2"},
+                           on_dem("shadow") + Names{"--sun", "90,45"}, on_dem("horizon") + Names{"--azimuths", "3"},
+                           on_dem("skyview") + Names{"--azimuths", "9"}};
+#ifdef SCARP_ERFA
+    all.push_back(on_dem("sunhours") + Names{"--date", "2026-06-21", "--step", "120"});
+#endif
+    return all;
+  }
+
   void expect_refused(const Names& arguments, const std::string& what) const {
     const auto before = scratch_.files();
     const auto result = run(arguments);

@@ -148,6 +148,17 @@ TEST_F(MapsCli, AnglesAreMeasuredFromTheHorizontal) {
   EXPECT_NEAR(one.at(20, 9), std::atan(48 / 100.) * 180 / 3.14159265, 1e-2);
   EXPECT_EQ(one.at(25, 9), -9999);
   EXPECT_EQ(one.at(0, 0), -9999);
+  // The share is that of the targets within the limits, as in --mode visible.
+  const auto share = [&](const Names& more) {
+    const auto result = run(on_dem("viewshed") +
+                            Names{"--observer", "500105,5000105,2", "--observer", "500255,5000055,9", "--max-distance",
+                                  "70", "-o", path("share.tif")} +
+                            more);
+    const auto end = result.out.find(" % visible"), begin = result.out.rfind(' ', end - 1);
+    return result.out.substr(begin + 1, end - begin - 1);
+  };
+  EXPECT_EQ(share({"--mode", "angle"}), share({}));
+  EXPECT_NE(share({}), "100");
   // The largest angle counts: the higher of the two observers sees the ground at a smaller one.
   ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2", "--observer", "500105,5000105,9"}).status, 0);
   EXPECT_EQ(pixels_of(*open(path("angle.tif"))).at(15, 9), one.at(15, 9));
@@ -205,28 +216,35 @@ TEST_F(MapsCli, PartsMatchTheWhole) {
       Names{"shadow", "--sun", "160,20", "--sun", "280,3"},
       Names{"shadow", "--sun", "70,10", "--fraction"},
       Names{"horizon", "--azimuths", "3", "--first-azimuth", "20", "--distance"},
+      Names{"horizon", "--azimuths", "3", "--distance", "--max-distance", "25"},
       Names{"skyview", "--measure", "sky-view-factor", "--measure", "negative-openness", "--azimuths", "9"},
+      Names{"skyview", "--measure", "sky-view-factor", "--azimuths", "9", "--max-distance", "25"},
+#ifdef SCARP_ERFA
+      Names{"sunhours", "--date", "2026-06-21", "--step", "120", "--first-last"},
+      Names{"sunhours", "--date", "2026-06-21", "--step", "120", "--refraction", "--max-distance", "25"},
+#endif
   };
   for (const Names& map : maps) {
     const Names words = map + Names{dem_, "--crs", "EPSG:32633", "-o"};
     ASSERT_EQ(run(words + Names{path("whole.tif")}).status, 0);
     const auto whole = open(path("whole.tif"));
-    for (int band = 1; band <= whole->GetRasterCount(); ++band) {
-      std::vector<float> together;
-      for (int i = 1; i <= 3; ++i) {
-        const auto result = run(words + Names{path("part.tif"), "--part", fmt::format("{}/3", i)});
-        ASSERT_EQ(result.status, 0) << result.err;
-        const auto part = open(path("part.tif"));
-        double place[6];
-        ASSERT_EQ(part->GetGeoTransform(place), CE_None);
-        EXPECT_EQ(place[0], 500000);
-        EXPECT_EQ(place[3], 5000200 - 10. * static_cast<double>(together.size()) / 30);
-        const auto pixels = pixels_of(*part, band);
+    std::vector<std::vector<float>> together(static_cast<std::size_t>(whole->GetRasterCount()));
+    for (int i = 1; i <= 3; ++i) {
+      const auto result = run(words + Names{path("part.tif"), "--part", fmt::format("{}/3", i)});
+      ASSERT_EQ(result.status, 0) << result.err;
+      const auto part = open(path("part.tif"));
+      double place[6];
+      ASSERT_EQ(part->GetGeoTransform(place), CE_None);
+      EXPECT_EQ(place[0], 500000);
+      EXPECT_EQ(place[3], 5000200 - 10. * static_cast<double>(together[0].size()) / 30);
+      for (std::size_t band = 0; band < together.size(); ++band) {
+        const auto pixels = pixels_of(*part, static_cast<int>(band) + 1);
         EXPECT_EQ(pixels.cols, 30);
-        together.insert(together.end(), pixels.samples.begin(), pixels.samples.end());
+        together[band].insert(together[band].end(), pixels.samples.begin(), pixels.samples.end());
       }
-      EXPECT_EQ(pixels_of(*whole, band).samples, together) << map[0];
     }
+    for (std::size_t band = 0; band < together.size(); ++band)
+      EXPECT_EQ(pixels_of(*whole, static_cast<int>(band) + 1).samples, together[band]) << map[0];
   }
   const Names sun = on_dem("shadow") + Names{"--sun", "160,20", "-o", path("x.tif"), "--part"};
   expect_refused(sun + Names{"0/3"}, "--part '0/3': expected I/N");
@@ -372,6 +390,12 @@ TEST_F(MapsCli, PreviewOverlaysTheMap) {
   EXPECT_GT(share(greens), 0.3);
   EXPECT_GT(share(greys), 0.02);
   EXPECT_GT(share(whites), 0.05);  // the margin with the legend
+  for (const Names& map : maps()) {
+    if (map[0] == "viewshed") continue;  // above
+    EXPECT_EQ(run(map + Names{"-o", path("v.tif"), "--preview", path("v.png")}).status, 0) << map[0];
+    EXPECT_EQ(text_of(path("v.png")).substr(1, 3), "PNG") << map[0];
+    fs::remove(path("v.png"));
+  }
   // A map of heights has a ramp; this one covers a part of the field.
   EXPECT_EQ(run(view + Names{"--mode", "ground", "--part", "1/2", "--preview", path("g.pdf")}).status, 0);
   EXPECT_EQ(text_of(path("g.pdf")).substr(0, 4), "%PDF");
@@ -471,13 +495,11 @@ TEST_F(MapsCli, NeverOverwritesInputs) {
   const std::string tower = scratch_.write("tower.csv", "x,y\n500105,5000105\n");
   fs::create_hard_link(dem_, path("link.tif"));
   fs::create_symlink(dem_, path("link.png"));
-  const Names one{"--observer", "500105,5000105"};
-  expect_refused(on_dem("viewshed") + one + Names{"-o", path("link.tif")}, "is the input");
-  expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("link.tif")}, "is the input");
+  for (const Names& map : maps()) expect_refused(map + Names{"-o", path("link.tif")}, "is the input");
   expect_refused(on_dem("viewshed") + Names{"--observers", tower, "--of", "GTiff", "-o", tower}, "is the input");
   expect_refused(on_dem("los") + Names{"--lines", lines_file, "-o", lines_file}, "is the input");
 #ifdef SCARP_CAIRO
-  expect_refused(on_dem("viewshed") + one + Names{"-o", path("x.tif"), "--preview", path("link.png")}, "is the input");
+  expect_refused(maps()[0] + Names{"-o", path("x.tif"), "--preview", path("link.png")}, "is the input");
   expect_refused(
       on_dem("profile") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "-o", path("link.png")},
       "is the input");
@@ -500,7 +522,7 @@ TEST_F(MapsCli, FullDiskLeavesNoOutput) {
   const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105"};
   const Names ends{"--from", "500105,5000105", "--to", "500285,5000105", "--to", "500285,5000055"};
   const Names line{"--from", "500105,5000105", "--to", "500285,5000105"};
-  expect_full(view + Names{"-o", path("x.tif")}, kFew, "x.tif");
+  for (const Names& map : maps()) expect_full(map + Names{"-o", path("x.tif")}, kFew, "x.tif");
   expect_full(view + Names{"--mode", "ground", "--of", "COG", "-o", path("x.tif")}, kFew, "x.tif");
   expect_full(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.img")}, kFew, "x.img");
   expect_full(on_dem("los") + ends + Names{"-o", path("x.geojson")}, kFew, "x.geojson");
@@ -528,9 +550,19 @@ TEST_F(MapsCli, InterruptLeavesNoOutput) {
   for (int i = 0; i < 40000; ++i) table += fmt::format("{},{}\n", 500005 + i % 200 * 10, 5000005 + i / 200 * 10);
   const std::string dem = scratch_.write("large.asc", text), towers = scratch_.write("towers.csv", table);
   const auto before = scratch_.files();
-  for (const char* mode : {"count", "ground", "angle"}) {
-    Program program({"viewshed", dem, "--crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o", path("x.tif"),
-                     "--preview", path("x.png")});
+  Names suns{"shadow", "--fraction"};
+  for (int i = 0; i < 200; ++i) suns = suns + Names{"--sun", fmt::format("{},20", i)};
+  const std::vector<Names> long_maps{{"viewshed", "--observers", towers, "--mode", "count"},
+                                     {"viewshed", "--observers", towers, "--mode", "ground"},
+                                     {"viewshed", "--observers", towers, "--mode", "angle"},
+                                     suns,
+                                     {"horizon", "--azimuths", "1000"},
+#ifdef SCARP_ERFA
+                                     {"sunhours", "--date", "2026-01-01", "--to", "2026-12-31", "--step", "1"},
+#endif
+                                     {"skyview", "--azimuths", "3600"}};
+  for (const Names& map : long_maps) {
+    Program program(map + Names{dem, "--crs", "EPSG:32633", "-o", path("x.tif"), "--preview", path("x.png")});
 #ifdef SCARP_CAIRO
     // The picture's file is reserved when the work starts.
     for (int i = 0; i < 2000 && scratch_.files() == before; ++i)
@@ -549,10 +581,12 @@ TEST_F(MapsCli, InterruptLeavesNoOutput) {
 }
 
 TEST_F(MapsCli, DryRunWritesNothing) {
-  const auto result = run(on_dem("viewshed") + Names{"--observer", "500105,5000105", "-o", path("x.tif"), "--dry-run"});
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("30 x 20"), std::string::npos);
-  EXPECT_FALSE(fs::exists(path("x.tif")));
+  for (const Names& map : maps()) {
+    const auto result = run(map + Names{"-o", path("x.tif"), "--dry-run"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("30 x 20"), std::string::npos) << result.out;
+    EXPECT_EQ(scratch_.files(), Names{"dem.asc"});
+  }
 }
 
 // A degree has a different length in the north of a large raster than in its south.

@@ -200,7 +200,7 @@ TEST_F(MarchSamples, SectionDrawsVisitedVoxelsAndEmptyBodies) {
       {{"--march", "voxel-cubes"}, "--march has no effect without --ray"},
       {{ray, "--at", "3"}, "--at"},
       {{ray, "--radii", "cubes"}, "--ray"},
-      {{ray, "--outlines"}, "--outlines has no effect without radii"}};
+      {{ray, "--outlines"}, "--outlines cannot be combined with --ray"}};
   for (const auto& [arguments, fragment] : bad) test::expect_refused(draw(arguments), fragment);
 }
 

@@ -446,7 +446,7 @@ void add_cast(Program& program) {
   add_scan_options(command, o.scan);
   add_output_option(command, o.output,
                     "table of hits: .csv or .npy; points of a scanner also .ply or .las; -: CSV to standard output",
-                    "csv npy ply las", false);
+                    "csv npy ply las", "standard output");
   add_coordinates_option(command, o.coordinates,
                          {.names = "--coords",
                           .help = "coordinates of rays, scanners, hits and --mesh-at",

@@ -19,6 +19,7 @@
 #include "app/cli/progress.h"
 #include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
+#include "scarp/base/csv_text.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
@@ -53,19 +54,13 @@ struct Answer {
   LineOfSight line;
 };
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + '"';
-}
-
 std::string csv_of(const MapInput& input, const PlaceTable& table, const std::vector<Answer>& answers) {
   std::string out;
-  for (const std::string& name : table.carried.names) out += quoted(name) + ",";
+  for (const std::string& name : table.carried.names) append_csv_text(out, name), out += ',';
   out += "line,visible,distance,eye,target,clearance,clearance_at,block_x,block_y,block_height,block_at\n";
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    for (std::size_t k = 0; k < table.carried.names.size(); ++k) out += quoted(table.carried.at(i, k)) + ",";
+    for (std::size_t k = 0; k < table.carried.names.size(); ++k)
+      append_csv_text(out, table.carried.at(i, k)), out += ',';
     const LineOfSight& line = answers[i].line;
     out += fmt::format("{},{:d},{:.10g},{:.10g},{:.10g},", i + 1, line.visible, line.distance, line.eye, line.target);
     out += std::isfinite(line.clearance)
@@ -204,9 +199,7 @@ void test_lines(MapInput& input, const PlaceTable& table, std::vector<Answer>& a
   std::vector<RasterWindow> parts;
   for (const Answer& one : answers) parts.push_back(part_of_line(input, one.ends.from, one.ends.to));
   if (parts.empty()) return;
-  if (are_scattered(parts)) return test_one_by_one(input, table, answers, parts);
-  input.read(union_of(parts), terminal_progress("read"));
-  input.close();
+  if (!read_together(input, parts)) return test_one_by_one(input, table, answers, parts);
   if (is_geographic(input.georeference())) return test_one_by_one(input, table, answers, {});
   const Tester tester(input, table, true);
   for (std::size_t i = 0; i < answers.size(); ++i) tester.require_ground_at(i, answers[i].ends);
@@ -257,7 +250,8 @@ void add_los(Program& program) {
   const auto options = std::make_shared<LosOptions>();
   LosOptions& o = *options;
   add_sight_places(command, o.places);
-  add_output_option(command, o.output, "result: .csv or .geojson; -: CSV to standard output", "csv geojson", false);
+  add_output_option(command, o.output, "result: .csv or .geojson; -: CSV to standard output", "csv geojson",
+                    "standard output");
   command.add(&o.parts, {.names = "--parts",
                          .help = "split blocked lines in GeoJSON in two: up to the obstruction, and beyond it",
                          .common = true,

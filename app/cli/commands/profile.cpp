@@ -183,7 +183,7 @@ void add_profile(Program& program) {
   command.add(&o.from, {.names = "--from", .value = "X,Y[,H]", .help = "observer, start of the ray", .common = true});
   command.add(&o.to, {.names = "--to", .value = "X,Y[,H]", .help = "target", .common = true});
   add_output_option(command, o.output, "result: .csv, .svg, .pdf or .png; -: CSV to standard output", "csv svg pdf png",
-                    false);
+                    "standard output");
   command.add(&o.size, {.names = "--size",
                         .value = "WxH",
                         .help = "size of the figure in pixels",

@@ -14,6 +14,7 @@
 #include "app/cli/options/horizon_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_run.h"
+#include "app/cli/progress.h"
 #include "scarp/analysis/sky_view.h"
 
 namespace scarp::cli {
@@ -43,7 +44,7 @@ constexpr const char* kSkyFooter = R"(Measures, means over all azimuths of the h
   positive-openness  zenith angle of the horizon in degrees, below the horizontal too
                      (Yokoyama 2002)
   negative-openness  the same of the ground upside down
-The 45 degree slope of an endless plane has 0.75, 0.854, 90 and 90.)";
+An infinite plane with a slope of 45 degrees gives 0.75, 0.854, 90 and 90.)";
 
 struct SkyviewOptions : MapCommand {
   std::vector<std::string> measures;
@@ -70,6 +71,7 @@ const MeasureText& measure_of(const std::string& name) {
 void run(SkyviewOptions options, const Command& command) {
   if (options.measures.empty()) options.measures.emplace_back(kMeasures[0].name);
   MapRun run(options, command, "Float32");
+  run.set_reach(options.horizon.reach());
   if (!run.begin(13 + 8 * static_cast<double>(options.measures.size()), options.azimuths * kNodeAzimuth_s)) return;
   MapInput& input = run.input();
   std::vector<SkyMeasure> measures;
@@ -82,7 +84,8 @@ void run(SkyviewOptions options, const Command& command) {
   std::vector<Mean> means(measures.size());
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const HorizonPlane plane = horizon_plane(input);
-    const SkyView sky(plane.field, horizon_settings(options.horizon, input), options.azimuths, measures, progress);
+    const SkyView sky(plane.field, horizon_settings(options.horizon, input), options.azimuths, measures,
+                      terminal_progress("heights"));
     auto values = sky.rows(rows.first, rows.last, progress);
     std::vector<ComputedBand> bands;
     for (std::size_t m = 0; m < values.size(); ++m) {
@@ -113,7 +116,7 @@ void add_skyview(Program& program) {
   for (const MeasureText& measure : kMeasures) names.emplace_back(measure.name);
   command.add(&o.measures, {.names = "--measure",
                             .value = "NAME",
-                            .help = "what to map",
+                            .help = "quantity to map",
                             .choices = names,
                             .closed = true,
                             .note = "repeatable: one band each",

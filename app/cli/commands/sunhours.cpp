@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,9 +16,11 @@
 #include "app/cli/options/horizon_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_run.h"
+#include "app/cli/progress.h"
 #include "scarp/analysis/sun_hours.h"
 #include "scarp/analysis/sun_position.h"
 #include "scarp/base/error.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp::cli {
 namespace {
@@ -40,24 +43,20 @@ struct SunHoursOptions : MapCommand {
 };
 
 chrono::sys_days day_of(const std::string& text, std::string_view option) {
-  int year = 0;
-  unsigned month = 0, day = 0;
-  char end = 0;
-  const bool read = std::sscanf(text.c_str(), "%4d-%2u-%2u%c", &year, &month, &day, &end) == 3;
-  const chrono::year_month_day date{chrono::year(year), chrono::month(month), chrono::day(day)};
-  if (!read || text.size() != 10 || !date.ok())
-    throw Error(fmt::format("{} '{}': expected a date, for example 2026-06-21", option, text));
-  return date;
+  constexpr double kEpoch = 2440587.5;  // Julian date of 1970-01-01
+  try {
+    return chrono::sys_days(chrono::days(std::lround(parse_time(text + "T00:00Z").day - kEpoch)));
+  } catch (const Error&) {
+    throw Error(fmt::format("{} '{}': expected a date from 1900 to 2100, for example 2026-06-21", option, text));
+  }
 }
 
-// Minutes east of UTC.
-int offset_of(const std::string& text) {
-  char sign = 0, end = 0;
-  int hours = 0, minutes = 0;
-  const int read = std::sscanf(text.c_str(), "%c%2d:%2d%c", &sign, &hours, &minutes, &end);
-  if (read != 3 || (sign != '+' && sign != '-') || hours < 0 || hours > 14 || minutes < 0 || minutes > 59)
-    throw Error(fmt::format("--utc-offset '{}': expected +HH:MM or -HH:MM, for example -04:00", text));
-  return (sign == '-' ? -1 : 1) * (60 * hours + minutes);
+// Minutes east of UTC; nullopt: not typed.
+std::optional<int> offset_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<int> minutes = parse_utc_offset(text);
+  if (!minutes) throw Error(fmt::format("--utc-offset '{}': expected +HH:MM or -HH:MM, for example -04:00", text));
+  return minutes;
 }
 
 std::string offset_text(int minutes) {
@@ -70,6 +69,10 @@ std::string date_text(chrono::sys_days day) {
                      static_cast<unsigned>(date.day()));
 }
 
+std::string dates_text(chrono::sys_days from, chrono::sys_days to) {
+  return from == to ? date_text(from) : date_text(from) + " to " + date_text(to);
+}
+
 // Days that are summed in one band.
 struct Period {
   std::string name;
@@ -77,10 +80,7 @@ struct Period {
 };
 
 std::vector<Period> periods_of(const SunHoursOptions& options, chrono::sys_days from, chrono::sys_days to) {
-  if (options.sum == "range") {
-    const std::string name = from == to ? date_text(from) : date_text(from) + " to " + date_text(to);
-    return {{name, from, to}};
-  }
+  if (options.sum == "range") return {{dates_text(from, to), from, to}};
   std::vector<Period> periods;
   for (chrono::sys_days day = from; day <= to; day += chrono::days(1)) {
     const std::string name = options.sum == "day" ? date_text(day) : date_text(day).substr(0, 7);
@@ -100,12 +100,11 @@ Moments moments_of(const Period& period, const SunHoursOptions& options, const E
                    double grid_north) {
   Moments up;
   for (chrono::sys_days day = period.first; day <= period.last; day += chrono::days(1)) {
+    const UtcTime midnight = parse_time(date_text(day) + "T00:00Z");
     for (int minute = 0; minute < kMinutesPerDay; minute += options.step) {
       const double length = std::min(options.step, kMinutesPerDay - minute), middle = minute + 0.5 * length;
-      const auto seconds = static_cast<int>(std::lround(60 * middle));
-      const std::string time = fmt::format("{}T{:02}:{:02}:{:02}{}", date_text(day), seconds / 3600, seconds / 60 % 60,
-                                           seconds % 60, offset_text(offset));
-      const SunPosition sun = sun_position(parse_time(time), place, options.refraction);
+      const UtcTime time{midnight.day, (middle - offset) / kMinutesPerDay};
+      const SunPosition sun = sun_position(time, place, options.refraction);
       if (!(sun.altitude > 0)) continue;
       up.moments.push_back({{sun.azimuth - grid_north, sun.altitude}, length / 60});
       up.time.push_back(static_cast<float>(middle / 60));
@@ -130,45 +129,52 @@ void add_bands(std::vector<ComputedBand>& bands, const std::string& name, SunHou
 }
 
 void run(SunHoursOptions options, const Command& command) {
-  if (options.from.empty()) throw WrongUsage("--date DATE is required (see 'scarp sunhours --help')");
   const chrono::sys_days from = day_of(options.from, "--date");
   const chrono::sys_days to = options.to.empty() ? from : day_of(options.to, "--to");
   if (to < from) throw Error(fmt::format("--to {}: is before --date {}", options.to, options.from));
   const std::vector<Period> periods = periods_of(options, from, to);
+  const auto count = static_cast<double>(periods.size()), days = static_cast<double>((to - from).count() + 1);
+  const std::optional<int> typed_offset = offset_of(options.offset);
   MapRun run(options, command, "Float32");
   MapInput& input = run.input();
   const auto lonlat = input.lonlat_of(input.centre().x, input.centre().y);
   if (!lonlat) throw Error(fmt::format("{}: the sun's position needs a raster with a CRS (give --crs)", input.path()));
   // Local time by longitude: noon is within half an hour of the sun's highest position.
-  const int offset =
-      options.offset.empty() ? static_cast<int>(std::lround(lonlat->x / 15)) * 60 : offset_of(options.offset);
-  if (options.offset.empty())
-    input.notes.push_back(fmt::format("days are those of UTC{}, by the longitude (--utc-offset)", offset_text(offset)));
-  const double bands_per_period = options.first_last ? 3 : 1, days = static_cast<double>((to - from).count() + 1);
-  if (!run.begin(29 + 4 * bands_per_period * static_cast<double>(periods.size()),
+  const int offset = typed_offset.value_or(static_cast<int>(std::lround(lonlat->x / 15)) * 60);
+  if (!typed_offset)
+    input.notes.push_back(
+        fmt::format("days start at midnight UTC{}, chosen from the longitude (--utc-offset)", offset_text(offset)));
+  run.set_reach(options.horizon.reach());
+  // Not from the samples of a part: all parts have the same sun.
+  const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
+  if (!run.begin(29 + 4 * count * (options.first_last ? 3 : 1),
                  days * kMinutesPerDay / options.step / 2 * kNodeAzimuth_s))
     return;
-  const EarthPlace place{lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian,
-                         0.5 * (input.field().min_height() + input.field().max_height())};
+  const EarthPlace place{lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian, height};
   Metadata metadata = horizon_metadata(options.horizon, input);
   metadata.emplace_back("STEP", fmt::format("{} minutes", options.step));
   metadata.emplace_back("UTC_OFFSET", offset_text(offset));
+  metadata.emplace_back("DATES", dates_text(from, to));
+  metadata.emplace_back("REFRACTION", options.refraction ? "standard atmosphere" : "none");
   float longest = 0;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const HorizonPlane plane = horizon_plane(input);
-    const Horizons horizons(plane.field, horizon_settings(options.horizon, input), progress);
+    const Horizons horizons(plane.field, horizon_settings(options.horizon, input), terminal_progress("heights"));
     std::vector<ComputedBand> bands;
-    for (const Period& period : periods) {
+    for (std::size_t i = 0; i < periods.size(); ++i) {
+      const Period& period = periods[i];
       const Moments up = moments_of(period, options, place, offset, plane.grid_north);
-      SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last, progress);
+      SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last,
+                                 progress_part(progress, static_cast<double>(i), count));
       for (const float hours : found.hours) longest = std::fmax(longest, hours);
       add_bands(bands, period.name, std::move(found), up, options.first_last);
     }
     return bands;
   };
   const auto summary = [&] {
-    return fmt::format("{} {}, at most {:.4g} hours of sun", periods.size(), periods.size() == 1 ? "period" : "periods",
-                       static_cast<double>(longest));
+    return fmt::format("{} {}, at most {:.4g} hours of sun; {}", periods.size(),
+                       periods.size() == 1 ? "period" : "periods", static_cast<double>(longest),
+                       input.curvature_text());
   };
   run.write({kSunHoursMethod, metadata, "viridis", compute, summary});
 }
@@ -179,9 +185,11 @@ void add_sunhours(Program& program) {
   Command& command = program.add("sunhours", "Map how long the sun shines on an elevation model");
   const auto options = std::make_shared<SunHoursOptions>();
   SunHoursOptions& o = *options;
-  command.add(
-      &o.from,
-      {.names = "--date", .value = "DATE", .help = "day, or the first of several, as 2026-06-21", .common = true});
+  command.add(&o.from, {.names = "--date",
+                        .value = "DATE",
+                        .help = "day, or first day of a range, for example 2026-06-21",
+                        .common = true,
+                        .required = true});
   command.add(&o.to,
               {.names = "--to", .value = "DATE", .help = "last day", .fallback = "that of --date", .common = true});
   command.add(&o.step, {.names = "--step",
@@ -196,14 +204,14 @@ void add_sunhours(Program& program) {
                        .closed = true,
                        .common = true});
   command.add(&o.first_last, {.names = "--first-last",
-                              .help = "bands of the time of the first and the last sun of a day, too",
+                              .help = "additional bands: local time of first and last sun",
                               .common = true,
                               .rules = {needs("--sum day, or a single day",
                                               [&o] { return o.sum == "day" || o.to.empty() || o.to == o.from; })}});
   command.add(&o.offset, {.names = "--utc-offset",
                           .value = "+HH:MM",
-                          .help = "local time, in which days begin at midnight",
-                          .fallback = "by the longitude",
+                          .help = "UTC offset of local time",
+                          .fallback = "whole hours, from the longitude",
                           .common = true});
   command.add(
       &o.refraction,

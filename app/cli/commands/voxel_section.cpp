@@ -220,7 +220,7 @@ void add_section(Program& program) {
                          .excludes = {"--ray"}});
   command.add(&o.outlines, {.names = "--outlines",
                             .help = "outlines of empty bodies that cover the layer, the largest first",
-                            .rules = {needs("radii, without --ray", [&o] { return o.ray.empty(); })}});
+                            .excludes = {"--ray"}});
   command.add(&o.ray, {.names = "--ray",
                        .value = "X,Y,Z,DX,DY,DZ",
                        .help = "ray in a layer, with the steps of --march, in voxels",

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "app/options/numbers.h"
@@ -18,7 +17,7 @@ void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<
                                     .range = {0, kMostOfGround},
                                     .common = true});
   command.add(&horizon.max_distance, {.names = "--max-distance",
-                                      .help = "distance up to which ground hides the sky",
+                                      .help = "maximum distance of ground that hides the sky",
                                       .unit = "metres",
                                       .range = {0, kMostOfGround, true},
                                       .fallback = "unlimited",
@@ -29,7 +28,7 @@ void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<
 HorizonSettings horizon_settings(const HorizonInput& horizon, const MapInput& input) {
   HorizonSettings settings;
   settings.eye_height = horizon.eye_height;
-  settings.max_distance = horizon.max_distance.value_or(std::numeric_limits<double>::infinity());
+  settings.max_distance = horizon.reach();
   settings.curvature = input.curvature();
   return settings;
 }

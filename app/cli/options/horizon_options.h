@@ -2,6 +2,7 @@
 // What subcommands about horizons share: the eye, how far ground counts, and the plane of the whole raster.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "app/cli/options/map_input.h"
@@ -12,6 +13,9 @@ namespace scarp::cli {
 struct HorizonInput {
   double eye_height = 0;  ///< metres
   std::optional<double> max_distance;
+
+  /// Metres; infinite without a limit.
+  double reach() const { return max_distance.value_or(std::numeric_limits<double>::infinity()); }
 };
 
 /// Declares --observer-height, --max-distance and --cc.

@@ -107,6 +107,11 @@ void MapInput::read(const RasterWindow& part, const Progress& progress) {
                             rows()));
 }
 
+std::optional<double> MapInput::height_at_centre() {
+  const HeightField one = height_field_from(file_->read({cols() / 2, rows() / 2, 1, 1}, {}));
+  return one.all_nodata() ? std::nullopt : std::optional(one.min_height());
+}
+
 Georeference MapInput::georeference_of(const RasterWindow& part) const {
   Georeference geo = georeference();
   auto& map = geo.map_from_node;

@@ -72,6 +72,9 @@ class MapInput {
   /// Reads a part, which replaces the one read before. Throws Error naming the file, also if the whole raster is read
   /// and is all nodata.
   void read(const RasterWindow& part, const Progress& progress);
+  /// Reads the sample nearest to the centre, and returns its height in metres above sea; nullopt on a hole. Before
+  /// close(); the part that was read stays. Throws Error naming the file.
+  std::optional<double> height_at_centre();
   /// Closes the file, which frees the blocks that GDAL keeps. The samples stay.
   void close() { file_.reset(); }
   /// The part that was read; no samples before the first read().

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/cli/progress.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {
@@ -53,6 +54,19 @@ bool are_scattered(std::span<const RasterWindow> parts) {
   double sum = 0;
   for (const RasterWindow& part : parts) sum += area(part) + kCall;
   return area(union_of(parts)) > sum;
+}
+
+bool read_together(MapInput& input, std::span<const RasterWindow> parts) {
+  if (are_scattered(parts)) return false;
+  input.read(union_of(parts), terminal_progress("read"));
+  input.close();
+  return true;
+}
+
+RasterWindow rows_around(MapInput& input, const RasterWindow& rows, double distance) {
+  if (!std::isfinite(distance)) return input.whole();
+  const double beside = std::floor(distance / input.cells_at(input.centre().x, input.centre().y, HUGE_VAL).y) + 2;
+  return clipped(input, 0, rows.row - beside, input.cols() - 1, rows.row + rows.rows - 1 + beside);
 }
 
 void require_ground(const MapInput& input, const SightEnd& end, std::string_view who) {

@@ -3,6 +3,8 @@
 //
 //   viewshed       all nodes within the maximum distance: a line of sight stays in the box of observer and target
 //   line of sight  the box of its ends, and one more cell on each side: ends on a grid line touch both of its cells
+//   horizons       the rows of the nodes, and as many on each side as the maximum distance has cells, and two more: a
+//                  crossing lies between two samples, and slopes reach one sample further
 //
 // Answers are those of the whole raster, because parts keep its cell lengths (source/raster/opened_raster.h) and
 // because all borders of a part lie beyond the nodes that the answer depends on, except the raster's own.
@@ -27,6 +29,14 @@ RasterWindow union_of(std::span<const RasterWindow> parts);
 
 /// Whether the union of the parts is so much larger than the parts that they should be read one after the other.
 bool are_scattered(std::span<const RasterWindow> parts);
+
+/// Reads the union of the parts, of which there is at least one, and closes the file; if they are scattered, reads
+/// nothing and returns false: the caller reads one after the other.
+bool read_together(MapInput& input, std::span<const RasterWindow> parts);
+
+/// Returns the rows that the horizons of nodes in `rows` depend on, on the plane of the whole raster. `distance`, in
+/// metres, may be infinite.
+RasterWindow rows_around(MapInput& input, const RasterWindow& rows, double distance);
 
 /// Throws Error "observer: X,Y is on nodata ..." if the height of an end counts from ground that does not exist. The
 /// part that was read must contain the end.

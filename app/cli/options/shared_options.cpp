@@ -8,14 +8,14 @@
 namespace scarp::cli {
 
 void add_output_option(Command& command, std::string& output, const std::string& help, const std::string& files,
-                       bool required) {
+                       const std::string& fallback) {
   command.add(&output, {.names = "-o,--output",
                         .value = "FILE",
                         .help = help,
                         .files = files,
-                        .fallback = required ? "" : "standard output",
+                        .fallback = fallback,
                         .common = true,
-                        .required = required});
+                        .required = fallback.empty()});
 }
 
 void add_threads_option(Command& command, int& threads) {

@@ -8,9 +8,9 @@
 
 namespace scarp::cli {
 
-/// Declares -o, --output. `files` are its extensions.
+/// Declares -o, --output. `files` are its extensions; it is required without a default.
 void add_output_option(Command& command, std::string& output, const std::string& help, const std::string& files,
-                       bool required = true);
+                       const std::string& fallback = {});
 /// Declares --threads.
 void add_threads_option(Command& command, int& threads);
 /// Declares --no-tone-curve for pictures in the file `output`, which must outlive the command.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/map_part.h"
 #include "app/cli/picture/map_preview.h"
 #include "app/cli/progress.h"
 
@@ -56,6 +57,11 @@ MapRun::MapRun(MapCommand& options, const Command& command, std::string_view sam
 
 void MapRun::set_area(const RasterWindow& whole, const RasterWindow& read) {
   area_ = map_area(input_, options_.raster_output, whole, read);
+}
+
+void MapRun::set_reach(double metres) {
+  // A preview shows the whole raster.
+  if (options_.raster_output.preview.empty()) set_area(input_.whole(), rows_around(input_, area_.output, metres));
 }
 
 bool MapRun::begin(double bytes_per_pixel, double seconds_per_pixel) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The course of a subcommand that computes a map, from its options to the written file:
 //
-//   MapRun                checks the options and the output, and opens the raster
-//   set_area() ...        optional: the pixels to write and the samples that they depend on, by default all
-//   begin()               prints the cost (--dry-run) or reads the samples
-//   write()               computes the rows, writes raster and preview, and prints the summary
+//   MapRun                    checks the options and the output, and opens the raster
+//   set_area(), set_reach()   optional: the pixels to write and the samples that they depend on, by default all
+//   begin()                   prints the cost (--dry-run) or reads the samples
+//   write()                   computes the rows, writes raster and preview, and prints the summary
 //
 // The subcommand describes the map as a function of a band of rows (MapRecipe::compute), and write() calls it.
 #pragma once
@@ -75,6 +75,9 @@ class MapRun {
   /// The output covers `whole`, or its --part, and depends on the samples of `read`; pixels outside of `read` are
   /// nodata.
   void set_area(const RasterWindow& whole, const RasterWindow& read);
+
+  /// For horizons: the output depends on its rows and on ground up to `metres` away, which may be infinite.
+  void set_reach(double metres);
 
   /// Reads the samples. With --dry-run, prints size, memory and time instead, and returns false.
   bool begin(double bytes_per_pixel, double seconds_per_pixel);
