@@ -43,13 +43,14 @@ void write_geotiff(ReplaceFile& file, const std::string& path, const RgbView& pi
                    std::span<const std::uint8_t> alpha, const std::optional<MapPlace>& place) {
   require_size(picture, std::numeric_limits<int>::max(), path, "TIFF");
   const GdalWriting writing;
+  const double bytes = static_cast<double>(kBands) * picture.width * picture.height;
   CPLStringList options;
   for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=2", "PHOTOMETRIC=RGB", "ALPHA=YES", "BIGTIFF=IF_SAFER"})
     options.AddString(option);
   if (std::max(picture.width, picture.height) > kTiledFrom) options.AddString("TILED=YES");
   GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
       file.temporary_path().c_str(), picture.width, picture.height, kBands, GDT_Byte, options.List()));
-  writing.require_good(path);
+  writing.require_good(path, bytes);
   if (place) {
     auto transform = place->map_from_pixel;
     dataset->SetGeoTransform(transform.data());
@@ -61,7 +62,7 @@ void write_geotiff(ReplaceFile& file, const std::string& path, const RgbView& pi
   }
   write_rows(*dataset, picture, alpha);
   dataset.reset();
-  writing.require_good(path);
+  writing.require_good(path, bytes);
   file.commit();
 }
 

@@ -210,5 +210,26 @@ TEST_F(ReplaceFileTest, AbruptExitLeavesNoTemporaryFile) {
   EXPECT_EQ(read(path("whole.png")), "new");
 }
 
+TEST_F(ReplaceFileTest, TemporaryFoldersAreDeletedWithTheirFiles) {
+  write(path("a.png"), "old");
+  {
+    const TemporaryFolder folder(path("a.png"));
+    for (const char* name : {"a.png", "a.png.aux.xml"}) write(fs::path(folder.name()) / name, "new");
+    EXPECT_EQ(files(), 2);
+  }
+  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(read(path("a.png")), "old");
+  EXPECT_NE(test::refusal([&] { TemporaryFolder{path("none/a.png")}; }).find("cannot create a folder"),
+            std::string::npos);
+}
+
+TEST_F(ReplaceFileTest, TemporaryFoldersAreDeletedInASignalHandler) {
+  const TemporaryFolder folder(path("a.png")), empty(path("b.png"));
+  // More names than one read of the folder returns.
+  for (int i = 0; i < 500; ++i) write(fs::path(folder.name()) / (std::string(20, 'x') + std::to_string(i)), "new");
+  EXPECT_EXIT((remove_temporary_files(), ::_exit(0)), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(files(), 0);
+}
+
 }  // namespace
 }  // namespace scarp
