@@ -14,13 +14,13 @@ void find_angles(const float* slopes, std::size_t count, float* angles);
 /// Adds 1 - sin h.
 void add_sky_fraction(const float* slopes, std::size_t count, float* sums);
 
-/// Tangent planes of nodes: cos b, and sin b times the direction of the aspect.
-struct TangentPlanes {
-  const float *level, *east, *north;
+/// Upward normals of nodes, of length 1.
+struct NodeNormals {
+  const float *east, *north, *level;
 };
 
 /// Adds cos b sin^2 H + sin b cos(azimuth - a) (H - sin H cos H); `east` and `north` are the direction of the azimuth.
-void add_sky_view_factor(const float* slopes, const TangentPlanes& planes, float east, float north, std::size_t count,
+void add_sky_view_factor(const float* slopes, const NodeNormals& normals, float east, float north, std::size_t count,
                          float* sums);
 
 /// Adds pi/2 - h.

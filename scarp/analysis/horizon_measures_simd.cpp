@@ -71,16 +71,16 @@ void sky_fraction(const float* slopes, std::size_t count, float* sums) {
   });
 }
 
-void sky_view_factor(const float* slopes, const TangentPlanes& planes, float east, float north, std::size_t count,
+void sky_view_factor(const float* slopes, const NodeNormals& normals, float east, float north, std::size_t count,
                      float* sums) {
   for_vectors(count, sums, [&](std::size_t i, auto lanes) HWY_ATTR {
     const VF s = raised(load(lanes, slopes + i)), one = set(1);
     const VF zenith = hn::Sub(set(std::numbers::pi / 2), atan(s));
     const VF square = hn::Div(one, fused(s, s, one));  // sin^2 H
-    const VF facing = fused(load(lanes, planes.east + i), hn::Set(df, east),
-                            hn::Mul(load(lanes, planes.north + i), hn::Set(df, north)));
+    const VF facing = fused(load(lanes, normals.east + i), hn::Set(df, east),
+                            hn::Mul(load(lanes, normals.north + i), hn::Set(df, north)));
     const VF tilted = hn::Mul(facing, hn::Sub(zenith, hn::Mul(s, square)));
-    return hn::Add(load(lanes, sums + i), fused(load(lanes, planes.level + i), square, tilted));
+    return hn::Add(load(lanes, sums + i), fused(load(lanes, normals.level + i), square, tilted));
   });
 }
 
@@ -114,9 +114,9 @@ void find_angles(const float* slopes, std::size_t count, float* out) {
 void add_sky_fraction(const float* slopes, std::size_t count, float* sums) {
   HWY_DYNAMIC_DISPATCH(sky_fraction)(slopes, count, sums);
 }
-void add_sky_view_factor(const float* slopes, const TangentPlanes& planes, float east, float north, std::size_t count,
+void add_sky_view_factor(const float* slopes, const NodeNormals& normals, float east, float north, std::size_t count,
                          float* sums) {
-  HWY_DYNAMIC_DISPATCH(sky_view_factor)(slopes, planes, east, north, count, sums);
+  HWY_DYNAMIC_DISPATCH(sky_view_factor)(slopes, normals, east, north, count, sums);
 }
 void add_openness(const float* slopes, std::size_t count, float* sums) {
   HWY_DYNAMIC_DISPATCH(openness)(slopes, count, sums);

@@ -2,10 +2,12 @@
 #include "scarp/analysis/horizon_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "scarp/base/parallel.h"
+#include "scarp/base/progress_part.h"
 
 namespace scarp {
 namespace {
@@ -18,18 +20,12 @@ constexpr std::size_t kTablesAtOnce = 64;
 
 using Body = std::function<void(const HorizonBlock&)>;
 
-// Progress of parts [begin, end) of `all`.
-Progress share_of(const Progress& progress, std::size_t begin, std::size_t end, std::size_t all) {
-  if (!progress) return {};
-  return [&progress, from = static_cast<double>(begin), parts = static_cast<double>(end - begin),
-          all = static_cast<double>(all)](double share) { return progress((from + share * parts) / all); };
-}
-
 void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
           const RowBand& band, const Body& body, const Progress& progress) {
   const HorizonGround& ground = *relief.ground;
   const int cols = ground.cols();
   const std::int64_t across = (cols + kStripCols - 1) / kStripCols, down = (band.rows() + kBlockRows - 1) / kBlockRows;
+  const double parts = std::ceil(static_cast<double>(azimuths.size()) / kTablesAtOnce);
   for (std::size_t begin = 0; begin < azimuths.size(); begin += kTablesAtOnce) {
     const std::size_t end = std::min(begin + kTablesAtOnce, azimuths.size());
     std::vector<HorizonTable> tables;
@@ -49,7 +45,7 @@ void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<c
         }
       }
     };
-    parallel_for(across * down, 1, blocks, share_of(progress, begin, end, azimuths.size()));
+    parallel_for(across * down, 1, blocks, progress_part(progress, static_cast<double>(begin) / kTablesAtOnce, parts));
   }
 }
 
@@ -133,7 +129,7 @@ void sweep(const Horizons::State& state, const HorizonRelief& relief, std::span<
       }
     };
     parallel_for((last - first + kSweptLines - 1) / kSweptLines, 1, strips,
-                 share_of(progress, i, i + 1, azimuths.size()));
+                 progress_part(progress, static_cast<double>(i), static_cast<double>(azimuths.size())));
   }
 }
 

@@ -10,37 +10,13 @@
 
 #include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
+#include "scarp/analysis/tangent_planes.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/progress_part.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
 namespace {
-
-// The tangent plane of a node: cos b, and sin b times the direction of the aspect.
-struct Tilt {
-  float level = 0, east = 0, north = 0;
-};
-
-// All 0 on a hole.
-Tilt tilt_of(const SightGround& ground, int col, int row) {
-  const HeightField& field = ground.field();
-  const auto height = [&](int c, int r) -> std::optional<double> {
-    if (c < 0 || r < 0 || c >= field.cols() || r >= field.rows()) return std::nullopt;
-    return ground.height({c, r});
-  };
-  const auto here = height(col, row);
-  if (!here) return {};
-  const auto slope = [&](std::optional<double> before, std::optional<double> after, double cell) {
-    if (before && after) return (*after - *before) / (2 * cell);
-    if (after) return (*after - *here) / cell;
-    return before ? (*here - *before) / cell : 0;
-  };
-  const double x = slope(height(col - 1, row), height(col + 1, row), field.settings().cell_x);
-  const double y = slope(height(col, row + 1), height(col, row - 1), field.settings().cell_y);
-  const double level = 1 / std::sqrt(1 + x * x + y * y);
-  return {static_cast<float>(level), static_cast<float>(-x * level), static_cast<float>(-y * level)};
-}
 
 // Measures of the ground upside down need other horizons.
 bool is_inverted(SkyMeasure measure) { return measure == SkyMeasure::negative_openness; }
@@ -76,19 +52,10 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
   const std::ptrdiff_t cols = state.field.cols();
   std::vector<std::vector<float>> maps(state_->measures.size());
   for (auto& map : maps) map.assign(static_cast<std::size_t>(cols * band.rows()), 0.0f);
-  std::vector<float> level, east_tilt, north_tilt;
+  TangentPlanes planes;
   if (std::find(state_->measures.begin(), state_->measures.end(), SkyMeasure::sky_view_factor) !=
-      state_->measures.end()) {
-    for (auto* tilt : {&level, &east_tilt, &north_tilt}) tilt->resize(static_cast<std::size_t>(cols * band.rows()));
-    const SightGround samples(state.field);
-    parallel_for(band.rows(), 1, [&](std::int64_t begin, std::int64_t end) {
-      for (std::ptrdiff_t i = begin * cols; i < end * cols; ++i) {
-        const Tilt tilt = tilt_of(samples, static_cast<int>(i % cols), first + static_cast<int>(i / cols));
-        const auto at = static_cast<std::size_t>(i);
-        level[at] = tilt.level, east_tilt[at] = tilt.east, north_tilt[at] = tilt.north;
-      }
-    });
-  }
+      state_->measures.end())
+    planes = TangentPlanes(state.field, band);
   const auto add = [&](const HorizonRelief& relief, bool inverted, const Progress& of_pass) {
     const auto add_block = [&](const HorizonBlock& block) {
       const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
@@ -103,8 +70,8 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
           if (state_->measures[m] == SkyMeasure::sky_fraction) {
             add_sky_fraction(slopes, width, sums);
           } else if (state_->measures[m] == SkyMeasure::sky_view_factor) {
-            add_sky_view_factor(slopes, {level.data() + at, east_tilt.data() + at, north_tilt.data() + at}, east, north,
-                                width, sums);
+            add_sky_view_factor(slopes, {planes.east.data() + at, planes.north.data() + at, planes.level.data() + at},
+                                east, north, width, sums);
           } else {
             add_openness(slopes, width, sums);
           }

@@ -5,14 +5,122 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
+#include "scarp/analysis/clear_sky.h"
 #include "scarp/analysis/horizon_state.h"
+#include "scarp/analysis/tangent_planes.h"
+#include "scarp/base/error.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
 
+namespace {
+
+// The beam at a node's height, interpolated between heights of equal distances. Its logarithm bends by less than
+// (distance / 8434.5 m)^2 between them.
+class BeamByHeight {
+ public:
+  static constexpr int kSteps = 32;
+
+  BeamByHeight(const HeightField& field, const SunMoment& moment, double linke)
+      : lowest_(field.all_nodata() ? 0 : field.min_height()),
+        step_(field.all_nodata() ? 1 : std::max((field.max_height() - field.min_height()) / kSteps, 0x1p-10)) {
+    for (int i = 0; i <= kSteps + 1; ++i) {
+      const double height = lowest_ + step_ * i;
+      beam_.push_back(static_cast<float>(clear_sky(moment.sun.altitude, height, moment.day_of_year, linke).beam));
+    }
+  }
+
+  float at(float place) const {
+    const auto i = static_cast<std::size_t>(place);
+    return beam_[i] + (place - static_cast<float>(i)) * (beam_[i + 1] - beam_[i]);
+  }
+  // Where at() finds a height; it depends on the field alone.
+  float place(double height) const {
+    return static_cast<float>(std::clamp((height - lowest_) / step_, 0.0, static_cast<double>(kSteps)));
+  }
+
+ private:
+  double lowest_, step_;
+  std::vector<float> beam_;
+};
+
+// The energy of a band of rows.
+class EnergySums {
+ public:
+  EnergySums(const HeightField& field, const RowBand& band, std::span<const SunMoment> moments,
+             const ClearSkyGround& ground, const HorizonHeights& heights)
+      : planes_(field, band), ground_(ground) {
+    for (const SunMoment& moment : moments) {
+      beams_.emplace_back(field, moment, ground.linke);
+      const SunDirection& sun = moment.sun;
+      towards_.push_back({static_cast<float>(std::sin(sun.azimuth) * std::cos(sun.altitude)),
+                          static_cast<float>(std::cos(sun.azimuth) * std::cos(sun.altitude)),
+                          static_cast<float>(std::sin(sun.altitude))});
+      const double diffuse = clear_sky(sun.altitude, 0, moment.day_of_year, ground.linke).diffuse;
+      diffuse_ += moment.hours * diffuse / 1000;
+    }
+    for (int row = band.first; row < band.last; ++row) {
+      for (int col = 0; col < field.cols(); ++col) {
+        const float height = *heights.height(col, row);
+        const bool hole = std::isnan(height) || moments.empty();
+        places_.push_back(hole ? 0 : beams_.front().place(static_cast<double>(height)));
+      }
+    }
+    sums_.resize(places_.size());
+  }
+
+  // Adds the beam of a moment on a lit node.
+  void add(std::size_t moment, std::size_t node, double hours) {
+    const Direction& to = towards_[moment];
+    const float cosine = planes_.east[node] * to.east + planes_.north[node] * to.north + planes_.level[node] * to.up;
+    if (cosine > 0) sums_[node] += hours / 1000 * static_cast<double>(cosine * beams_[moment].at(places_[node]));
+  }
+
+  SunEnergy total(std::span<const SunMoment> moments, const std::vector<double>& hours) const {
+    // The beam on level ground by height.
+    std::vector<double> level(BeamByHeight::kSteps + 2);
+    for (std::size_t m = 0; m < moments.size(); ++m) {
+      for (std::size_t i = 0; i + 1 < level.size(); ++i)
+        level[i] += moments[m].hours / 1000 * static_cast<double>(towards_[m].up * beams_[m].at(static_cast<float>(i)));
+    }
+    SunEnergy energy;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const double hole = std::isnan(hours[i]) ? std::numeric_limits<double>::quiet_NaN() : 0;
+      const double seen = static_cast<double>(ground_.sky_view_factor[i]), place = static_cast<double>(places_[i]);
+      const auto at = static_cast<std::size_t>(place);
+      const double beam = level[at] + (place - static_cast<double>(at)) * (level[at + 1] - level[at]);
+      energy.beam.push_back(static_cast<float>(sums_[i] + hole));
+      energy.diffuse.push_back(static_cast<float>(diffuse_ * seen + hole));
+      energy.reflected.push_back(static_cast<float>(ground_.albedo * (beam + diffuse_) * (1 - seen) + hole));
+    }
+    return energy;
+  }
+
+ private:
+  struct Direction {
+    float east, north, up;
+  };
+  const TangentPlanes planes_;
+  const ClearSkyGround& ground_;
+  std::vector<BeamByHeight> beams_;
+  std::vector<Direction> towards_;
+  double diffuse_ = 0;         // kWh on the horizontal
+  std::vector<float> places_;  // of nodes, for BeamByHeight
+  std::vector<double> sums_;
+};
+
+void validate(const ClearSkyGround& ground, std::size_t nodes) {
+  require_setting("sun energy", ground.linke >= 1 && ground.linke <= 8, "Linke turbidity", ground.linke, "1 to 8");
+  require_setting("sun energy", ground.albedo >= 0 && ground.albedo <= 1, "albedo", ground.albedo, "0 to 1");
+  if (ground.sky_view_factor.size() != nodes) throw Error("sun energy: expected a sky view factor for each node");
+}
+
+}  // namespace
+
 SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, int first, int last,
-                   const Progress& progress) {
+                   const ClearSkyGround* ground, const Progress& progress) {
   for (const SunMoment& moment : moments) {
     require_setting("sun hours", std::isfinite(moment.sun.azimuth), "sun azimuth", moment.sun.azimuth, "finite");
     require_setting("sun hours", moment.sun.altitude > 0 && moment.sun.altitude <= std::numbers::pi / 2, "sun altitude",
@@ -28,6 +136,11 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
     const float* heights = state.relief.of_nodes().height(0, row);
     for (std::ptrdiff_t col = 0; col < cols; ++col)
       sums.push_back(std::isnan(heights[col]) ? std::numeric_limits<double>::quiet_NaN() : 0);
+  }
+  std::optional<EnergySums> energy;
+  if (ground) {
+    validate(*ground, sums.size());
+    energy.emplace(state.field, band, moments, *ground, state.relief.of_nodes());
   }
   SunHours found;
   found.hours.resize(sums.size());
@@ -45,11 +158,13 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
         sums[at] += moment.hours;
         found.last[at] = static_cast<std::int32_t>(block.azimuth);
         if (found.first[at] < 0) found.first[at] = found.last[at];
+        if (energy) energy->add(block.azimuth, at, moment.hours);
       }
     }
   };
   for_each_horizon(state, state.relief, azimuths, band, add, progress);
   for (std::size_t i = 0; i < sums.size(); ++i) found.hours[i] = static_cast<float>(sums[i]);
+  if (energy) found.energy = energy->total(moments, sums);
   return found;
 }
 

@@ -13,13 +13,6 @@
 
 namespace scarp::test {
 
-using Names = std::vector<std::string>;
-
-inline Names operator+(Names a, const Names& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 class MapsCli : public testing::Test {
  protected:
   // 30 x 20 samples of 10 m, a wall 50 m high at column 20, a hole in the north-west corner. The south-west sample is

@@ -136,7 +136,68 @@ TEST_F(SkyMaps, SkyviewNamesItsMeasures) {
   EXPECT_EQ(fraction.at(0, 0), -9999);
 }
 
+TEST_F(SkyMaps, SweepsStateTheirError) {
+  for (const Names& map : maps()) {
+    if (map[0] == "viewshed" || map[0] == "shadow") continue;
+    const Names sweep = map + Names{"--engine", "sweep", "-o", path("s.tif")};
+    const auto result = run(sweep);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find(" angles compared with exact ones: 99 % within "), std::string::npos) << result.out;
+    const auto swept = open(path("s.tif"));
+    EXPECT_STREQ(swept->GetMetadataItem("ENGINE"), "sweep");
+    EXPECT_TRUE(std::string(swept->GetMetadataItem("METHOD")).starts_with("horizons swept along lines")) << map[0];
+    expect_refused(map + Names{"--engine", "sweep", "--max-distance", "50", "-o", path("x.tif")},
+                   "--max-distance has no effect without --engine exact");
+    const auto exact = run(map + Names{"-o", path("e.tif")});
+    EXPECT_EQ(exact.out.find("compared"), std::string::npos) << exact.out;
+    EXPECT_STREQ(open(path("e.tif"))->GetMetadataItem("ENGINE"), "exact");
+  }
+  // Over nodes of the grid, the sweep finds the same crossing.
+  ASSERT_EQ(
+      run(on_dem("horizon") + Names{"--cc", "0", "--azimuths", "4", "--engine", "sweep", "-o", path("h.tif")}).status,
+      0);
+  EXPECT_NEAR(pixels_of(*open(path("h.tif")), 2).at(10, 9), 26.5559f, 1e-3f);  // atan(50 / 100.04)
+  expect_refused(on_dem("horizon") + Names{"--at", "500105,5000105", "--engine", "sweep"},
+                 "--engine cannot be combined with --at");
+}
+
 #ifdef SCARP_ERFA
+TEST_F(SkyMaps, EnergyIsTheSumOfItsParts) {
+  const Names sun = on_dem("sunhours") + Names{"--date", "2026-06-21", "--step", "6", "--cc", "0", "--energy"};
+  const auto energy_of = [&](const Names& options) {
+    const auto result = run(sun + options + Names{"-o", path("e.tif")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto map = open(path("e.tif"));
+    EXPECT_EQ(map->GetRasterCount(), 5);
+    EXPECT_STREQ(map->GetRasterBand(2)->GetDescription(), "energy 2026-06-21");
+    EXPECT_STREQ(map->GetRasterBand(2)->GetUnitType(), "kWh/m2");
+    std::vector<Pixels> bands;
+    for (int band = 1; band <= 5; ++band) bands.push_back(pixels_of(*map, band));
+    return bands;
+  };
+  const auto bands = energy_of({});
+  for (int row = 0; row < 20; ++row) {
+    for (int col = 0; col < 30; ++col) {
+      const float parts = bands[2].at(col, row) + bands[3].at(col, row) + bands[4].at(col, row);
+      EXPECT_FLOAT_EQ(bands[1].at(col, row), col + row == 0 ? -9999 : parts);
+    }
+  }
+  // The level top of the wall sees the whole sky. r.sun of GRASS 8.2 has 7.547 and 1.279 kWh/m^2 there; its sun and the
+  // one of ERFA are a tenth of a degree apart, and both sum in steps.
+  EXPECT_NEAR(bands[2].at(20, 9), 7.547f, 0.01f * 7.547f);
+  EXPECT_NEAR(bands[3].at(20, 9), 1.279f, 0.01f * 1.279f);
+  EXPECT_EQ(bands[4].at(20, 9), 0);
+  // The foot of the wall sees half of the sky, and the plain before it.
+  EXPECT_LT(bands[3].at(19, 9), 0.9f * 1.279f);
+  EXPECT_GT(bands[4].at(19, 9), 0.1f);
+  const auto hazy = energy_of({"--linke", "6", "--albedo", "0"});
+  EXPECT_LT(hazy[2].at(20, 9), 0.8f * bands[2].at(20, 9));
+  EXPECT_GT(hazy[3].at(20, 9), 1.2f * bands[3].at(20, 9));
+  EXPECT_EQ(hazy[4].at(19, 9), 0);
+  expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--albedo", "0.5", "-o", path("x.tif")},
+                 "--albedo has no effect without --energy");
+}
+
 // On a plain at 45.15 degrees north, the sun's centre is up for 2 acos(-tan(latitude) tan(declination)) / 15 degrees.
 // Steps of a minute are off by one at both ends.
 TEST_F(SkyMaps, SunHoursOfAPlainAreTheDay) {

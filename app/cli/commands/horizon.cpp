@@ -21,7 +21,7 @@
 namespace scarp::cli {
 namespace {
 
-constexpr const char* kHorizonMethod = "exact horizons; ground linear at crossings of grid lines (scarp horizon)";
+constexpr const char* kHorizonMethod = "; ground linear at crossings of grid lines (scarp horizon)";
 constexpr const char* kHorizonFooter =
     R"(Pixels: degrees above the horizontal up to which ground hides the sky, one band per azimuth. Angles
 below zero are kept (--clamp: 0 instead). -90: no ground in that direction, as at the border.
@@ -35,9 +35,10 @@ void run(HorizonOptions options, const Command& command) {
   const std::vector<double> azimuths = options.all_azimuths();
   const auto count = static_cast<double>(azimuths.size());
   run.set_reach(options.horizon.reach());
-  if (!run.begin(13 + 4 * count * (options.distance ? 2 : 1), count * kNodeAzimuth_s)) return;
+  if (!run.begin(13 + 4 * count * (options.distance ? 2 : 1), count * options.horizon.node_azimuth_s())) return;
   MapInput& input = run.input();
   double highest = -90;
+  std::string errors;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const HorizonPlane plane = horizon_plane(input);
     const Horizons horizons(plane.field, horizon_settings(options.horizon, input), terminal_progress("heights"));
@@ -55,14 +56,18 @@ void run(HorizonOptions options, const Command& command) {
         distances.push_back(number_band(fmt::format("distance {:.10g}", azimuth), "m", std::move(found.distance)));
     }
     std::move(distances.begin(), distances.end(), std::back_inserter(bands));
+    std::vector<double> directions;
+    for (const double azimuth : azimuths) directions.push_back(azimuth / kDegreesPerRadian - plane.grid_north);
+    errors = horizon_errors_text(options.horizon, input, plane.field, directions, rows);
     return bands;
   };
   const auto summary = [&] {
-    return fmt::format("{} azimuths, highest {:.4g} degrees; {}", azimuths.size(), highest, input.curvature_text());
+    return fmt::format("{} azimuths, highest {:.4g} degrees; {}{}", azimuths.size(), highest, input.curvature_text(),
+                       errors);
   };
   Metadata metadata = horizon_metadata(options.horizon, input);
   metadata.emplace_back("CLAMP", options.clamp ? "0 instead of angles below the horizontal" : "none");
-  run.write({kHorizonMethod, metadata, "viridis", compute, summary});
+  run.write({horizon_method(options.horizon) + kHorizonMethod, metadata, "viridis", compute, summary});
 }
 
 }  // namespace
@@ -103,7 +108,7 @@ void add_horizon(Program& program) {
                             .help = "additional bands: distance to the horizon, in metres",
                             .common = true,
                             .excludes = point_options});
-  add_horizon_options(command, o.horizon, o.curvature);
+  add_horizon_options(command, o.horizon, o.curvature, point_options);
   add_map_coordinates_option(command, o.coordinates, {needs("--at or --points", [&o] { return o.at_points(); })});
   add_map_command(
       command, o, [options, &command] { run(*options, command); }, point_options);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,7 +22,7 @@ namespace scarp::cli {
 namespace {
 
 constexpr const char* kSkyMethod =
-    "exact horizons; ground linear at crossings of grid lines; directions equally spaced (scarp skyview)";
+    "; ground linear at crossings of grid lines; directions equally spaced (scarp skyview)";
 
 struct MeasureText {
   const char* name;
@@ -72,7 +73,9 @@ void run(SkyviewOptions options, const Command& command) {
   if (options.measures.empty()) options.measures.emplace_back(kMeasures[0].name);
   MapRun run(options, command, "Float32");
   run.set_reach(options.horizon.reach());
-  if (!run.begin(13 + 8 * static_cast<double>(options.measures.size()), options.azimuths * kNodeAzimuth_s)) return;
+  if (!run.begin(13 + 8 * static_cast<double>(options.measures.size()),
+                 options.azimuths * options.horizon.node_azimuth_s()))
+    return;
   MapInput& input = run.input();
   std::vector<SkyMeasure> measures;
   Metadata metadata = horizon_metadata(options.horizon, input);
@@ -82,6 +85,7 @@ void run(SkyviewOptions options, const Command& command) {
     metadata.emplace_back("FORMULA " + name, measure_of(name).formula);
   }
   std::vector<Mean> means(measures.size());
+  std::string errors;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const HorizonPlane plane = horizon_plane(input);
     const SkyView sky(plane.field, horizon_settings(options.horizon, input), options.azimuths, measures,
@@ -95,15 +99,18 @@ void run(SkyviewOptions options, const Command& command) {
       means[m].add(values[m]);
       bands.push_back(number_band(text.name, text.unit, std::move(values[m])));
     }
+    std::vector<double> azimuths;
+    for (int i = 0; i < options.azimuths; ++i) azimuths.push_back(2 * std::numbers::pi * i / options.azimuths);
+    errors = horizon_errors_text(options.horizon, input, plane.field, azimuths, rows);
     return bands;
   };
   const auto summary = [&] {
     std::string text;
     for (std::size_t m = 0; m < means.size(); ++m)
       text += fmt::format("{}mean {} {:.4g}", m == 0 ? "" : ", ", options.measures[m], means[m].value());
-    return fmt::format("{}; {}", text, input.curvature_text());
+    return fmt::format("{}; {}{}", text, input.curvature_text(), errors);
   };
-  run.write({kSkyMethod, metadata, "grey", compute, summary});
+  run.write({horizon_method(options.horizon) + kSkyMethod, metadata, "grey", compute, summary});
 }
 
 }  // namespace

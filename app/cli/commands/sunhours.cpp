@@ -17,6 +17,7 @@
 #include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_run.h"
 #include "app/cli/progress.h"
+#include "scarp/analysis/sky_view.h"
 #include "scarp/analysis/sun_hours.h"
 #include "scarp/analysis/sun_position.h"
 #include "scarp/base/error.h"
@@ -28,17 +29,21 @@ namespace {
 namespace chrono = std::chrono;
 
 constexpr int kMinutesPerDay = 24 * 60;
+constexpr int kSkyAzimuths = 64;  // of the sky view factor
 constexpr const char* kSunHoursMethod =
-    "exact horizons towards the centre of the sun; ground linear at crossings of grid lines (scarp sunhours)";
+    " towards the centre of the sun; ground linear at crossings of grid lines (scarp sunhours)";
 constexpr const char* kSunHoursFooter =
     R"(Pixels: hours of direct sun, one band per period. With --first-last, two more bands per day: the
 time of day, in hours, of the middle of the first and the last step with sun (nodata: none).
+With --energy, four more bands per period, kWh per square metre of the sloping ground under a clear
+sky (ESRA model, Rigollier 2000): the sum, and its parts: beam, diffuse and reflected by the ground.
 The sun of each step is that in its middle, at the centre of the raster.)";
 
 struct SunHoursOptions : MapCommand {
   std::string from, to, offset, sum = "range";
   int step = 30;  // minutes
-  bool refraction = false, first_last = false;
+  bool refraction = false, first_last = false, energy = false;
+  double linke = 3, albedo = 0.2;
   HorizonInput horizon;
 };
 
@@ -71,6 +76,11 @@ std::string date_text(chrono::sys_days day) {
 
 std::string dates_text(chrono::sys_days from, chrono::sys_days to) {
   return from == to ? date_text(from) : date_text(from) + " to " + date_text(to);
+}
+
+double day_of_year(chrono::sys_days day) {
+  const chrono::sys_days first = chrono::year_month_day(day).year() / chrono::January / 1;
+  return static_cast<double>((day - first).count() + 1);
 }
 
 // Days that are summed in one band.
@@ -106,7 +116,7 @@ Moments moments_of(const Period& period, const SunHoursOptions& options, const E
       const UtcTime time{midnight.day, (middle - offset) / kMinutesPerDay};
       const SunPosition sun = sun_position(time, place, options.refraction);
       if (!(sun.altitude > 0)) continue;
-      up.moments.push_back({{sun.azimuth - grid_north, sun.altitude}, length / 60});
+      up.moments.push_back({{sun.azimuth - grid_north, sun.altitude}, length / 60, day_of_year(day)});
       up.time.push_back(static_cast<float>(middle / 60));
     }
   }
@@ -115,9 +125,19 @@ Moments moments_of(const Period& period, const SunHoursOptions& options, const E
 
 // The bands of a period.
 void add_bands(std::vector<ComputedBand>& bands, const std::string& name, SunHours found, const Moments& up,
-               bool first_last) {
+               const SunHoursOptions& options) {
   bands.push_back(number_band("hours of sun " + name, "h", std::move(found.hours)));
-  if (!first_last) return;
+  if (options.energy) {
+    SunEnergy& parts = found.energy;
+    std::vector<float> sum(parts.beam.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = parts.beam[i] + parts.diffuse[i] + parts.reflected[i];
+    const auto add = [&](const char* what, std::vector<float> pixels) {
+      bands.push_back(number_band(what + name, "kWh/m2", std::move(pixels)));
+    };
+    add("energy ", std::move(sum)), add("beam ", std::move(parts.beam));
+    add("diffuse ", std::move(parts.diffuse)), add("reflected ", std::move(parts.reflected));
+  }
+  if (!options.first_last) return;
   const auto time_of = [&](std::int32_t moment) {
     return moment < 0 ? std::numeric_limits<float>::quiet_NaN() : up.time[static_cast<std::size_t>(moment)];
   };
@@ -147,36 +167,52 @@ void run(SunHoursOptions options, const Command& command) {
   run.set_reach(options.horizon.reach());
   // Not from the samples of a part: all parts have the same sun.
   const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
-  if (!run.begin(29 + 4 * count * (options.first_last ? 3 : 1),
-                 days * kMinutesPerDay / options.step / 2 * kNodeAzimuth_s))
-    return;
+  const int bands_per_period = 1 + (options.energy ? 4 : 0) + (options.first_last ? 2 : 0);
+  const double suns = days * kMinutesPerDay / options.step / 2 + (options.energy ? kSkyAzimuths : 0);
+  if (!run.begin(29 + 4 * count * bands_per_period, suns * options.horizon.node_azimuth_s())) return;
   const EarthPlace place{lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian, height};
   Metadata metadata = horizon_metadata(options.horizon, input);
   metadata.emplace_back("STEP", fmt::format("{} minutes", options.step));
   metadata.emplace_back("UTC_OFFSET", offset_text(offset));
   metadata.emplace_back("DATES", dates_text(from, to));
   metadata.emplace_back("REFRACTION", options.refraction ? "standard atmosphere" : "none");
+  if (options.energy) {
+    metadata.emplace_back("ENERGY", "clear sky of the European Solar Radiation Atlas (Rigollier 2000)");
+    metadata.emplace_back("LINKE_TURBIDITY", fmt::format("{:.10g}", options.linke));
+    metadata.emplace_back("ALBEDO", fmt::format("{:.10g}", options.albedo));
+  }
   float longest = 0;
+  std::string errors;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const HorizonPlane plane = horizon_plane(input);
-    const Horizons horizons(plane.field, horizon_settings(options.horizon, input), terminal_progress("heights"));
+    const HorizonSettings settings = horizon_settings(options.horizon, input);
+    const Horizons horizons(plane.field, settings, terminal_progress("heights"));
+    std::vector<float> seen;
+    if (options.energy) {
+      const SkyView sky(plane.field, settings, kSkyAzimuths, {SkyMeasure::sky_view_factor});
+      seen = std::move(sky.rows(rows.first, rows.last, terminal_progress("sky view"))[0]);
+    }
+    const ClearSkyGround ground{options.linke, options.albedo, seen};
+    std::vector<double> azimuths;
     std::vector<ComputedBand> bands;
     for (std::size_t i = 0; i < periods.size(); ++i) {
       const Period& period = periods[i];
       const Moments up = moments_of(period, options, place, offset, plane.grid_north);
-      SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last,
+      for (const SunMoment& moment : up.moments) azimuths.push_back(moment.sun.azimuth);
+      SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last, options.energy ? &ground : nullptr,
                                  progress_part(progress, static_cast<double>(i), count));
       for (const float hours : found.hours) longest = std::fmax(longest, hours);
-      add_bands(bands, period.name, std::move(found), up, options.first_last);
+      add_bands(bands, period.name, std::move(found), up, options);
     }
+    errors = horizon_errors_text(options.horizon, input, plane.field, azimuths, rows);
     return bands;
   };
   const auto summary = [&] {
-    return fmt::format("{} {}, at most {:.4g} hours of sun; {}", periods.size(),
-                       periods.size() == 1 ? "period" : "periods", static_cast<double>(longest),
-                       input.curvature_text());
+    return fmt::format("{} {}, at most {:.4g} hours of sun; {}{}", periods.size(),
+                       periods.size() == 1 ? "period" : "periods", static_cast<double>(longest), input.curvature_text(),
+                       errors);
   };
-  run.write({kSunHoursMethod, metadata, "viridis", compute, summary});
+  run.write({horizon_method(options.horizon) + kSunHoursMethod, metadata, "viridis", compute, summary});
 }
 
 }  // namespace
@@ -208,6 +244,20 @@ void add_sunhours(Program& program) {
                               .common = true,
                               .rules = {needs("--sum day, or a single day",
                                               [&o] { return o.sum == "day" || o.to.empty() || o.to == o.from; })}});
+  command.add(&o.energy, {.names = "--energy", .help = "additional bands: energy under a clear sky", .common = true});
+  const Rule with_energy = needs("--energy", [&o] { return o.energy; });
+  command.add(&o.linke, {.names = "--linke",
+                         .value = "T",
+                         .help = "Linke turbidity of the sky: 2 clean, 3 rural, 5 urban",
+                         .range = {1, 8},
+                         .common = true,
+                         .rules = {with_energy}});
+  command.add(&o.albedo, {.names = "--albedo",
+                          .value = "A",
+                          .help = "share of light that the ground reflects; snow 0.8",
+                          .range = {0, 1},
+                          .common = true,
+                          .rules = {with_energy}});
   command.add(&o.offset, {.names = "--utc-offset",
                           .value = "+HH:MM",
                           .help = "UTC offset of local time",

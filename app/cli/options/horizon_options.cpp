@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "app/options/numbers.h"
+#include "scarp/analysis/horizon_errors.h"
 
 namespace scarp::cli {
 
-void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<double>& curvature) {
+void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<double>& curvature,
+                         const std::vector<std::string>& excludes) {
   command.add(&horizon.eye_height, {.names = "--observer-height",
                                     .help = "height of the eye above the ground",
                                     .unit = "metres",
@@ -21,7 +23,15 @@ void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<
                                       .unit = "metres",
                                       .range = {0, kMostOfGround, true},
                                       .fallback = "unlimited",
-                                      .common = true});
+                                      .common = true,
+                                      .rules = {needs("--engine exact", [&horizon] { return !horizon.swept(); })}});
+  command.add(&horizon.engine, {.names = "--engine",
+                                .value = "NAME",
+                                .help = "sweep: approximate, about three times as fast",
+                                .choices = {"exact", "sweep"},
+                                .closed = true,
+                                .common = true,
+                                .excludes = excludes});
   add_curvature_option(command, curvature);
 }
 
@@ -30,7 +40,21 @@ HorizonSettings horizon_settings(const HorizonInput& horizon, const MapInput& in
   settings.eye_height = horizon.eye_height;
   settings.max_distance = horizon.reach();
   settings.curvature = input.curvature();
+  settings.engine = horizon.swept() ? HorizonEngine::sweep : HorizonEngine::exact;
   return settings;
+}
+
+std::string horizon_method(const HorizonInput& horizon) {
+  return horizon.swept() ? "horizons swept along lines, approximate beyond 8 pixels" : "exact horizons";
+}
+
+std::string horizon_errors_text(const HorizonInput& horizon, const MapInput& input, const HeightField& field,
+                                std::span<const double> azimuths, const RowBand& rows) {
+  if (!horizon.swept()) return "";
+  const HorizonErrors errors = sampled_horizon_errors(field, horizon_settings(horizon, input), azimuths, rows);
+  if (errors.count == 0) return "";
+  return fmt::format("; {} angles compared with exact ones: 99 % within {:.2g} degrees, largest difference {:.2g}",
+                     errors.count, errors.p99 * kDegreesPerRadian, errors.largest * kDegreesPerRadian);
 }
 
 HorizonPlane horizon_plane(MapInput& input) {
@@ -41,7 +65,8 @@ HorizonPlane horizon_plane(MapInput& input) {
 Metadata horizon_metadata(const HorizonInput& horizon, const MapInput& input) {
   Metadata metadata{
       {"OBSERVER_HEIGHT", fmt::format("{:.10g} m above ground", horizon.eye_height)},
-      {"MAX_DISTANCE", horizon.max_distance ? fmt::format("{:.10g} m", *horizon.max_distance) : "unlimited"}};
+      {"MAX_DISTANCE", horizon.max_distance ? fmt::format("{:.10g} m", *horizon.max_distance) : "unlimited"},
+      {"ENGINE", horizon.engine}};
   for (auto& pair : input.curvature_metadata()) metadata.push_back(std::move(pair));
   return metadata;
 }
