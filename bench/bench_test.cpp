@@ -447,9 +447,14 @@ TEST(ScarpBench, PitchesWritesTheDocumentedFields) {
 TEST(ScarpBench, SkyComparesHorizonsWithEmbree) {
   const json all = output_of("sky --sizes 129 --repeats 1 --azimuths 8 --nodes 400");
   expect_documented(all, "sky");
-  ASSERT_EQ(all["rows"].size(), 3u);
+  ASSERT_EQ(all["rows"].size(), 4u);
   // Half of the accuracy of Embree's search, and the ground between crossings, which triangles have.
   for (const json& row : all["rows"]) EXPECT_LT(row["error_p50_deg"], 0.25) << row;
+  const json maps = output_of("sky --sizes 129 --maps");
+  expect_documented(maps, "sky");
+  ASSERT_EQ(maps["rows"].size(), 2u);
+  EXPECT_EQ(maps["rows"][0]["mean_error"], 0);
+  EXPECT_LT(maps["rows"][1]["mean_error"], 0.001);
 }
 
 TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {

@@ -31,7 +31,7 @@ HorizonGround::HorizonGround(const HeightField& field, int sign, float eye, cons
 // Maxima over 10 samples from those over 2, 4 and 8, first along rows, then along columns.
 void HorizonGround::build_first(float above, const Progress& progress) {
   Maxima& to = levels_[0];
-  const std::vector<float>& heights = heights_.values();
+  const LargeVector<float>& heights = heights_.values();
   const std::ptrdiff_t pitch = heights_.pitch();
   to.first = -HorizonHeights::kMargin, to.pitch = pitch;
   const std::int64_t high = rows() + 2 * HorizonHeights::kMargin;

@@ -37,7 +37,7 @@ class HorizonGround {
 
   /// Maxima of a level; -inf over a window without ground. `corner` counts strides, and may be before the first sample.
   struct Maxima {
-    std::vector<float> values;
+    LargeVector<float> values;
     std::ptrdiff_t pitch = 0;
     int first = 0;  // corner of the first value, in strides
     const float* at(int corner_col, int corner_row) const {

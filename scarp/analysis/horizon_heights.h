@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
+#include "scarp/base/large_vector.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
@@ -27,7 +27,7 @@ class HorizonHeights {
   /// Samples from a row to the next.
   std::ptrdiff_t pitch() const { return pitch_; }
   /// Rows of `pitch` samples, the margin included.
-  const std::vector<float>& values() const { return values_; }
+  const LargeVector<float>& values() const { return values_; }
 
   /// Samples on each side. Groups of nodes at a border look up to 16 columns and 2 rows past it; windows of level 0 of
   /// HorizonGround begin up to 24 samples before it, and lines of HorizonSweep 25.
@@ -41,7 +41,7 @@ class HorizonHeights {
   int cols_, rows_, sign_;
   double tallest_;
   std::ptrdiff_t pitch_;
-  std::vector<float> values_;
+  LargeVector<float> values_;
 };
 
 }  // namespace scarp

@@ -25,7 +25,7 @@ struct SunMoment {
   double day_of_year = 1;
 };
 
-/// What the energy depends on besides the sun.
+/// The air and the ground, on which the energy depends besides the sun.
 struct ClearSkyGround {
   double linke = 3;                        ///< turbidity, 1 to 8
   double albedo = 0.2;                     ///< of the ground around, 0 to 1
