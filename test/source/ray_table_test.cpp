@@ -163,7 +163,7 @@ TEST(RayCsv, RejectsBadHeaders) {
   expect_csv_refused("x,y,dx,dy,dz\n", "no column 'z'");
   expect_csv_refused("x,y,z\n", "no column 'dx'");
   expect_csv_refused("x,y,z,tx,tz\n", "no column 'ty'");
-  expect_csv_refused("lon,lat,z,dx,dy,dz\n", "no column 'x'");
+  expect_csv_refused("lon,y,z,dx,dy,dz\n", "no column 'lat'");
   expect_csv_refused("x,y,z,x,dx,dy,dz\n", "duplicate column 'x'");
   expect_csv_refused("x,y,z,dx,dy,dz,tx,ty,tz\n", "directions and targets");
   expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col', required with 'start_row'");

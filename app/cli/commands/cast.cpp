@@ -50,9 +50,9 @@ constexpr std::string_view kFirstHit = "marches of other fields return the first
 
 // Below the options in the help.
 constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
-  x,y,z                 origin
+  x,y,z                 origin; or lon,lat,z for --coords lonlat
   dx,dy,dz              direction; its length is the unit of t
-  or tx,ty,tz           target instead of a direction: t is 1 there, and the ray ends there
+  or tx,ty,tz           target (tlon,tlat,tz) instead of a direction: t is 1, and the ray ends there
   t_min,t_max           optional range of t (0 to infinity; 0 to 1 with a target)
   start_col,start_row   optional cell of the terrain on whose surface the ray starts
   others                copied to the hits
@@ -340,8 +340,14 @@ WholeInput open_whole(const CastOptions& options, InputKind kind, const std::opt
   return {std::move(input), std::move(places), std::move(scene), std::move(notes)};
 }
 
-void run_table(const CastOptions& options, InputKind kind, const HeightMarchEntry* all) {
+void run_table(CastOptions options, InputKind kind, const HeightMarchEntry* all) {
   const RayTable table = read_rays(options.rays);
+  if (table.lonlat) {
+    if (!options.coordinates.empty() && options.coordinates != name_of(Coordinates::lonlat))
+      throw Error(fmt::format("{}: has columns lon and lat (leave out --coords {}, or name the columns x and y)",
+                              options.rays, options.coordinates));
+    options.coordinates = name_of(Coordinates::lonlat);
+  }
   const bool terrain = kind == InputKind::terrain && options.mesh.file.empty();
   HitTable out(options.output,
                options.any ? TableKind::blocked

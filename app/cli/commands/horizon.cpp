@@ -26,7 +26,8 @@ constexpr const char* kHorizonFooter =
     R"(Pixels: degrees above the horizontal up to which ground hides the sky, one band per azimuth. Angles
 below zero are kept (--clamp: 0 instead). -90: no ground in that direction, as at the border.
 With --at or --points the output is CSV: point, horizon_azimuth, horizon_elevation (degrees) and
-distance (metres to the ground that is the horizon; empty: no ground). pvlib takes the middle two.)";
+distance (metres to the ground that is the horizon; empty: no ground). pvlib takes the middle two.
+With --skip-bad also status: ok, invalid, outside or nodata.)";
 
 void run(HorizonOptions options, const Command& command) {
   if (options.at_points()) return write_point_horizons(options);
@@ -86,7 +87,7 @@ void add_horizon(Program& program) {
   command.add(&o.first_azimuth, {.names = "--first-azimuth",
                                  .help = "first direction, clockwise from true north",
                                  .unit = "degrees",
-                                 .range = {0, 360},
+                                 .range = {-360, 360},
                                  .common = true});
   command.add(&o.at, {.names = "--at",
                       .value = "X,Y[,H]",
@@ -94,13 +95,14 @@ void add_horizon(Program& program) {
                       .note = "repeatable",
                       .repeats = true,
                       .common = true});
-  command.add(&o.points, {.names = "--points",
-                          .value = "FILE",
-                          .help = "points: CSV (x,y[,z]) or a vector file of points",
-                          .files = "csv geojson gpkg shp",
-                          .note = "-: CSV from standard input",
-                          .common = true,
-                          .excludes = {"--at"}});
+  add_place_file(command, o.points,
+                 {.names = "--points",
+                  .value = "FILE",
+                  .help = "points: CSV (x,y[,z]) or a vector file of points",
+                  .files = "csv geojson gpkg shp",
+                  .note = "-: CSV from standard input",
+                  .common = true,
+                  .excludes = {"--at"}});
   add_output_option(command, o.output, "map, or with --at or --points a .csv table", "tif tiff img asc csv",
                     "points: standard output");
   command.add(&o.clamp, {.names = "--clamp", .help = "0 instead of angles below the horizontal", .common = true});

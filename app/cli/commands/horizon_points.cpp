@@ -26,7 +26,7 @@ namespace scarp::cli {
 namespace {
 
 PlaceTable points_of(const HorizonOptions& options) {
-  if (!options.points.empty()) return read_places(options.points, PlaceKind::points);
+  if (!options.points.path.empty()) return options.points.read(PlaceKind::points);
   PlaceTable table;
   for (const std::string& text : options.at) table.rows.push_back({typed_height_place(text, "--at"), {}, 0});
   return table;
@@ -46,21 +46,30 @@ double on_line(double position) {
   return std::abs(position - line) <= 0.5 / kSubcells ? line : position;
 }
 
-std::vector<Point> located(MapInput& input, const PlaceTable& table, const HorizonSettings& settings) {
+// The points in good rows.
+std::vector<Point> located(MapInput& input, const PlaceTable& table, const HorizonSettings& settings,
+                           RowStatus& status) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const PlaceRow& row = table.rows[i];
     const std::string what = row.line > 0 ? table.where(i) : "--at";
-    const dvec2 exact = input.grid_of(row.from, table.lonlat, what), at(on_line(exact.x), on_line(exact.y));
-    const double eye_height = row.from.z.value_or(settings.eye_height);
-    if (eye_height < 0)
-      throw Error(fmt::format("{}: height {:.10g}: expected at least 0 metres above the ground", what, eye_height));
-    // Only ground within the distance matters, and one cell beyond it: the last crossings lie between samples.
-    const Node node{static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y))};
-    const dvec2 cell = input.cells_at(at.x, at.y, settings.max_distance);
-    points.push_back(
-        {what, at, eye_height, part_around(input, node, settings.max_distance + 2 * std::max(cell.x, cell.y))});
+    dvec2 at(0.0);
+    status.attempt(i, RowStatus::kOutside, [&] {
+      const dvec2 exact = input.grid_of(row.from, table.lonlat, what);
+      at = {on_line(exact.x), on_line(exact.y)};
+    });
+    status.attempt(i, RowStatus::kInvalid, [&] {
+      const double eye_height = row.from.z.value_or(settings.eye_height);
+      if (eye_height < 0)
+        throw Error(fmt::format("{}: height {:.10g}: expected at least 0 metres above the ground", what, eye_height));
+      // Only ground within the distance matters, and one cell beyond it: the last crossings lie between samples.
+      const Node node{static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y))};
+      const dvec2 cell = input.cells_at(at.x, at.y, settings.max_distance);
+      points.push_back(
+          {what, at, eye_height, part_around(input, node, settings.max_distance + 2 * std::max(cell.x, cell.y))});
+    });
   }
+  status.require_good();
   return points;
 }
 
@@ -88,8 +97,10 @@ std::vector<HorizonView> horizons_at(MapInput& input, const Point& point, const 
 }
 
 std::string table_of(const HorizonOptions& options, MapInput& input, const PlaceTable& table) {
+  const bool skips = options.points.skip_bad;
+  RowStatus status(table, skips);
   const HorizonSettings settings = horizon_settings(options.horizon, input);
-  const std::vector<Point> points = located(input, table, settings);
+  const std::vector<Point> points = located(input, table, settings, status);
   std::vector<RasterWindow> parts;
   for (const Point& point : points) parts.push_back(point.part);
   const bool together = read_together(input, parts);
@@ -97,20 +108,28 @@ std::string table_of(const HorizonOptions& options, MapInput& input, const Place
   const Progress progress = terminal_progress("horizon");
   std::string text, carried;
   for (const std::string& name : table.carried.names) append_csv_text(text, name), text += ',';
-  text += "point,horizon_azimuth,horizon_elevation,distance\n";
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!together) input.read(parts[i], {});
-    const Progress of_point = progress_part(progress, static_cast<double>(i), static_cast<double>(points.size()));
-    const std::vector<HorizonView> views = horizons_at(input, points[i], azimuths, settings, of_point);
+  text += fmt::format("point,horizon_azimuth,horizon_elevation,distance{}\n", skips ? ",status" : "");
+  std::size_t next = 0;  // of `points`
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    std::vector<HorizonView> views;
+    if (status.good(row)) {
+      if (!together) input.read(parts[next], {});
+      const Progress of_point = progress_part(progress, static_cast<double>(next), static_cast<double>(points.size()));
+      status.attempt(row, RowStatus::kNodata,
+                     [&] { views = horizons_at(input, points[next], azimuths, settings, of_point); });
+      ++next;
+    }
     carried.clear();
     for (std::size_t k = 0; k < table.carried.names.size(); ++k)
-      append_csv_text(carried, table.carried.at(i, k)), carried += ',';
+      append_csv_text(carried, table.carried.at(row, k)), carried += ',';
+    if (!status.good(row)) text += fmt::format("{}{},,,,{}\n", carried, row + 1, status.of(row));
     for (std::size_t k = 0; k < views.size(); ++k) {
       const double angle = options.clamp ? std::max(views[k].angle, 0.0) : views[k].angle;
-      text += fmt::format("{}{},{:.10g},{:.6f},{}\n", carried, i + 1, azimuths[k], angle * kDegreesPerRadian,
-                          views[k].distance ? fmt::format("{:.10g}", *views[k].distance) : "");
+      text += fmt::format("{}{},{:.10g},{:.6f},{}{}\n", carried, row + 1, azimuths[k], angle * kDegreesPerRadian,
+                          views[k].distance ? fmt::format("{:.10g}", *views[k].distance) : "", skips ? ",ok" : "");
     }
   }
+  if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
   return text;
 }
 
@@ -120,7 +139,7 @@ std::vector<double> HorizonOptions::all_azimuths() const {
   constexpr int kMapAzimuths = 16, kPointAzimuths = 360;
   const int count = azimuths.value_or(at_points() ? kPointAzimuths : kMapAzimuths);
   std::vector<double> all;
-  for (int i = 0; i < count; ++i) all.push_back(std::fmod(first_azimuth + 360.0 * i / count, 360.0));
+  for (int i = 0; i < count; ++i) all.push_back(std::fmod(first_azimuth + 360.0 + 360.0 * i / count, 360.0));
   return all;
 }
 
@@ -133,6 +152,7 @@ void write_point_horizons(HorizonOptions options) {
   const ThreadLimit limit(options.threads);
   const PlaceTable table = points_of(options);
   MapInput input(options);
+  input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());
   keep_inputs(options.output, input.files());
   if (to_file) const ReplaceFile writable(options.output);
   const std::string text = table_of(options, input, table);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/cli/options/horizon_options.h"
+#include "app/cli/options/place_file.h"
 #include "app/cli/picture/map_run.h"
 
 namespace scarp::cli {
@@ -16,10 +17,10 @@ struct HorizonOptions : MapCommand {
   double first_azimuth = 0;
   HorizonInput horizon;
   std::vector<std::string> at;
-  std::string points;
+  PlaceFile points;
   bool clamp = false, distance = false;
 
-  bool at_points() const { return !at.empty() || !points.empty(); }
+  bool at_points() const { return !at.empty() || !points.path.empty(); }
   /// Degrees clockwise from true north.
   std::vector<double> all_azimuths() const;
 };

@@ -32,6 +32,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kOutput = R"(Output, one row or line per line of sight:
   line          from 1
+  status        with --skip-bad: ok, invalid, outside or nodata; other lines are empty
   visible       1 or 0
   distance      horizontal, metres
   eye,target    heights above sea, metres
@@ -54,15 +55,24 @@ struct Answer {
   LineOfSight line;
 };
 
-std::string csv_of(const MapInput& input, const PlaceTable& table, const std::vector<Answer>& answers) {
+std::string csv_of(const MapInput& input, const PlaceTable& table, const RowStatus* status,
+                   const std::vector<Answer>& answers) {
   std::string out;
   for (const std::string& name : table.carried.names) append_csv_text(out, name), out += ',';
-  out += "line,visible,distance,eye,target,clearance,clearance_at,block_x,block_y,block_height,block_at\n";
+  out +=
+      fmt::format("line,{}visible,distance,eye,target,clearance,clearance_at,block_x,block_y,block_height,block_at\n",
+                  status ? "status," : "");
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t k = 0; k < table.carried.names.size(); ++k)
       append_csv_text(out, table.carried.at(i, k)), out += ',';
+    out += fmt::format("{},", i + 1);
+    if (status) out += fmt::format("{},", status->of(i));
+    if (status && !status->good(i)) {
+      out += ",,,,,,,,,\n";
+      continue;
+    }
     const LineOfSight& line = answers[i].line;
-    out += fmt::format("{},{:d},{:.10g},{:.10g},{:.10g},", i + 1, line.visible, line.distance, line.eye, line.target);
+    out += fmt::format("{:d},{:.10g},{:.10g},{:.10g},", line.visible, line.distance, line.eye, line.target);
     out += std::isfinite(line.clearance)
                ? fmt::format("{:.10g},{:.10g}", line.clearance, line.clearance_along * line.distance)
                : ",";
@@ -76,7 +86,8 @@ std::string csv_of(const MapInput& input, const PlaceTable& table, const std::ve
   return out;
 }
 
-std::string geojson_of(const MapInput& input, const PlaceTable& table, const std::vector<Answer>& answers, bool parts) {
+std::string geojson_of(const MapInput& input, const PlaceTable& table, const RowStatus* status,
+                       const std::vector<Answer>& answers, bool parts) {
   const auto point = [&](double col, double row, double height) {
     const dvec2 at = input.lonlat_of(col, row).value_or(input.place_of(col, row));
     return Json{at.x, at.y, height};
@@ -88,6 +99,11 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const std
     for (std::size_t k = 0; k < table.carried.names.size(); ++k)
       properties[table.carried.names[k]] = table.carried.at(i, k);
     properties["line"] = i + 1;
+    if (status) properties["status"] = status->of(i);
+    if (status && !status->good(i)) {
+      features.push_back({{"type", "Feature"}, {"properties", properties}, {"geometry", nullptr}});
+      continue;
+    }
     properties["visible"] = line.visible;
     properties["distance"] = line.distance;
     properties["eye"] = line.eye;
@@ -175,40 +191,50 @@ class Tester {
   std::optional<BlockMaxima> maxima_;
 };
 
-// Tests every line on the plane of its own observer.
-void test_one_by_one(MapInput& input, const PlaceTable& table, std::vector<Answer>& answers,
-                     std::span<const RasterWindow> parts) {
+// Tests lines on the planes of their own observers. `parts`: what each of them depends on; empty: it has been read.
+void test_one_by_one(MapInput& input, const PlaceTable& table, std::span<const std::size_t> lines, RowStatus& status,
+                     std::vector<Answer>& answers, std::span<const RasterWindow> parts) {
   const Progress progress = terminal_progress("los");
   std::optional<Tester> tester;
   if (parts.empty()) tester.emplace(input, table, false);
-  for (std::size_t i = 0; i < answers.size(); ++i) {
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const std::size_t i = lines[k];
     if (!parts.empty()) {
-      input.read(parts[i], {});
+      input.read(parts[k], {});
       tester.emplace(input, table, false);
     }
-    tester->require_ground_at(i, answers[i].ends);
     const auto& [from, to] = answers[i].ends;
     const dvec2 cells = {input.field().settings().cell_x, input.field().settings().cell_y};
     const double reach = std::hypot((to.col - from.col) * cells.x, (to.row - from.row) * cells.y);
-    tester->test(i, input.field_at(from.col, from.row, reach), answers[i]);
-    if (!progress(static_cast<double>(i + 1) / static_cast<double>(answers.size()))) throw Interrupted();
+    status.attempt(i, RowStatus::kNodata, [&] { tester->require_ground_at(i, answers[i].ends); });
+    status.attempt(i, RowStatus::kInvalid,
+                   [&] { tester->test(i, input.field_at(from.col, from.row, reach), answers[i]); });
+    if (!progress(static_cast<double>(k + 1) / static_cast<double>(lines.size()))) throw Interrupted();
   }
 }
 
-void test_lines(MapInput& input, const PlaceTable& table, std::vector<Answer>& answers) {
+void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std::vector<Answer>& answers) {
+  std::vector<std::size_t> lines;
   std::vector<RasterWindow> parts;
-  for (const Answer& one : answers) parts.push_back(part_of_line(input, one.ends.from, one.ends.to));
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!status.good(i)) continue;
+    lines.push_back(i);
+    parts.push_back(part_of_line(input, answers[i].ends.from, answers[i].ends.to));
+  }
   if (parts.empty()) return;
-  if (!read_together(input, parts)) return test_one_by_one(input, table, answers, parts);
-  if (is_geographic(input.georeference())) return test_one_by_one(input, table, answers, {});
+  if (!read_together(input, parts)) return test_one_by_one(input, table, lines, status, answers, parts);
+  if (is_geographic(input.georeference())) return test_one_by_one(input, table, lines, status, answers, {});
   const Tester tester(input, table, true);
-  for (std::size_t i = 0; i < answers.size(); ++i) tester.require_ground_at(i, answers[i].ends);
+  for (const std::size_t i : lines)
+    status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
   constexpr std::int64_t kGrain = 64;
   parallel_for(
-      static_cast<std::int64_t>(answers.size()), kGrain,
+      static_cast<std::int64_t>(lines.size()), kGrain,
       [&](std::int64_t begin, std::int64_t end) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-          tester.test(i, input.field(), answers[i]);
+        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+          const std::size_t i = lines[k];
+          status.attempt(i, RowStatus::kInvalid, [&] { tester.test(i, input.field(), answers[i]); });
+        }
       },
       terminal_progress("los"));
 }
@@ -221,16 +247,23 @@ void run(LosOptions options, const Command& command) {
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
   const PlaceTable table = sight_places(options.places);
+  if (options.places.pairs) options.heights.target = options.heights.observer;
   MapInput input(options);
   keep_inputs(options.output, input.files());
 
+  input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());
+  const bool skips = options.places.lines.skip_bad;
+  RowStatus status(table, skips);
+  const RowStatus* const shown = skips ? &status : nullptr;
   std::vector<Answer> answers(table.rows.size());
-  for (std::size_t i = 0; i < answers.size(); ++i) answers[i].ends = sight_ends(input, table, i, options.heights);
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    status.attempt(i, RowStatus::kOutside, [&] { answers[i].ends = sight_ends(input, table, i, options.heights); });
   if (options.surface == "bilinear" && input.curvature().coefficient != 0)
     throw Error("--surface bilinear: its rays are straight (add --cc 0)");
-  test_lines(input, table, answers);
-  const std::string text =
-      is_json(options.output) ? geojson_of(input, table, answers, options.parts) : csv_of(input, table, answers);
+  test_lines(input, table, status, answers);
+  if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
+  const std::string text = is_json(options.output) ? geojson_of(input, table, shown, answers, options.parts)
+                                                   : csv_of(input, table, shown, answers);
   if (options.output.empty()) {
     fmt::print("{}", text);
   } else {
@@ -264,6 +297,7 @@ void add_los(Program& program) {
   command.footer(kOutput);
   command.example("scarp los dem.tif --from 692000,5143000,2 --to 698500,5149000,10");
   command.example("scarp los dem.tif --lines links.csv --parts -o links.geojson");
+  command.example("scarp los dem.tif --lines towers.csv --pairs --observer-height 20 -o links.csv");
   command.runs([options, &command] {
     options->typed = command.typed_values();
     run(*options, command);

@@ -12,6 +12,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/commands/profile_march.h"
+#include "app/cli/commands/profile_path.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/map_part.h"
@@ -35,12 +36,15 @@ constexpr const char* kColumns = R"(CSV, a row for each end and each crossing wi
   ground    height above sea, metres
   drop      metres by which the ground appears lower (curvature and refraction)
   sight     height of the line of sight above sea, metres
-  visible   1 if the observer sees the ground there, else 0)";
+  visible   1 if the observer sees the ground there, else 0
+With --path, a row for each station: path (from 1), distance, x, y, ground, and with --skip-bad
+status.)";
 
 struct ProfileOptions : MapOptions {
   std::string from, to, size;
   SightHeights heights;
   ProfileMarchOptions march;
+  ProfilePath path;
 };
 
 constexpr int kWidth = 1200, kHeight = 480;  // of figures
@@ -140,6 +144,7 @@ void run(ProfileOptions options, const Command& command) {
 #endif
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
+  if (!options.path.file.path.empty()) return write_path_profiles(options.path, options, options.output);
   PlaceTable table;
   if (options.march.ray.empty()) {
     for (const char* name : {"--from", "--to"})
@@ -182,6 +187,7 @@ void add_profile(Program& program) {
   ProfileOptions& o = *options;
   command.add(&o.from, {.names = "--from", .value = "X,Y[,H]", .help = "observer, start of the ray", .common = true});
   command.add(&o.to, {.names = "--to", .value = "X,Y[,H]", .help = "target", .common = true});
+  add_profile_path_options(command, o.path);
   add_output_option(command, o.output, "result: .csv, .svg, .pdf or .png; -: CSV to standard output", "csv svg pdf png",
                     "standard output");
   command.add(&o.size, {.names = "--size",
@@ -197,6 +203,7 @@ void add_profile(Program& program) {
   add_map_options(command, o);
   command.footer(kColumns);
   command.example("scarp profile dem.tif --from 692000,5143000,400 --to 692900,5143500 --march max-mip -o ray.svg");
+  command.example("scarp profile dem.tif --path road.gpkg --spacing 25 -o road.csv");
   command.example("scarp profile dem.tif --from 692000,5143000 --to 698500,5149000,10 -o profile.svg");
   command.runs([options, &command] {
     options->typed = command.typed_values();

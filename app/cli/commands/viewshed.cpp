@@ -17,6 +17,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options/map_part.h"
+#include "app/cli/options/place_file.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
 #include "app/cli/picture/map_run.h"
@@ -49,7 +50,8 @@ Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a
 
 struct ViewshedOptions : MapCommand {
   std::vector<std::string> observers;
-  std::string observers_file, mode = "visible", azimuth, pitch;
+  PlaceFile observers_file;
+  std::string mode = "visible", azimuth, pitch;
   SightHeights heights;
   double min_distance = 0;
   std::optional<double> max_distance, nodata;
@@ -64,6 +66,7 @@ struct Stand {
   double reach;  // metres
   dvec2 at;
   std::string what;  // for messages
+  std::size_t row;   // of the table of observers
 };
 
 // An observer over the part of the raster that was read, with its own plane if the raster is in degrees.
@@ -71,11 +74,10 @@ struct Observer {
   Node node;
   ViewshedSettings settings;
   HeightField field;
-  dvec2 at;
 };
 
 PlaceTable observer_table(const ViewshedOptions& options) {
-  if (!options.observers_file.empty()) return read_places(options.observers_file, PlaceKind::points);
+  if (!options.observers_file.path.empty()) return options.observers_file.read(PlaceKind::points);
   if (options.observers.empty()) throw Error("no observer: give --observer X,Y or --observers FILE");
   PlaceTable table;
   for (const std::string& text : options.observers)
@@ -97,11 +99,11 @@ void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, doub
         fmt::format("--max-distance {}: is below --min-distance {}", settings.max_distance, settings.min_distance));
   if (!options.azimuth.empty()) {
     const auto n =
-        numbers_from(options.azimuth, ',', 2, 2, "--azimuth", "FROM,TO in degrees clockwise from north, 0 to 360");
+        numbers_from(options.azimuth, ',', 2, 2, "--azimuth", "FROM,TO in degrees clockwise from north, -360 to 360");
     for (const double degrees : n)
-      if (!(degrees >= 0 && degrees <= 360))
-        throw Error(
-            fmt::format("--azimuth '{}': expected FROM,TO in degrees clockwise from north, 0 to 360", options.azimuth));
+      if (!(degrees >= -360 && degrees <= 360))
+        throw Error(fmt::format("--azimuth '{}': expected FROM,TO in degrees clockwise from north, -360 to 360",
+                                options.azimuth));
     if (n[1] - n[0] < 360) {
       settings.first_azimuth = grid_azimuth(n[0], grid_north);
       settings.last_azimuth = grid_azimuth(n[1], grid_north);
@@ -116,14 +118,16 @@ void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, doub
   }
 }
 
-std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options) {
-  const PlaceTable table = observer_table(options);
+std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, const PlaceTable& table,
+                             RowStatus& status) {
+  input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());
   std::vector<Stand> stands;
   double farthest = 0;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const PlaceRow& row = table.rows[i];
     const std::string what = row.line > 0 ? table.where(i) : "--observer";
-    const Node node = input.node_of(row.from, table.lonlat, what);
+    Node node;
+    if (!status.attempt(i, RowStatus::kOutside, [&] { node = input.node_of(row.from, table.lonlat, what); })) continue;
     const dvec2 snapped = input.place_of(node.col, node.row);
     ViewshedSettings settings;
     settings.curvature = input.curvature();
@@ -135,11 +139,12 @@ std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options) {
     }
     const double reach = options.max_distance.value_or(std::numeric_limits<double>::infinity());
     set_limits(settings, options, options.azimuth.empty() ? 0 : input.grid_north_at(node.col, node.row, reach));
-    stands.push_back({node, settings, reach, snapped, what});
+    stands.push_back({node, settings, reach, snapped, what, i});
     // Measured in samples, which suits degrees and metres.
     const dvec2 typed = input.position_of(row.from, table.lonlat, what);
     farthest = std::max(farthest, std::hypot(typed.x - node.col, typed.y - node.row));
   }
+  status.require_good();
   constexpr double kNoticed = 0.01;  // of a sample
   if (farthest > kNoticed)
     input.notes.push_back(fmt::format("observers stand on the nearest sample, up to {:.2g} samples away", farthest));
@@ -148,19 +153,33 @@ std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options) {
 
 std::vector<Observer> observers_of(MapInput& input, const std::vector<Stand>& stands) {
   std::vector<Observer> observers;
-  for (const Stand& one : stands) {
-    const Node node = in_part(input, one.node);
-    observers.push_back({node, one.settings, input.field_at(one.node.col, one.node.row, one.reach), one.at});
-    try {
+  for (const Stand& one : stands)
+    observers.push_back(
+        {in_part(input, one.node), one.settings, input.field_at(one.node.col, one.node.row, one.reach)});
+  return observers;
+}
+
+// Removes stands without ground, or below it. The samples have been read.
+void keep_usable(std::vector<Stand>& stands, MapInput& input, RowStatus& status) {
+  const auto attempt = [&](const Stand& one, std::string_view bad, const auto& work) {
+    return status.attempt(one.row, bad, [&] {
+      try {
+        work();
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", one.what, error.what()));
+      }
+    });
+  };
+  std::erase_if(stands, [&](const Stand& one) {
+    attempt(one, RowStatus::kNodata, [&] {
       if (!one.settings.observer_z)
         require_ground(input, {.col = static_cast<double>(one.node.col), .row = static_cast<double>(one.node.row)},
                        "observer");
-      const Viewpoint checked(observers.back().field, node, one.settings);
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", one.what, error.what()));
-    }
-  }
-  return observers;
+    });
+    return !attempt(one, RowStatus::kInvalid,
+                    [&] { const Viewpoint checked(input.field(), in_part(input, one.node), one.settings); });
+  });
+  if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
 }
 
 // Pixel values of `visible`.
@@ -356,10 +375,13 @@ void run(ViewshedOptions options, const Command& command) {
   const std::optional<PixelValues> values = codes ? std::optional(pixel_values(options)) : std::nullopt;
   MapRun run(options, command, codes ? "Byte" : counts ? "UInt16" : "Float32");
   MapInput& input = run.input();
-  const std::vector<Stand> stands = stands_of(input, options);
+  const PlaceTable table = observer_table(options);
+  RowStatus status(table, options.observers_file.skip_bad);
+  std::vector<Stand> stands = stands_of(input, options, table, status);
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
   constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
   if (!run.begin(codes || counts ? 3 : 12, static_cast<double>(stands.size()) * kNode_s)) return;
+  keep_usable(stands, input, status);
   Metadata metadata{{"MODE", options.mode},
                     {"OBSERVERS", places_text(stands)},
                     {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)}};
@@ -400,13 +422,14 @@ void add_viewshed(Program& program) {
                              .note = "repeatable",
                              .repeats = true,
                              .common = true});
-  command.add(&o.observers_file, {.names = "--observers",
-                                  .value = "FILE",
-                                  .help = "observers: CSV (x,y[,z]) or a vector file of points",
-                                  .files = "csv geojson gpkg shp",
-                                  .note = "-: CSV from standard input",
-                                  .common = true,
-                                  .excludes = {"--observer"}});
+  add_place_file(command, o.observers_file,
+                 {.names = "--observers",
+                  .value = "FILE",
+                  .help = "observers: CSV (x,y[,z]) or a vector file of points",
+                  .files = "csv geojson gpkg shp",
+                  .note = "-: CSV from standard input",
+                  .common = true,
+                  .excludes = {"--observer"}});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
   command.add(&o.mode, {.names = "--mode",
                         .value = "MODE",

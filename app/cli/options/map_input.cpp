@@ -136,38 +136,61 @@ Metadata MapInput::curvature_metadata() const {
           {"DIAMETER", fmt::format("{:.10g} m", used.diameter)}};
 }
 
+std::optional<dvec2> MapInput::find_position(const TablePlace& place, bool lonlat) const {
+  std::array points{dvec3(place.x, place.y, 0)};
+  if ((lonlat ? *lonlat_ : *frame_).to_local(points)) return std::nullopt;
+  return dvec2(points[0].x / georeference().cell_x_m, rows() - 1 - points[0].y / georeference().cell_y_m);
+}
+
+bool MapInput::has_pixel(const dvec2& at) const {
+  return at.x >= -0.5 && at.y >= -0.5 && at.x < cols() - 0.5 && at.y < rows() - 0.5;
+}
+
+std::string MapInput::swapped_hint(const TablePlace& place, bool lonlat) const {
+  const auto at = find_position({place.y, place.x, {}}, lonlat);
+  if (!at || !has_pixel(*at)) return {};
+  const bool degrees = lonlat || frame_->coordinates() == Coordinates::lonlat ||
+                       (is_geographic(georeference()) && frame_->coordinates() == Coordinates::map);
+  return fmt::format("{:.10g},{:.10g} is inside: are {} swapped?", place.y, place.x,
+                     degrees ? "longitude and latitude" : "x and y");
+}
+
 dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   if (lonlat && !lonlat_)
     throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--crs)", path(), what));
-  std::array points{dvec3(place.x, place.y, 0)};
-  if ((lonlat ? *lonlat_ : *frame_).to_local(points))
-    throw Error(fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS", what, place.x, place.y));
-  return {points[0].x / georeference().cell_x_m, rows() - 1 - points[0].y / georeference().cell_y_m};
+  if (const auto at = find_position(place, lonlat)) return *at;
+  const std::string hint = swapped_hint(place, lonlat);
+  throw Error(fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS{}", what, place.x, place.y,
+                          hint.empty() ? "" : fmt::format(" ({})", hint)));
 }
 
 dvec3 MapInput::direction_of(const dvec3& typed) const { return frame_->direction_to_local(typed); }
 
-void MapInput::refuse_outside(const TablePlace& place, std::string_view what, double beyond) const {
-  const dvec2 low = place_of(-beyond, rows() - 1 + beyond), high = place_of(cols() - 1 + beyond, -beyond);
-  throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--coords)",
-                          what, place.x, place.y, path(), low.x, high.x, low.y, high.y));
+void MapInput::refuse_outside(const TablePlace& place, bool lonlat, std::string_view what) const {
+  const std::string hint = swapped_hint(place, lonlat);
+  const dvec2 low = place_of(-0.5, rows() - 0.5), high = place_of(cols() - 0.5, -0.5);
+  throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} ({})", what,
+                          place.x, place.y, path(), low.x, high.x, low.y, high.y, hint.empty() ? "--coords" : hint));
 }
 
-dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {
-  dvec2 at = position_of(place, lonlat, what);
+dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) {
+  const dvec2 at = position_of(place, lonlat, what);
   // Rounding may put places on the border outside.
-  const double last_col = cols() - 1, last_row = rows() - 1, rounding = 0.5 / kSubcells;
-  if (!(at.x >= -rounding && at.y >= -rounding && at.x <= last_col + rounding && at.y <= last_row + rounding))
-    refuse_outside(place, what, 0);
-  return {std::clamp(at.x, 0.0, last_col), std::clamp(at.y, 0.0, last_row)};
+  constexpr double kRounding = 0.5 / kSubcells;
+  const dvec2 inside{std::clamp(at.x, 0.0, cols() - 1.0), std::clamp(at.y, 0.0, rows() - 1.0)};
+  const double beyond = std::max(std::abs(at.x - inside.x), std::abs(at.y - inside.y));
+  if (!(beyond <= 0.5 + kRounding)) refuse_outside(place, lonlat, what);
+  if (beyond > kRounding && !std::exchange(border_is_noted_, true))
+    notes.push_back(fmt::format(
+        "{}: {:.10g},{:.10g} is in the outer half of a border pixel; such places are moved to the outermost samples",
+        what, place.x, place.y));
+  return inside;
 }
 
 Node MapInput::node_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   const dvec2 at = position_of(place, lonlat, what);
-  // Pixels are half open, as in GDAL.
-  const double col = std::floor(at.x + 0.5), row = std::floor(at.y + 0.5);
-  if (!(col >= 0 && row >= 0 && col < cols() && row < rows())) refuse_outside(place, what, 0.5);
-  return {static_cast<int>(col), static_cast<int>(row)};
+  if (!has_pixel(at)) refuse_outside(place, lonlat, what);
+  return {static_cast<int>(std::floor(at.x + 0.5)), static_cast<int>(std::floor(at.y + 0.5))};
 }
 
 dvec2 MapInput::place_of(double col, double row) const {

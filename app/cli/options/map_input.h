@@ -90,13 +90,14 @@ class MapInput {
   /// CURVATURE_COEFFICIENT and DIAMETER.
   Metadata curvature_metadata() const;
 
-  /// Position in columns and rows. Messages start with `what`. Throws Error for a position outside the samples.
-  dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// Position in columns and rows. Messages start with `what`. Places up to half a cell beyond the outermost samples
+  /// are moved to these, with a note. Throws Error for a place outside the raster's pixels.
+  dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what);
   /// The same for a place that may be outside.
   dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// A direction in the coordinates of --coords, its height in metres, in metres of the local frame.
   dvec3 direction_of(const dvec3& typed) const;
-  /// The sample nearest to a place, as grid_of(). Places up to half a cell beyond the border are valid.
+  /// The sample nearest to a place, as grid_of().
   Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// Converts a position in columns and rows to map coordinates, degrees or metres, as --coords specifies.
   dvec2 place_of(double col, double row) const;
@@ -115,7 +116,13 @@ class MapInput {
   dvec2 cells_at(double col, double row, double reach);
 
  private:
-  [[noreturn]] void refuse_outside(const TablePlace& place, std::string_view what, double beyond) const;
+  // nullopt outside the domain of the CRS.
+  std::optional<dvec2> find_position(const TablePlace& place, bool lonlat) const;
+  // Whether a position is in one of the raster's pixels, which are half open, as in GDAL.
+  bool has_pixel(const dvec2& at) const;
+  // A question for messages if the raster has a pixel at y,x.
+  std::string swapped_hint(const TablePlace& place, bool lonlat) const;
+  [[noreturn]] void refuse_outside(const TablePlace& place, bool lonlat, std::string_view what) const;
   const MetricPlane& plane_at(double col, double row, double reach);
 
   const MapOptions& options_;
@@ -132,7 +139,7 @@ class MapInput {
     MetricPlane plane;
   };
   std::optional<Plane> last_;  // consecutive places often have the same observer
-  bool plane_is_noted_ = false;
+  bool plane_is_noted_ = false, border_is_noted_ = false;
 };
 
 }  // namespace scarp::cli

@@ -44,17 +44,28 @@ void add_sight_places(Command& command, SightPlaces& places) {
                            .note = "repeatable: every observer looks at every target",
                            .repeats = true,
                            .common = true});
-  command.add(&places.lines, {.names = "--lines",
-                              .value = "FILE",
-                              .help = "lines: CSV (x,y[,z],tx,ty[,tz]) or a vector file (GeoJSON, GeoPackage, ...)",
-                              .files = "csv geojson gpkg shp",
-                              .note = "-: CSV from standard input",
-                              .common = true,
-                              .excludes = {"--from", "--to"}});
+  add_place_file(command, places.lines,
+                 {.names = "--lines",
+                  .value = "FILE",
+                  .help = "lines: CSV (x,y[,z],tx,ty[,tz]) or a vector file (GeoJSON, GeoPackage, ...)",
+                  .files = "csv geojson gpkg shp",
+                  .note = "-: CSV from standard input",
+                  .common = true,
+                  .excludes = {"--from", "--to"}});
+  command.add(&places.pairs,
+              {.names = "--pairs",
+               .help = "lines between all pairs of --from, or of the points of --lines, each at --observer-height",
+               .common = true,
+               .excludes = {"--to", "--target-height"}});
 }
 
 PlaceTable sight_places(const SightPlaces& places) {
-  if (!places.lines.empty()) return read_places(places.lines, PlaceKind::lines);
+  if (places.pairs) {
+    PlaceTable points;
+    for (const std::string& from : places.from) points.rows.push_back({typed_height_place(from, "--from"), {}, 0});
+    return pairs_of(places.lines.path.empty() ? points : places.lines.read(PlaceKind::points));
+  }
+  if (!places.lines.path.empty()) return places.lines.read(PlaceKind::lines);
   if (places.from.empty() || places.to.empty()) throw Error("no lines of sight: give --from and --to, or --lines FILE");
   PlaceTable table;
   for (const std::string& from : places.from)
@@ -71,10 +82,10 @@ dvec2 point_along(const SightEnds& ends, double along) {
   return {at(ends.from.col, ends.to.col), at(ends.from.row, ends.to.row)};
 }
 
-SightEnds sight_ends(const MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights) {
+SightEnds sight_ends(MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights) {
   const PlaceRow& one = table.rows[row];
   const auto end = [&](const TablePlace& place, double height, std::string_view option) {
-    const std::string what = one.line > 0 ? table.where(row) : std::string(option);
+    const std::string what = one.line > 0 ? table.where(row, &place == &one.to) : std::string(option);
     const dvec2 at = input.grid_of(place, table.lonlat, what);
     const bool sea = place.z && heights.datum == "sea";
     return SightEnd{at.x, at.y, place.z.value_or(height), sea ? HeightDatum::sea : HeightDatum::ground};

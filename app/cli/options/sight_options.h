@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/cli/options/map_input.h"
+#include "app/cli/options/place_file.h"
 #include "scarp/analysis/line_of_sight.h"
 #include "scarp/source/table/place_table.h"
 
@@ -26,13 +27,14 @@ TablePlace typed_height_place(const std::string& text, std::string_view option);
 /// Lines between points.
 struct SightPlaces {
   std::vector<std::string> from, to;  ///< X,Y[,H]
-  std::string lines;                  ///< a file
+  PlaceFile lines;                    ///< with pairs: of points
+  bool pairs = false;                 ///< lines between all pairs of points
 };
 
-/// Declares --from, --to and --lines.
+/// Declares --from, --to, --lines, --pairs, --layer and --skip-bad.
 void add_sight_places(Command& command, SightPlaces& places);
 
-/// Returns the lines from each --from to each --to, or those of --lines. Throws Error.
+/// Returns the lines from each --from to each --to, or those of --lines, or between all pairs. Throws Error.
 PlaceTable sight_places(const SightPlaces& places);
 
 /// The ends of one line.
@@ -42,6 +44,6 @@ struct SightEnds {
 /// Returns the point of a line at `along`, 0 to 1, in columns and rows.
 dvec2 point_along(const SightEnds& ends, double along);
 /// Positions count from the raster's north-west sample.
-SightEnds sight_ends(const MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights);
+SightEnds sight_ends(MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights);
 
 }  // namespace scarp::cli

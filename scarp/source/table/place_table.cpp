@@ -11,10 +11,12 @@
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/source/gdal_errors.h"
+#include "scarp/source/table/column_names.h"
 #include "scarp/source/table/csv_rows.h"
 #include "scarp/source/table/table_file.h"
 
@@ -35,8 +37,9 @@ struct Header {
 Header header_of(const std::vector<std::string_view>& fields, PlaceKind kind, PlaceTable& table) {
   Header header;
   header.at.fill(std::string_view::npos);
+  const std::vector<std::string> names = column_names(fields);
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto name = std::find(kNames.begin(), kNames.end(), trimmed(fields[i]));
+    const auto name = std::find(kNames.begin(), kNames.end(), names[i]);
     if (name == kNames.end()) {
       header.carried.push_back(i);
       table.carried.names.emplace_back(trimmed(fields[i]));
@@ -78,11 +81,13 @@ TablePlace place_from(double x_at, double y_at, std::optional<double> height, OG
   return place;
 }
 
-void add_feature(const OGRGeometry& geometry, PlaceKind kind, OGRCoordinateTransformation* transform,
+// `vertices`: with those between the ends of lines.
+void add_feature(const OGRGeometry& geometry, PlaceKind kind, bool vertices, OGRCoordinateTransformation* transform,
                  std::int64_t feature, std::vector<PlaceRow>& rows) {
   const auto type = wkbFlatten(geometry.getGeometryType());
   if (type == wkbMultiPoint || type == wkbMultiLineString || type == wkbGeometryCollection) {
-    for (const OGRGeometry* part : *geometry.toGeometryCollection()) add_feature(*part, kind, transform, feature, rows);
+    for (const OGRGeometry* part : *geometry.toGeometryCollection())
+      add_feature(*part, kind, vertices, transform, feature, rows);
     return;
   }
   const auto height = [&](double z_at) { return geometry.Is3D() ? std::optional(z_at) : std::nullopt; };
@@ -93,23 +98,54 @@ void add_feature(const OGRGeometry& geometry, PlaceKind kind, OGRCoordinateTrans
   } else if (kind == PlaceKind::lines && type == wkbLineString && geometry.toLineString()->getNumPoints() >= 2) {
     const OGRLineString& line = *geometry.toLineString();
     const int last = line.getNumPoints() - 1;
-    rows.push_back({place_from(line.getX(0), line.getY(0), height(line.getZ(0)), transform, feature),
-                    place_from(line.getX(last), line.getY(last), height(line.getZ(last)), transform, feature),
-                    feature});
+    const auto vertex = [&](int i) {
+      return place_from(line.getX(i), line.getY(i), height(line.getZ(i)), transform, feature);
+    };
+    PlaceRow row{vertex(0), vertex(last), feature};
+    for (int i = 1; vertices && i < last; ++i) row.between.push_back(vertex(i));
+    rows.push_back(std::move(row));
   } else {
     throw Error(fmt::format("feature {}: is a {} (expected {})", feature, geometry.getGeometryName(),
                             kind == PlaceKind::points ? "points" : "lines of two or more vertices"));
   }
 }
 
-PlaceTable read_vectors(const std::string& path, PlaceKind kind) {
+bool may_have(OGRLayer& layer, PlaceKind kind) {
+  const auto type = wkbFlatten(layer.GetGeomType());
+  if (type == wkbUnknown || type == wkbGeometryCollection) return true;
+  return kind == PlaceKind::points ? type == wkbPoint || type == wkbMultiPoint
+                                   : type == wkbLineString || type == wkbMultiLineString;
+}
+
+// The layer of this name, or the first that may have geometries of the kind, with a note if there are others.
+OGRLayer& layer_of(GDALDataset& dataset, PlaceKind kind, const std::string& name, std::vector<std::string>& notes) {
+  constexpr int kListed = 10;
+  std::string all;
+  for (int i = 0; i < dataset.GetLayerCount() && i < kListed; ++i)
+    all += fmt::format("{}'{}'", i > 0 ? ", " : "", dataset.GetLayer(i)->GetName());
+  if (dataset.GetLayerCount() > kListed) all += ", ...";
+  if (!name.empty()) {
+    if (OGRLayer* layer = dataset.GetLayerByName(name.c_str())) return *layer;
+    throw Error(fmt::format("no layer '{}' (layers: {})", name, all));
+  }
+  OGRLayer* chosen = nullptr;
+  for (OGRLayer* layer : dataset.GetLayers())
+    if (!chosen && may_have(*layer, kind)) chosen = layer;
+  if (!chosen) chosen = dataset.GetLayer(0);
+  if (dataset.GetLayerCount() > 1)
+    notes.push_back(
+        fmt::format("{} layers ({}); '{}' is read (--layer)", dataset.GetLayerCount(), all, chosen->GetName()));
+  return *chosen;
+}
+
+PlaceTable read_vectors(const std::string& path, PlaceKind kind, const PlaceReading& reading) {
   const GdalSession session;
   const GDALDatasetUniquePtr dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset || dataset->GetLayerCount() == 0)
     throw Error(session.reason("is neither CSV nor a vector format that GDAL can read"));
   PlaceTable table;
-  OGRLayer& layer = *dataset->GetLayer(0);
+  OGRLayer& layer = layer_of(*dataset, kind, reading.layer, table.notes);
   Transform transform;
   if (const OGRSpatialReference* crs = layer.GetSpatialRef()) {
     OGRSpatialReference from(*crs);
@@ -124,15 +160,21 @@ PlaceTable read_vectors(const std::string& path, PlaceKind kind) {
   std::int64_t number = 0;
   for (const auto& feature : layer) {
     ++number;
-    const OGRGeometry* geometry = feature->GetGeometryRef();
-    if (!geometry) throw Error(fmt::format("feature {}: has no geometry", number));
     const std::size_t before = table.rows.size();
-    add_feature(*geometry, kind, transform.get(), number, table.rows);
+    try {
+      const OGRGeometry* geometry = feature->GetGeometryRef();
+      if (!geometry) throw Error(fmt::format("feature {}: has no geometry", number));
+      add_feature(*geometry, kind, reading.vertices, transform.get(), number, table.rows);
+    } catch (const Error& error) {
+      if (!reading.keep_bad) throw;
+      table.rows.resize(before);
+      table.rows.push_back({{}, {}, number, 0, error.what()});
+    }
     for (std::size_t i = before; i < table.rows.size(); ++i)
       for (int k = 0; k < fields.GetFieldCount(); ++k)
         table.carried.cells.emplace_back(feature->IsFieldSetAndNotNull(k) ? feature->GetFieldAsString(k) : "");
   }
-  if (session.failed()) throw Error(session.reason("is damaged"));
+  if (session.failed() && !reading.keep_bad) throw Error(session.reason("is damaged"));
   return table;
 }
 
@@ -141,41 +183,85 @@ bool is_text(const std::string& path) {
   return path == "-" || extension == ".csv" || extension == ".txt" || extension == ".tsv";
 }
 
-}  // namespace
-
-std::string PlaceTable::where(std::size_t row) const {
-  return fmt::format("{}: {} {}", path, is_text(path) ? "line" : "feature", rows[row].line);
+// The places of a row. Throws Error naming the line.
+PlaceRow place_row(const CsvRows& rows, const Header& header, std::size_t width, PlaceKind kind, bool degrees) {
+  const auto& fields = rows.fields();
+  const std::int64_t line = rows.line();
+  if (fields.size() != width)
+    throw Error(fmt::format("line {}: {} fields (the header has {})", line, fields.size(), width));
+  const auto number = [&](Column column) { return finite_field(fields[header.at[column]], kNames[column], line); };
+  const auto height = [&](Column column) {
+    return header.has(column) && !trimmed(fields[header.at[column]]).empty() ? std::optional(number(column))
+                                                                             : std::nullopt;
+  };
+  PlaceRow row{{number(degrees ? lon : x), number(degrees ? lat : y), height(z)}, {}, line};
+  if (kind == PlaceKind::lines) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
+  return row;
 }
 
-PlaceTable parse_place_csv(std::string_view bytes, PlaceKind kind) {
+}  // namespace
+
+std::string PlaceTable::where(std::size_t row, bool target) const {
+  const PlaceRow& one = rows[row];
+  return fmt::format("{}: {} {}", path, is_text(path) ? "line" : "feature",
+                     target && one.to_line > 0 ? one.to_line : one.line);
+}
+
+PlaceTable pairs_of(const PlaceTable& points) {
+  const std::size_t count = points.rows.size(), pairs = count * (count - 1) / 2, columns = points.carried.names.size();
+  constexpr std::size_t kMostPairs = std::size_t{1} << 22, kMostPoints = std::size_t{1} << 16;
+  if (count < 2) throw Error("--pairs: one point makes no pair (give at least two)");
+  if (count > kMostPoints || pairs > kMostPairs)
+    throw Error(fmt::format("--pairs: {} points make more than {} pairs (split the table)", count, kMostPairs));
+  PlaceTable table;
+  table.path = points.path;
+  table.lonlat = points.lonlat;
+  table.notes = points.notes;
+  table.carried.names = {"from", "to"};
+  for (const char* end : {"_from", "_to"})
+    for (const std::string& name : points.carried.names) table.carried.names.push_back(name + end);
+  table.rows.reserve(pairs);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = i + 1; k < count; ++k) {
+      const PlaceRow &a = points.rows[i], &b = points.rows[k];
+      table.rows.push_back({a.from, b.from, a.line, b.line, a.bad.empty() ? b.bad : a.bad});
+      for (const std::size_t end : {i, k}) table.carried.cells.push_back(fmt::format("{}", end + 1));
+      for (const std::size_t end : {i, k})
+        for (std::size_t c = 0; c < columns; ++c) table.carried.cells.push_back(points.carried.at(end, c));
+    }
+  }
+  return table;
+}
+
+PlaceTable parse_place_csv(std::string_view bytes, PlaceKind kind, bool keep_bad) {
   CsvRows rows(bytes);
   if (!rows.next()) throw Error("is empty (expected a header and places)");
   PlaceTable table;
   const std::size_t width = rows.fields().size();
   const Header header = header_of(rows.fields(), kind, table);
   while (rows.next()) {
-    const auto& fields = rows.fields();
-    const std::int64_t line = rows.line();
-    if (fields.size() != width)
-      throw Error(fmt::format("line {}: {} fields (the header has {})", line, fields.size(), width));
-    const auto number = [&](Column column) { return finite_field(fields[header.at[column]], kNames[column], line); };
-    const auto height = [&](Column column) {
-      return header.has(column) && !trimmed(fields[header.at[column]]).empty() ? std::optional(number(column))
-                                                                               : std::nullopt;
-    };
-    const bool degrees = table.lonlat;
-    PlaceRow row{{number(degrees ? lon : x), number(degrees ? lat : y), height(z)}, {}, line};
-    if (kind == PlaceKind::lines) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
-    table.rows.push_back(row);
-    for (const std::size_t i : header.carried) table.carried.cells.emplace_back(fields[i]);
+    try {
+      table.rows.push_back(place_row(rows, header, width, kind, table.lonlat));
+    } catch (const Error& error) {
+      if (!keep_bad) throw;
+      table.rows.push_back({{}, {}, rows.line(), 0, error.what()});
+    }
+    for (const std::size_t i : header.carried)
+      table.carried.cells.emplace_back(i < rows.fields().size() ? rows.fields()[i] : std::string_view());
   }
   return table;
 }
 
-PlaceTable read_places(const std::string& path, PlaceKind kind) {
+PlaceTable read_places(const std::string& path, PlaceKind kind, const PlaceReading& reading) {
   try {
-    PlaceTable table = is_text(path) ? parse_place_csv(table_bytes(path), kind) : read_vectors(path, kind);
+    const bool text = is_text(path);
+    if (text && !reading.layer.empty()) throw Error("is a table without layers (leave out --layer)");
+    PlaceTable table =
+        text ? parse_place_csv(table_bytes(path), kind, reading.keep_bad) : read_vectors(path, kind, reading);
     table.path = path;
+    for (std::string& note : table.notes) note = fmt::format("{}: {}", path, note);
+    for (PlaceRow& row : table.rows)
+      if (!row.bad.empty()) row.bad = fmt::format("{}: {}", path, row.bad);
     if (table.rows.empty()) throw Error(kind == PlaceKind::points ? "contains no points" : "contains no lines");
     return table;
   } catch (const Error& error) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
+#include "scarp/source/table/column_names.h"
 #include "scarp/source/table/csv_rows.h"
 #include "scarp/source/table/table_file.h"
 
@@ -25,8 +26,9 @@ using PoseHeader = std::array<std::size_t, kPoseColumns.size()>;
 PoseHeader pose_header(const std::vector<std::string_view>& fields, PoseTable& table) {
   PoseHeader at;
   at.fill(kNoColumn);
+  const std::vector<std::string> names = column_names(fields);
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto name = std::find(kPoseColumns.begin(), kPoseColumns.end(), trimmed(fields[i]));
+    const auto name = std::find(kPoseColumns.begin(), kPoseColumns.end(), names[i]);
     if (name == kPoseColumns.end()) continue;
     std::size_t& column = at[static_cast<std::size_t>(name - kPoseColumns.begin())];
     if (column != kNoColumn) throw Error(fmt::format("two columns '{}'", *name));

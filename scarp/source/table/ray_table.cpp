@@ -11,6 +11,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/npy_header.h"
+#include "scarp/source/table/column_names.h"
 #include "scarp/source/table/csv_rows.h"
 #include "scarp/source/table/table_file.h"
 
@@ -18,7 +19,8 @@ namespace scarp {
 namespace {
 
 std::string_view needed(RayRows are) {
-  return are == RayRows::rays ? "required: x,y,z and either dx,dy,dz or tx,ty,tz"
+  return are == RayRows::rays ? "required: x,y,z and either dx,dy,dz or tx,ty,tz; or lon,lat,z and either dx,dy,dz or "
+                                "tlon,tlat,tz"
                               : "required: x,y[,z] and either dx,dy,dz or tx,ty[,tz]; or lon,lat[,z] and "
                                 "either dx,dy,dz or tlon,tlat[,tz]";
 }
@@ -60,13 +62,14 @@ class CsvHeader {
  public:
   CsvHeader(std::span<const std::string_view> fields, RayRows are) : fields_(fields.size()), are_(are) {
     places_.fill(kNone);
-    if (are == RayRows::cameras) {
-      lonlat_ =
-          std::any_of(fields.begin(), fields.end(), [](std::string_view field) { return trimmed(field) == "lon"; });
-    }
+    const std::vector<std::string> given = column_names(fields);
+    const auto is_given = [&](std::string_view name) {
+      return std::find(given.begin(), given.end(), name) != given.end();
+    };
+    lonlat_ = is_given("lon") && (are == RayRows::cameras || !(is_given("x") && is_given("y")));
     const auto& names = this->names();
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      const std::string_view name = trimmed(fields[i]);
+      const std::string& name = given[i];
       const auto known = std::find(names.begin(), names.end(), name);
       if (known == names.end()) {
         carried_.push_back(i);

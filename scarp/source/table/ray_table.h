@@ -5,9 +5,10 @@
 //   a,500,200,900,1,0,-0.5,4000    tx,ty,tz; optional: t_min, t_max, start_col, start_row
 //   b,510,200,900,1,0,-0.5,        an empty t_min, t_max or start counts as not given
 //
-// Other columns (here `id`) are kept as text. Separators are commas, semicolons or tabs, whichever comes first in the
-// header outside quotes; quotes as in RFC 4180; lines end with LF, CR LF or CR; a UTF-8 byte order mark and blank lines
-// are skipped. Numbers have a decimal point.
+// lon,lat and tlon,tlat (or longitude,latitude, ...) may replace x,y and tx,ty. Names are in any case. Other columns
+// (here `id`) are kept as text. Separators are commas, semicolons or tabs, whichever comes first in the header outside
+// quotes; quotes as in RFC 4180; lines end with LF, CR LF or CR; a UTF-8 byte order mark and blank lines are skipped.
+// Numbers have a decimal point.
 //
 // Arrays are float32 or float64 of shape (N, 6) or (N, 8): x, y, z, dx, dy, dz[, t_min, t_max]; or N structures with
 // numeric fields named as above. Other fields are skipped.
@@ -34,7 +35,7 @@ enum class RayAim : std::uint8_t {
 };
 
 /// The kind of a table: rays or cameras. Tables of rays must have the columns z and tz. Tables of cameras may lack them
-/// (they are then 0), and may have columns lon, lat, tlon, tlat instead of x, y, tx, ty.
+/// (they are then 0).
 enum class RayRows : std::uint8_t { rays, cameras };
 
 /// One ray of the table.
