@@ -63,6 +63,7 @@ Program scarp_program() {
 #endif
   add_los(program);
   add_profile(program);
+  add_contours(program);
   add_info(program);
   add_generate(program);
   add_marches(program);

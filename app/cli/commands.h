@@ -9,6 +9,7 @@ namespace scarp::cli {
 void add_render(Program& program);
 void add_cast(Program& program);
 void add_composite(Program& program);
+void add_contours(Program& program);
 void add_horizon(Program& program);
 void add_info(Program& program);
 void add_los(Program& program);

@@ -28,7 +28,7 @@ expect() {
   if [[ $got != "$2" ]]; then fail "'$1': expected '$2', got '$got'"; fi
 }
 expect 'scarp ren' 'render'
-expect 'scarp c' 'cast composite'
+expect 'scarp c' 'cast composite contours'
 expect 'scarp render --look ' 'comanche cost error height hillshade shaded steps'
 expect 'scarp render --look s' 'shaded steps'
 expect 'scarp render --look = h' 'height hillshade'

@@ -272,7 +272,8 @@ void add_shadow(Program& program) {
   command.add(&o.fraction, {.names = "--fraction",
                             .help = "lit fraction of the sun's disc (0.533 degrees) instead of codes",
                             .common = true});
-  add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  add_output_option(command, o.output, "raster to write, or polygons of its codes (.gpkg, .geojson, .shp)",
+                    "tif tiff img asc gpkg geojson shp");
   add_surface_option(command, o.surface);
   add_map_command(command, o, [options, &command] { run(*options, command); });
   command.footer(kShadowFooter);

@@ -430,7 +430,8 @@ void add_viewshed(Program& program) {
                   .note = "-: CSV from standard input",
                   .common = true,
                   .excludes = {"--observer"}});
-  add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  add_output_option(command, o.output, "raster to write, or polygons of its codes (.gpkg, .geojson, .shp)",
+                    "tif tiff img asc gpkg geojson shp");
   command.add(&o.mode, {.names = "--mode",
                         .value = "MODE",
                         .help = "content of pixels",

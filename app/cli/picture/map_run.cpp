@@ -82,7 +82,7 @@ void MapRun::write(const MapRecipe& recipe) {
   RasterMap map = map_of(input_, options_.raster_output, area_, recipe.method, recipe.metadata);
   const std::vector<ComputedBand> bands = recipe.compute(rows, terminal_progress(command_.name()));
   for (const ComputedBand& band : bands) map.bands.push_back(view_of(band));
-  write_raster_map(options_.output, map, terminal_progress("write"));
+  write_map(options_.raster_output, options_.output, map);
   if (preview) preview->write(map, rows, recipe.ramp);
   print_map_summary(input_, options_.raster_output, area_, options_.output, recipe.summary(), start_);
 }

@@ -13,8 +13,15 @@
 #include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
+#include "scarp/output/map_vectors.h"
 
 namespace scarp::cli {
+
+namespace {
+
+constexpr const char* kPolygons = "polygons";
+
+}  // namespace
 
 void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes) {
   command.add(&options.driver, {.names = "--of",
@@ -55,14 +62,37 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
 }
 
 void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type) {
-  if (options.driver.empty()) options.driver = raster_driver_of(map.output);
-  require_raster_driver(options.driver, options.creation, sample_type);
+  const std::string vectors = options.driver.empty() ? vector_driver_of(map.output) : "";
+  if (!vectors.empty() && sample_type != "Float32") {
+    if (!options.creation.empty())
+      throw Error(fmt::format("--co: applies to rasters, and '{}' holds polygons", map.output));
+    options.driver = kPolygons;
+  } else {
+    if (!vectors.empty() && vectors != "GPKG")
+      throw Error(fmt::format("output '{}': polygons are for codes and counts (name it *.tif)", map.output));
+    if (options.driver.empty()) options.driver = raster_driver_of(map.output);
+    require_raster_driver(options.driver, options.creation, sample_type);
+  }
   keep_inputs(map.output, map.typed);
   // Only a check: formats choose their own temporary files.
   if (!options.dry_run) const ReplaceFile writable(map.output);
   if (options.preview.empty()) return;
   preview_format_of(options.preview);
   keep_apart("--preview", options.preview, map.output, map.typed);
+}
+
+std::optional<MapPlace> map_place(const Georeference& georeference) {
+  if (!georeference.present) return std::nullopt;
+  // GDAL's transform refers to pixel corners; nodes are at pixel centres.
+  auto m = georeference.map_from_node;
+  m[0] -= 0.5 * (m[1] + m[2]);
+  m[3] -= 0.5 * (m[4] + m[5]);
+  return MapPlace{m, georeference.crs_wkt};
+}
+
+void write_map(const RasterOutput& options, const std::string& output, const RasterMap& map) {
+  const Progress progress = terminal_progress("write");
+  options.driver == kPolygons ? write_map_polygons(output, map, progress) : write_raster_map(output, map, progress);
 }
 
 MapArea map_area(const MapInput& input, const RasterOutput& options, const RasterWindow& whole,
@@ -94,14 +124,7 @@ RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapAr
   map.rows = output.rows;
   if (computed != output)
     map.part = MapPart{computed.col - output.col, computed.row - output.row, computed.cols, computed.rows};
-  const Georeference geo = input.georeference_of(output);
-  if (geo.present) {
-    // GDAL's transform refers to pixel corners; nodes are at pixel centres.
-    auto m = geo.map_from_node;
-    m[0] -= 0.5 * (m[1] + m[2]);
-    m[3] -= 0.5 * (m[4] + m[5]);
-    map.place = MapPlace{m, geo.crs_wkt};
-  }
+  map.place = map_place(input.georeference_of(output));
   map.driver = options.driver;
   map.creation_options = options.creation;
   map.metadata = std::move(metadata);

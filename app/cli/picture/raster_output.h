@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,7 +17,7 @@
 namespace scarp::cli {
 
 struct RasterOutput {
-  std::string driver;                 ///< empty: by the extension
+  std::string driver;                 ///< empty: by the extension; "polygons": a vector file
   std::vector<std::string> creation;  ///< NAME=VALUE
   std::string part;                   ///< I/N; empty: all
   std::string preview;                ///< picture; empty: none
@@ -28,8 +29,15 @@ struct RasterOutput {
 void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes = {});
 
 /// Throws Error, before hours of work, for formats and files that cannot be written, formats that cannot store samples
-/// of this type ("Float32"), and for files that are inputs. Sets the driver.
+/// of this type ("Float32"), and for files that are inputs. Sets the driver: names of vector files select polygons, for
+/// maps of codes and counts.
 void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type);
+
+/// The place of a raster's pixels; nullopt without a georeference.
+std::optional<MapPlace> map_place(const Georeference& georeference);
+
+/// Writes a map as settle_output() has chosen: a raster, or polygons. Throws Error naming the file; Interrupted.
+void write_map(const RasterOutput& options, const std::string& output, const RasterMap& map);
 
 /// The nodes that an output covers.
 struct MapArea {
