@@ -142,11 +142,55 @@ TEST_F(PlaceFiles, BadObserversAreSkippedOnRequest) {
     return all;
   };
   EXPECT_EQ(pixels("some.tif"), pixels("one.tif"));
+  const GDALDatasetUniquePtr raster(GDALDataset::Open(path("some.tif").c_str()));
+  EXPECT_STREQ(raster->GetMetadataItem("OBSERVERS"), "500105,5000105 2 m above ground") << "without skipped ones";
   expect_refused(
       on_dem("viewshed", {"-o", path("none.tif"), "--observers", write("none.csv", "x,y\n1,2\n3,4\n"), "--skip-bad"}),
       "no row can be used; the first: ");
   expect_refused(on_dem("viewshed", {"-o", path("none.tif"), "--observer", "500105,5000105", "--skip-bad"}),
                  "--skip-bad has no effect without --observers FILE");
+}
+
+// Observers along a line of two segments are those at its stations: every 40 m, and at the end.
+TEST_F(PlaceFiles, ObserversStandAlongLines) {
+  const auto map = [&](const std::string& name, const Names& options) {
+    // Without a CRS, metres on the map are metres on the ground.
+    const Result result = run(Names{"viewshed", dem_} + options + Names{"--mode", "count", "-o", path(name)});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return GDALDatasetUniquePtr(GDALDataset::Open(path(name).c_str()));
+  };
+  const auto pixels = [](GDALDataset& raster) {
+    std::vector<int> all(30 * 20);
+    EXPECT_EQ(raster.GetRasterBand(1)->RasterIO(GF_Read, 0, 0, 30, 20, all.data(), 30, 20, GDT_Int32, 0, 0, nullptr),
+              CE_None);
+    return all;
+  };
+  const std::string line = write("line.csv", "x,y,z\n500105,5000105,2\n500205,5000105,4\n500205,5000155,\n"),
+                    points = write("points.csv",
+                                   "x,y,z\n500105,5000105,2\n500145,5000105,2.8\n500185,5000105,3.6\n"
+                                   "500205,5000125,\n500205,5000155,\n");
+  const auto along = map("along.tif", {"--observers", line, "--observer-spacing", "40"}),
+             each = map("each.tif", {"--observers", points});
+  EXPECT_EQ(pixels(*along), pixels(*each));
+  EXPECT_STREQ(along->GetMetadataItem("OBSERVERS"), each->GetMetadataItem("OBSERVERS")) << "and heights";
+  // Stations on one sample are one observer: 16 samples along the line.
+  const auto dense = map("dense.tif", {"--observers", line, "--observer-spacing", "3"});
+  const std::vector<int> counts = pixels(*dense);
+  EXPECT_EQ(counts[10 * 30 + 11], 16);
+  // Lines outside are errors, or skipped.
+  const std::string lines_file =
+      write("lines.geojson", R"({"type":"FeatureCollection","features":[)"
+                             R"({"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":)"
+                             R"([[15.0014,45.1539],[15.0020,45.1540]]}},)"
+                             R"({"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":)"
+                             R"([[15.0014,45.1539],[16.0020,45.1540]]}}]})");
+  const Names spaced{"--observers", lines_file, "--observer-spacing", "20"};
+  expect_refused(on_dem("viewshed", spaced + Names{"-o", path("x.tif")}), "feature 2: 16.002,45.154 is outside");
+  EXPECT_EQ(on_dem("viewshed", spaced + Names{"--skip-bad", "-o", path("x.tif")}).status, 0);
+  expect_refused(on_dem("viewshed", {"--observer", "500105,5000105", "--observer-spacing", "9", "-o", path("y.tif")}),
+                 "--observer-spacing has no effect without --observers FILE");
+  expect_refused(on_dem("viewshed", {"--observers", line, "--observer-spacing", "1e-9", "-o", path("y.tif")}),
+                 "--observer-spacing 1e-09: more than 1000000 stations");
 }
 
 // Each pair once; both ends are observers.

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_part.h"
+#include "app/cli/options/path_file.h"
 #include "app/cli/progress.h"
 #include "scarp/analysis/sight.h"
 #include "scarp/base/error.h"
@@ -18,50 +18,11 @@
 namespace scarp::cli {
 namespace {
 
-// A polyline in columns and rows.
-using Polyline = std::vector<dvec2>;
-
-// The polylines of a vector file; the rows of a text table are the vertices of one.
-PlaceTable paths_of(const PlaceFile& file) {
-  const std::string extension = extension_of(file.path);
-  const bool text = file.path == "-" || extension == ".csv" || extension == ".txt" || extension == ".tsv";
-  PlaceTable table =
-      read_places(file.path, text ? PlaceKind::points : PlaceKind::lines, {file.layer, true, file.skip_bad});
-  if (!text) return table;
-  const std::size_t all = table.rows.size();
-  std::string first;  // why
-  std::erase_if(table.rows, [&](const PlaceRow& row) {
-    if (first.empty()) first = row.bad;
-    return !row.bad.empty();
-  });
-  if (!first.empty())
-    table.notes.push_back(fmt::format("{} of {} vertices skipped; the first: {}", all - table.rows.size(), all, first));
-  if (table.rows.size() < 2) throw Error(fmt::format("{}: a path needs at least two vertices", file.path));
-  PlaceRow path{table.rows.front().from, table.rows.back().from, table.rows.front().line};
-  for (std::size_t i = 1; i + 1 < table.rows.size(); ++i) path.between.push_back(table.rows[i].from);
-  table.rows = {std::move(path)};
-  return table;
-}
-
-Polyline polyline_of(MapInput& input, const PlaceTable& table, std::size_t row) {
-  const PlaceRow& path = table.rows[row];
-  const std::string what = table.where(row);
-  Polyline line{input.grid_of(path.from, table.lonlat, what)};
-  for (const TablePlace& vertex : path.between) line.push_back(input.grid_of(vertex, table.lonlat, what));
-  line.push_back(input.grid_of(path.to, table.lonlat, what));
-  return line;
-}
-
-// Length of a segment in metres.
-double length_of(const dvec2& from, const dvec2& to, const dvec2& cell) {
-  return std::hypot((to.x - from.x) * cell.x, (to.y - from.y) * cell.y);
-}
-
 // The part that the heights along a polyline depend on.
 RasterWindow part_of(const MapInput& input, const Polyline& line) {
+  const auto end = [](const Vertex& vertex) { return SightEnd{vertex.at.x, vertex.at.y}; };
   std::vector<RasterWindow> parts;
-  for (std::size_t i = 1; i < line.size(); ++i)
-    parts.push_back(part_of_line(input, SightEnd{line[i - 1].x, line[i - 1].y}, SightEnd{line[i].x, line[i].y}));
+  for (std::size_t i = 1; i < line.size(); ++i) parts.push_back(part_of_line(input, end(line[i - 1]), end(line[i])));
   return union_of(parts);
 }
 
@@ -70,36 +31,24 @@ std::string rows_of(MapInput& input, std::size_t number, const Polyline& line, s
                     std::string_view status) {
   input.read(part_of(input, line), terminal_progress("read"));
   double reach = 0;
-  const dvec2 first = line.front(), here = input.cells_at(first.x, first.y, 0);
-  for (const dvec2& vertex : line) reach = std::max(reach, length_of(first, vertex, here));
+  const dvec2 first = line.front().at, here = input.cells_at(first.x, first.y, 0);
+  for (const Vertex& vertex : line) reach = std::max(reach, segment_length(first, vertex.at, here));
   const HeightField field = input.field_at(first.x, first.y, reach);
   const dvec2 cell{field.settings().cell_x, field.settings().cell_y};
-  const double spacing = typed.value_or(std::min(cell.x, cell.y));
+  std::vector<double> lengths;
+  for (std::size_t i = 1; i < line.size(); ++i) lengths.push_back(segment_length(line[i - 1].at, line[i].at, cell));
+  constexpr double kMostStations = 1e8;
+  const auto stations =
+      stations_of(line, lengths, typed.value_or(std::min(cell.x, cell.y)), "--spacing", kMostStations);
   const SightGround ground(field);
   std::string text;
-  const auto add = [&](double station, const dvec2& at) {
+  for (const Station& station : stations) {
+    const dvec2 at = station.vertex.at, place = input.place_of(at.x, at.y);
     const SightEnd local = in_part(input, SightEnd{at.x, at.y});
     const auto height = ground.height_at(local.col, local.row);
-    const dvec2 place = input.place_of(at.x, at.y);
-    text += fmt::format("{},{:.10g},{:.10g},{:.10g},{}{}\n", number, station, place.x, place.y,
+    text += fmt::format("{},{:.10g},{:.10g},{:.10g},{}{}\n", number, station.distance, place.x, place.y,
                         height ? fmt::format("{:.10g}", *height) : "", status);
-  };
-  double before = 0, total = 0;  // metres up to the segment, and of all
-  for (std::size_t i = 1; i < line.size(); ++i) total += length_of(line[i - 1], line[i], cell);
-  constexpr double kMostStations = 1e8;
-  if (total / spacing > kMostStations)
-    throw Error(
-        fmt::format("--spacing {:.10g}: more than {:.0f} stations over {:.6g} m", spacing, kMostStations, total));
-  std::int64_t station = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const double length = length_of(line[i - 1], line[i], cell);
-    for (; static_cast<double>(station) * spacing < before + length; ++station) {
-      const double along = (static_cast<double>(station) * spacing - before) / length;
-      add(static_cast<double>(station) * spacing, line[i - 1] + along * (line[i] - line[i - 1]));
-    }
-    before += length;
   }
-  add(before, line.back());
   return text;
 }
 
@@ -126,7 +75,7 @@ void add_profile_path_options(Command& command, ProfilePath& options) {
 void write_path_profiles(const ProfilePath& options, const MapOptions& map, const std::string& output) {
   if (!output.empty() && extension_of(output) != ".csv")
     throw Error(fmt::format("output '{}': expected .csv with --path", output));
-  const PlaceTable table = paths_of(options.file);
+  const PlaceTable table = read_paths(options.file);
   MapInput input(map);
   keep_inputs(output, input.files());
   input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());

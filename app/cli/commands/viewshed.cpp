@@ -17,6 +17,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options/map_part.h"
+#include "app/cli/options/path_file.h"
 #include "app/cli/options/place_file.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
@@ -51,6 +52,7 @@ Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a
 struct ViewshedOptions : MapCommand {
   std::vector<std::string> observers;
   PlaceFile observers_file;
+  std::optional<double> spacing;  // metres; the file holds lines
   std::string mode = "visible", azimuth, pitch;
   SightHeights heights;
   double min_distance = 0;
@@ -77,11 +79,45 @@ struct Observer {
 };
 
 PlaceTable observer_table(const ViewshedOptions& options) {
+  if (options.spacing) return read_paths(options.observers_file);
   if (!options.observers_file.path.empty()) return options.observers_file.read(PlaceKind::points);
   if (options.observers.empty()) throw Error("no observer: give --observer X,Y or --observers FILE");
   PlaceTable table;
   for (const std::string& text : options.observers)
     table.rows.push_back({typed_height_place(text, "--observer"), {}, 0});
+  return table;
+}
+
+// An observer at each station of the lines of a table, unless it stands on the sample of the one before. Lines that
+// leave the raster are bad rows if `skip`.
+PlaceTable along_lines(MapInput& input, const PlaceTable& lines, double spacing, bool skip) {
+  constexpr double kMostStations = 1e6;
+  PlaceTable table;
+  table.path = lines.path;
+  table.notes = lines.notes;
+  for (std::size_t i = 0; i < lines.rows.size(); ++i) {
+    const std::int64_t number = lines.rows[i].line;
+    try {
+      if (!lines.rows[i].bad.empty()) throw Error(lines.rows[i].bad);
+      const Polyline line = polyline_of(input, lines, i);
+      std::vector<double> lengths;
+      for (std::size_t k = 1; k < line.size(); ++k)
+        lengths.push_back(
+            segment_length(line[k - 1].at, line[k].at, input.cells_at(line[k - 1].at.x, line[k - 1].at.y, 0)));
+      dvec2 last(-1.0);
+      for (const Station& station : stations_of(line, lengths, spacing, "--observer-spacing", kMostStations)) {
+        const dvec2 at = station.vertex.at, sample{std::floor(at.x + 0.5), std::floor(at.y + 0.5)};
+        if (sample == std::exchange(last, sample)) continue;
+        const dvec2 place = input.place_of(at.x, at.y);
+        table.rows.push_back({{place.x, place.y, station.vertex.z}, {}, number});
+      }
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      if (!skip) throw;
+      table.rows.push_back({{}, {}, number, 0, error.what()});
+    }
+  }
   return table;
 }
 
@@ -375,8 +411,10 @@ void run(ViewshedOptions options, const Command& command) {
   const std::optional<PixelValues> values = codes ? std::optional(pixel_values(options)) : std::nullopt;
   MapRun run(options, command, codes ? "Byte" : counts ? "UInt16" : "Float32");
   MapInput& input = run.input();
-  const PlaceTable table = observer_table(options);
-  RowStatus status(table, options.observers_file.skip_bad);
+  const PlaceTable places = observer_table(options);
+  const bool skips = options.observers_file.skip_bad;
+  const PlaceTable table = options.spacing ? along_lines(input, places, *options.spacing, skips) : places;
+  RowStatus status(table, skips);
   std::vector<Stand> stands = stands_of(input, options, table, status);
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
   constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
@@ -430,6 +468,13 @@ void add_viewshed(Program& program) {
                   .note = "-: CSV from standard input",
                   .common = true,
                   .excludes = {"--observer"}});
+  command.add(&o.spacing, {.names = "--observer-spacing",
+                           .help = "distance of observers along the lines of --observers",
+                           .unit = "metres",
+                           .range = kAboveZero,
+                           .fallback = "none: --observers holds points",
+                           .common = true,
+                           .rules = {needs("--observers FILE", [&o] { return !o.observers_file.path.empty(); })}});
   add_output_option(command, o.output, "raster to write, or polygons of its codes (.gpkg, .geojson, .shp)",
                     "tif tiff img asc gpkg geojson shp");
   command.add(&o.mode, {.names = "--mode",
@@ -488,6 +533,7 @@ void add_viewshed(Program& program) {
   command.footer(kFooter);
   command.example("scarp viewshed dem.tif --observer 692000,5143000,2 -o seen.tif");
   command.example("scarp viewshed dem.tif --observers towers.csv --mode count -o count.tif");
+  command.example("scarp viewshed dem.tif --observers road.gpkg --observer-spacing 50 -o road_sees.tif");
   command.example("scarp viewshed -ox 692000 -oy 5143000 -md 20000 dem.tif seen.tif");
 }
 
