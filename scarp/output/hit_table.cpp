@@ -20,7 +20,9 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 4> kStatusNames = {"miss", "hit", "below", "exhausted"};
+// Those of HitStatus, and of rays that were not traced.
+constexpr std::array<std::string_view, 5> kStatusNames = {"miss", "hit", "below", "exhausted", "invalid"};
+constexpr std::size_t kInvalid = kStatusNames.size() - 1;
 constexpr std::array<std::string_view, 5> kKindNames = {"heights", "function", "shape", "voxels", "mesh"};
 constexpr std::array<std::string_view, 7> kFaceNames = {"low_x", "high_x", "low_y", "high_y",
                                                         "low_z", "high_z", "inside"};
@@ -194,6 +196,14 @@ void HitTable::add(std::int64_t first_ray, std::span<const std::uint8_t> blocked
     put(first_ray, std::array{static_cast<double>(first_ray), static_cast<double>(answer)});
     ++first_ray;
   }
+}
+
+void HitTable::add_invalid(std::int64_t ray) {
+  std::array<double, kHitColumns.size()> numbers;
+  numbers.fill(std::numeric_limits<double>::quiet_NaN());
+  numbers[kRay] = static_cast<double>(ray);
+  if (kind_ != TableKind::blocked) numbers[kStatus] = static_cast<double>(kInvalid);
+  put(ray, std::span<const double>(numbers).first(columns_of(kind_).size()));
 }
 
 void HitTable::commit() { file_->commit(npy_ ? npy_header(columns_of(kind_), rows_) : std::string()); }

@@ -7,11 +7,12 @@
 //
 // CSV: a header line, then one line per row. Numbers round-trip to the same double. Values that a row lacks (the
 // position of a miss, the cell of a voxel) are empty. status is hit, miss, below or exhausted; kind and face are also
-// words (HitKind, VoxelFace). `carried` are text columns that are copied unchanged.
+// words (HitKind, VoxelFace). `carried` are text columns that are copied unchanged. Rays that were not traced have the
+// status invalid, or no value of blocked.
 //
 // .npy (format version 1.0, NEP 1): a one-dimensional structured array of float64 fields with the names above, without
 // the carried columns. Missing values are NaN. Words are the values of their enumerations: status is 0 miss, 1 hit, 2
-// below, 3 exhausted.
+// below, 3 exhausted, 4 invalid.
 #pragma once
 
 #include <cstdint>
@@ -68,6 +69,8 @@ class HitTable {
   void add(std::span<const HitRow> rows);
   /// Adds results of occlusion queries: blocked[i] belongs to ray first_ray + i.
   void add(std::int64_t first_ray, std::span<const std::uint8_t> blocked);
+  /// Adds a ray that was not traced.
+  void add_invalid(std::int64_t ray);
   /// Writes the rest of the table and renames the file.
   void commit();
 

@@ -269,6 +269,37 @@ TEST_F(PlaceFiles, CastReadsLongitudeAndLatitude) {
   }
 }
 
+// Rays straight down: bad ones are a word, a place without a map position, a wrong cell; good ones are unchanged.
+TEST_F(PlaceFiles, BadRaysAreSkippedOnRequest) {
+  const std::string header = "id,lon,lat,z,dx,dy,dz,start_col,start_row\n", one = "a,15.0020,45.1539,100,0,0,-1,,\n",
+                    two = "e,15.0021,45.1539,100,0,0,-1,,\n";
+  const std::string file = write("rays.csv", header + one + "b,15.0020,45.1539,here,0,0,-1,,\n" +
+                                                 "c,15.0020,950,100,0,0,-1,,\n" +
+                                                 "d,15.0020,45.1539,100,0,0,-1,999,0\n" + two + "f,1\n"),
+                    good = write("good.csv", header + one + two);
+  expect_refused(on_dem("cast", {"--rays", file}), "rays.csv: line 3 (ray 1): 'here' in column 'z'");
+  const Result result = on_dem("cast", {"--rays", file, "--skip-bad"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("note: 4 of 6 rays skipped; the first: " + file + ": line 3 (ray 1): 'here'"),
+            std::string::npos)
+      << result.err;
+  const auto rows = csv_of(result.out), alone = csv_of(on_dem("cast", {"--rays", good}).out);
+  ASSERT_EQ(rows.size(), 7u);
+  EXPECT_EQ(rows[1], alone.at(1));
+  EXPECT_EQ((Names{rows[5].begin(), rows[5].begin() + 3}), (Names{"e", "4", "hit"}));
+  EXPECT_EQ((Names{rows[5].begin() + 2, rows[5].end()}), (Names{alone.at(2).begin() + 2, alone.at(2).end()}));
+  const char* const ids[] = {"b", "c", "d", "", "f"};
+  for (const std::size_t i : {1, 2, 3, 5}) {
+    EXPECT_EQ((Names{rows[i + 1].begin(), rows[i + 1].begin() + 4}),
+              (Names{ids[i - 1], fmt::format("{}", i), "invalid", ""}));
+    EXPECT_EQ(rows[i + 1].size(), rows[0].size());
+  }
+  const Result any = on_dem("cast", {"--rays", file, "--skip-bad", "--any"});
+  EXPECT_EQ(any.out, "id,ray,blocked\na,0,1\nb,1,\nc,2,\nd,3,\ne,4,1\nf,5,\n");
+  expect_refused(on_dem("cast", {"--rays", write("none.csv", header + "f,1\n"), "--skip-bad"}),
+                 "no ray can be used; the first: ");
+}
+
 TEST_F(PlaceFiles, AzimuthsMayBeNegative) {
   const auto view = [&](const std::string& name, const std::string& azimuth) {
     const Result result =

@@ -104,6 +104,17 @@ TEST_F(HitTables, WritesBlockedCsv) {
   EXPECT_EQ(bytes_of(path("b.csv")), "ray,blocked\n0,0\n1,1\n2,1\n");
 }
 
+TEST_F(HitTables, WritesRaysThatWereNotTraced) {
+  const TextColumns carried{{"id"}, {"a", "b", "c", "d"}};
+  HitTable hits(path("h.csv"), TableKind::hits, carried), blocked(path("b.csv"), TableKind::blocked, carried);
+  hits.add_invalid(3);
+  blocked.add_invalid(3);
+  hits.commit();
+  blocked.commit();
+  EXPECT_TRUE(bytes_of(path("h.csv")).ends_with("\nd,3,invalid,,,,,,,,,,,,\n")) << bytes_of(path("h.csv"));
+  EXPECT_EQ(bytes_of(path("b.csv")), "id,ray,blocked\nd,3,\n");
+}
+
 TEST_F(HitTables, NpyIsAStructuredArrayOfDoubles) {
   const TextColumns carried{{"ray"}, {"a", "b", "c"}};
   HitTable table(path("h.npy"), TableKind::hits, carried);

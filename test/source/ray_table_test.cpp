@@ -119,6 +119,30 @@ TEST(RayCsv, HeightsAreOptional) {
   EXPECT_NE(refusal("x,tx,ty\n1,3,4\n", RayRows::cameras).find("no column 'y' (required: x,y[,z]"), std::string::npos);
 }
 
+TEST(RayCsv, BadRaysAreLeftOutOnRequest) {
+  RayTable table =
+      parse_ray_csv("id,x,y,z,dx,dy,dz\na,1,2,3,0,0,x\nb,1,2,3,0,0,-1\nc,1\nd,4,5,6,0,0,-1\ne,7,8,9,0,0,-1\n",
+                    RayRows::rays, BadRays::left_out);
+  ASSERT_EQ(table.rows.size(), 3u);
+  ASSERT_EQ(table.bad.size(), 2u);
+  EXPECT_EQ(table.bad[0].ray, 0);
+  EXPECT_EQ(table.bad[0].why, "line 2 (ray 0): 'x' in column 'dz' is not a number");
+  EXPECT_EQ(table.bad[1].ray, 2);
+  EXPECT_EQ(table.indices, (std::vector<std::int64_t>{1, 3, 4}));
+  EXPECT_EQ(table.rows[1].origin, dvec3(4, 5, 6));
+  // Other columns have a row for each ray.
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(table.carried.at(i, 0), std::string(1, "abcde"[i]));
+  EXPECT_EQ(table.where(1), ": line 5 (ray 3)");
+
+  table.leave_out(std::array{BadRay{1, "no"}, BadRay{4, "neither"}});
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.index(0), 3);
+  EXPECT_EQ(table.rows[0].origin, dvec3(4, 5, 6));
+  std::vector<std::int64_t> bad;
+  for (const BadRay& ray : table.bad) bad.push_back(ray.ray);
+  EXPECT_EQ(bad, (std::vector<std::int64_t>{0, 1, 2, 4}));
+}
+
 TEST(RayCsv, HeaderAloneGivesNoRays) { EXPECT_TRUE(parse_ray_csv(kHeader).rows.empty()); }
 
 TEST(RayCsv, ErrorsNameLineAndRay) {

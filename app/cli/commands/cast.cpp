@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +19,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/commands/cast_part.h"
+#include "app/cli/commands/cast_rays.h"
 #include "app/cli/commands/cast_samples.h"
 #include "app/cli/commands/scan.h"
 #include "app/cli/options/device_option.h"
@@ -64,8 +67,8 @@ Coordinates (--coords), also of --mesh-at; z is always in metres:
   map      units of the raster's CRS, for dx,dy as well; dz in metres
   lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
 
-Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row, position u,v in
-the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For inputs other than terrain also
+Hits: ray (from 0), status (hit, miss, below, exhausted, invalid), t, x,y,z, cell col,row, position
+u,v in it, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For inputs other than terrain also
 object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.
 
 Scanner (--scanner), JSON: elevations, azimuths, rate, and a pose or a path of poses; optional:
@@ -75,7 +78,7 @@ column, channel, azimuth, elevation, range, x,y,z, object. LAS is version 1.4, p
 struct CastOptions : InputOptions {
   std::string rays, output, coordinates, samples;
   ScanOptions scan;
-  bool any = false, all = false;
+  bool any = false, all = false, skip_bad = false;
   int threads = 0;
   std::vector<std::string> typed;  // the values of the options
 };
@@ -99,60 +102,6 @@ Places places_of(const CastOptions& options, const OpenedInput& input, const std
                                                                : Coordinates::local;
   if (part) return {part->raster, coordinates, 1};
   return {{input.path, input.georeference, input.cols, input.rows}, coordinates, 1};
-}
-
-// Returns how far in metres a ray from the surface starts above or below it. Throws Error, without file and line,
-// unless it starts over its cell or one of the cells around it: a rounded hit on a border is over one of these.
-double off_surface(const Ray& ray, const HeightField& field) {
-  const GridRay grid = field.grid_from_world(ray);
-  const dvec3 at = grid.origin + grid.direction * ray.t_min;
-  const ivec3 cell(ray.start_cell.col, ray.start_cell.row, 0), count(field.cell_cols(), field.cell_rows(), 0);
-  double place[2];
-  for (int axis = 0; axis < 2; ++axis) {
-    place[axis] = at[axis] - cell[axis];
-    if (field.wraps()) place[axis] -= count[axis] * std::round((place[axis] - 0.5) / count[axis]);
-    if (!(place[axis] >= -1 && place[axis] <= 2)) {
-      throw Error(
-          fmt::format("it starts at column {:.10g}, row {:.10g} of the samples, which is not in the cell of start_col "
-                      "{} and start_row {}, nor next to it",
-                      at.x, at.y, cell.x, cell.y));
-    }
-  }
-  const CellHeights heights = *field.cell_heights(ray.start_cell);
-  const double u = std::clamp(place[0], 0.0, 1.0), v = std::clamp(place[1], 0.0, 1.0);
-  return std::abs(ray.at(ray.t_min).z -
-                  field.height_from_sample(height_in_cell(field.settings().surface, heights, u, v)));
-}
-
-// Checks all rays. Those that start on a surface start on the only terrain of the scene; returns a note if one starts
-// farther above or below it than the side of a cell.
-std::string check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
-  constexpr std::string_view kPrefix = "ray: ";
-  double farthest = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays[i].start == RayStart::on_surface && !scene.terrain()) {
-      throw Error(
-          fmt::format("{}: start_col and start_row name a cell, and the scene is not one terrain (leave them empty)",
-                      table.where(i)));
-    }
-    rays[i].start_object = scene.terrain_object();
-    try {
-      validate(rays[i], scene);
-      if (rays[i].start == RayStart::on_surface) farthest = std::max(farthest, off_surface(rays[i], *scene.terrain()));
-    } catch (const Error& error) {
-      // Here the ray has a name.
-      std::string_view text = error.what();
-      if (text.starts_with(kPrefix)) text.remove_prefix(kPrefix.size());
-      throw Error(fmt::format("{}: {}", table.where(i), text));
-    }
-  }
-  if (farthest == 0) return {};
-  const HeightFieldSettings& cells = scene.terrain()->settings();
-  if (farthest <= std::min(cells.cell_x, cells.cell_y)) return {};
-  return fmt::format(
-      "rays with start_col and start_row start on the surface, but z is up to {:.3g} m away from it; it counts as the "
-      "height of the surface there",
-      farthest);
 }
 
 // A note with the bounds of the scene, for rays that hit nothing: the table may be in other coordinates. Empty if a ray
@@ -188,7 +137,11 @@ class Caster {
     timed([&] { scene_.occluded(rays, answers); });
     hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
     count_below(rays, answers);
-    out_.add(static_cast<std::int64_t>(first), answers);
+    if (table_.bad.empty()) return out_.add(static_cast<std::int64_t>(first), answers);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      add_bad_before(table_.index(first + i));
+      out_.add(table_.index(first + i), std::span(answers).subspan(i, 1));
+    }
   }
 
   void hits(std::size_t first, std::span<const Ray> rays) {
@@ -210,6 +163,11 @@ class Caster {
       for (std::size_t i = 0; i < rays.size(); ++i) found[i] = {closest[i]};
     }
     write(first, rays, found);
+  }
+
+  // Writes the bad rays in front of a ray that were not written yet.
+  void add_bad_before(std::int64_t ray) {
+    for (; bad_ < table_.bad.size() && table_.bad[bad_].ray < ray; ++bad_) out_.add_invalid(table_.bad[bad_].ray);
   }
 
   std::size_t hits() const { return hits_; }
@@ -246,10 +204,11 @@ class Caster {
   void write(std::size_t first, std::span<const Ray> rays, const std::vector<std::vector<Hit>>& found) {
     std::vector<HitRow> rows;
     std::vector<dvec3> positions;
+    std::vector<std::size_t> sources;  // rows of the rays of positions
     for (std::size_t i = 0; i < rays.size(); ++i) {
       for (const Hit& hit : found[i]) {
         HitRow& row = rows.emplace_back();
-        row.ray = static_cast<std::int64_t>(first + i);
+        row.ray = table_.index(first + i);
         row.hit = hit;
         if (hit.status == HitStatus::below) ++below_;
         if (!hit) continue;
@@ -260,6 +219,7 @@ class Caster {
         row.kind = *find_hit_kind(scene_.field_of(hit.object).kind());
         row.hit.voxel = file_voxel(scene_, hit).value_or(hit.voxel);
         if (surface.material < materials_) row.material = surface.material;
+        sources.push_back(first + i);
         dvec3& at = positions.emplace_back(rays[i].at(hit.t));
         if (part_) at = at + part_->origin;
         if (scene_.only_field() && row.kind != HitKind::voxels) at.z = hit.height;
@@ -271,11 +231,15 @@ class Caster {
       if (!row.hit) continue;
       if (failed == next) {
         throw Error(fmt::format("{}: its hit is at a place that has no longitude and latitude; use --coords map",
-                                table_.where(static_cast<std::size_t>(row.ray))));
+                                table_.where(sources[next])));
       }
       row.position = positions[next++];
     }
-    out_.add(rows);
+    if (table_.bad.empty()) return out_.add(rows);
+    for (const HitRow& row : rows) {
+      add_bad_before(row.ray);
+      out_.add(std::span(&row, 1));
+    }
   }
 
   const Scene& scene_;
@@ -287,6 +251,7 @@ class Caster {
   const std::optional<CastPart>& part_;
   std::optional<MaxPyramid> pyramid_;  // for all hits
   std::size_t hits_ = 0, below_ = 0;
+  std::size_t bad_ = 0;  // bad rays written
   double seconds_ = 0;
 };
 
@@ -341,7 +306,7 @@ WholeInput open_whole(const CastOptions& options, InputKind kind, const std::opt
 }
 
 void run_table(CastOptions options, InputKind kind, const HeightMarchEntry* all) {
-  const RayTable table = read_rays(options.rays);
+  RayTable table = read_rays(options.rays, RayRows::rays, options.skip_bad ? BadRays::left_out : BadRays::refused);
   if (table.lonlat) {
     if (!options.coordinates.empty() && options.coordinates != name_of(Coordinates::lonlat))
       throw Error(fmt::format("{}: has columns lon and lat (leave out --coords {}, or name the columns x and y)",
@@ -357,17 +322,17 @@ void run_table(CastOptions options, InputKind kind, const HeightMarchEntry* all)
   std::optional<TraceTable> samples;
   if (!options.samples.empty()) samples.emplace(options.samples);
   std::optional<CastPart> part;
-  if (terrain && options.samples.empty()) part = part_of_rays(options, table, options.coordinates);
+  if (terrain && options.samples.empty()) part = part_of_rays(options, table, options.coordinates, options.skip_bad);
   CastOptions of_part = options;
   if (part) of_part.part = part->part;
   WholeInput whole = open_whole(of_part, kind, part);
   std::vector<std::string>& notes = whole.notes;
   const Places& places = whole.places;
   const CoordinateFrame& frame = places.frame();
-  std::vector<Ray> rays = rays_in_local(table, frame);
+  std::vector<Ray> rays = placed_rays(table, frame, options.skip_bad);
   if (part)
     for (Ray& ray : rays) ray.origin = ray.origin - part->origin;
-  if (std::string note = check(table, rays, whole.scene); !note.empty()) notes.push_back(std::move(note));
+  for (const std::string& note : check_rays(table, rays, whole.scene, options.skip_bad)) notes.push_back(note);
   stop_if_interrupted();
 
   if (samples) require_samples(whole.scene);
@@ -386,9 +351,10 @@ void run_table(CastOptions options, InputKind kind, const HeightMarchEntry* all)
     }
     if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
   }
+  caster.add_bad_before(std::numeric_limits<std::int64_t>::max());
   // The hits become visible last: where they are, the samples are complete.
   if (samples) {
-    write_samples(*samples, scene, rays, frame);
+    write_samples(*samples, scene, rays, table, frame);
     samples->commit();
   }
   out.commit();
@@ -449,6 +415,9 @@ void add_cast(Program& program) {
                         .note = "-: CSV from standard input",
                         .fallback = "none",
                         .common = true});
+  command.add(&o.skip_bad, {.names = "--skip-bad",
+                            .help = "skip rays that cannot be used: their status is 'invalid'",
+                            .rules = {needs("--rays FILE", [&o] { return !o.rays.empty(); })}});
   add_scan_options(command, o.scan);
   add_output_option(command, o.output,
                     "table of hits: .csv or .npy; points of a scanner also .ply or .las; -: CSV to standard output",

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "app/cli/commands/cast_rays.h"
 #include "scarp/source/raster/opened_raster.h"
 
 namespace scarp::cli {
@@ -41,8 +42,8 @@ bool depends_on_whole(const InputOptions& options) {
 
 }  // namespace
 
-std::optional<CastPart> part_of_rays(const InputOptions& options, const RayTable& table,
-                                     const std::string& coordinates) {
+std::optional<CastPart> part_of_rays(const InputOptions& options, RayTable& table, const std::string& coordinates,
+                                     bool skip_bad) {
   if (depends_on_whole(options) || table.rows.empty()) return {};
   const OpenedRaster file(options.inputs, options.raster);
   const Raster& header = file.header();
@@ -54,7 +55,7 @@ std::optional<CastPart> part_of_rays(const InputOptions& options, const RayTable
                                                 : Coordinates::local;
   const Places places(found.raster, kind, 1);
   Reach cols, rows;
-  for (const Ray& ray : rays_in_local(table, places.frame())) {
+  for (const Ray& ray : placed_rays(table, places.frame(), skip_bad)) {
     if (!std::isfinite(ray.t_max) || ray.start != RayStart::free) return {};
     for (const double t : {ray.t_min, ray.t_max}) {
       const dvec3 at = ray.at(t);

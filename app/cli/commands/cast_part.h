@@ -22,8 +22,9 @@ struct CastPart {
 };
 
 /// Returns the part around all rays of the table, or nullopt if they need the whole raster, or it is small enough to be
-/// read at once. Opens the raster without reading samples. Throws Error as open_input() and rays_in_local() do.
-std::optional<CastPart> part_of_rays(const InputOptions& options, const RayTable& table,
-                                     const std::string& coordinates);
+/// read at once. Opens the raster without reading samples. Throws Error as open_input() and
+/// placed_rays() do.
+std::optional<CastPart> part_of_rays(const InputOptions& options, RayTable& table, const std::string& coordinates,
+                                     bool skip_bad);
 
 }  // namespace scarp::cli

@@ -38,7 +38,8 @@ void require_samples(const Scene& scene) {
   if (const std::string why = field->no_trace(); !why.empty()) throw Error("--samples: " + why);
 }
 
-void write_samples(TraceTable& table, const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame) {
+void write_samples(TraceTable& samples, const Scene& scene, std::span<const Ray> rays, const RayTable& table,
+                   const CoordinateFrame& frame) {
   MarchTrace trace;
   std::vector<dvec3> positions;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -51,10 +52,11 @@ void write_samples(TraceTable& table, const Scene& scene, std::span<const Ray> r
     }
     positions.push_back(hit ? ray.at(hit.t) : ray.origin);
     if (frame.from_local(positions)) {
-      throw Error(fmt::format(
-          "--samples: ray {}: a sample is at a place that has no longitude and latitude (use --coords map)", i));
+      throw Error(
+          fmt::format("--samples: ray {}: a sample is at a place that has no longitude and latitude (use --coords map)",
+                      table.index(i)));
     }
-    table.add(static_cast<std::int64_t>(i), trace.steps, positions, hit);
+    samples.add(table.index(i), trace.steps, positions, hit);
     stop_if_interrupted();
   }
 }

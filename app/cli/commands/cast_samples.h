@@ -8,6 +8,7 @@
 #include "scarp/output/trace_table.h"
 #include "scarp/scene/scene.h"
 #include "scarp/source/raster/coordinates.h"
+#include "scarp/source/table/ray_table.h"
 
 namespace scarp::cli {
 
@@ -18,7 +19,9 @@ inline constexpr const char* kSampleColumns =
 /// Throws Error unless the scene is one field whose march records its steps.
 void require_samples(const Scene& scene);
 
-/// Traces the rays again and adds their steps, in the coordinates of `frame`, to the table, which the caller commits.
-void write_samples(TraceTable& table, const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame);
+/// Traces the rays of `table` again and adds their steps, in the coordinates of `frame`, to the samples, which the
+/// caller commits.
+void write_samples(TraceTable& samples, const Scene& scene, std::span<const Ray> rays, const RayTable& table,
+                   const CoordinateFrame& frame);
 
 }  // namespace scarp::cli

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "scarp/base/error.h"
@@ -121,6 +122,12 @@ class CsvHeader {
   RayAim aim_ = RayAim::direction;
   bool lonlat_ = false;
 };
+
+// Sets the indices before the first ray is left out.
+void set_indices(RayTable& table) {
+  table.indices.resize(table.rows.size());
+  std::iota(table.indices.begin(), table.indices.end(), 0);
+}
 
 // Returns a table with this header and without rows.
 RayTable table_of(const CsvHeader& header) {
@@ -239,7 +246,21 @@ std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64
   return static_cast<std::size_t>(header.shape[0]);
 }
 
-RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays, RayRows are) {
+// Adds the next ray of the file, which `read` returns or refuses.
+template <class Read>
+void add_ray(RayTable& table, BadRays bad, const Read& read) {
+  const auto index = static_cast<std::int64_t>(table.rows.size() + table.bad.size());
+  try {
+    table.rows.push_back(read());
+    if (!table.bad.empty()) table.indices.push_back(index);
+  } catch (const Error& error) {
+    if (bad == BadRays::refused) throw;
+    if (table.bad.empty()) set_indices(table);
+    table.bad.push_back({index, error.what()});
+  }
+}
+
+RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays, RayRows are, BadRays bad) {
   std::vector<std::string_view> names;
   for (const NpyField& field : header.fields) names.push_back(field.name);
   const CsvHeader columns(names, are);
@@ -253,7 +274,7 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
   }
   RayTable table = table_of(columns);
   const bool targets = table.aim == RayAim::target;
-  table.rows.resize(rays);
+  table.rows.reserve(rays);
   for (std::size_t i = 0; i < rays; ++i) {
     const char* const structure = data + i * static_cast<std::size_t>(header.bytes);
     const auto number = [&](Column column) {
@@ -268,50 +289,75 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
       }
       return static_cast<int>(value);
     };
-    RayRow& row = table.rows[i];
-    row.origin = {number(x), number(y), number(z)};
-    row.aim = targets ? dvec3(number(tx), number(ty), number(tz)) : dvec3(number(dx), number(dy), number(dz));
-    if (columns.has(t_min)) row.t_min = number(t_min);
-    if (columns.has(t_max) || targets) row.t_max = columns.has(t_max) ? number(t_max) : 1.0;
-    if (columns.has(start_col)) {
-      row.start = RayStart::on_surface;
-      row.start_cell = {whole(start_col), whole(start_row)};
-    }
-    check(row, table.aim, [&] { return place_of(are, 0, i); });
+    add_ray(table, bad, [&] {
+      RayRow row;
+      row.origin = {number(x), number(y), number(z)};
+      row.aim = targets ? dvec3(number(tx), number(ty), number(tz)) : dvec3(number(dx), number(dy), number(dz));
+      if (columns.has(t_min)) row.t_min = number(t_min);
+      if (columns.has(t_max) || targets) row.t_max = columns.has(t_max) ? number(t_max) : 1.0;
+      if (columns.has(start_col)) {
+        row.start = RayStart::on_surface;
+        row.start_cell = {whole(start_col), whole(start_row)};
+      }
+      check(row, table.aim, [&] { return place_of(are, 0, i); });
+      return row;
+    });
   }
   return table;
 }
 
-RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays, RayRows are) {
+RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays, RayRows are, BadRays bad) {
   const NumberReader reader = reader_of(header.kind, header.bytes);
   const auto columns = static_cast<std::size_t>(header.shape[1]), bytes = static_cast<std::size_t>(header.bytes);
   RayTable table;
   table.are = are;
-  table.rows.resize(rays);
+  table.rows.reserve(rays);
   for (std::size_t i = 0; i < rays; ++i) {
     const auto number = [&](std::size_t column) {
       const std::size_t at = header.fortran_order ? column * rays + i : i * columns + column;
       return reader(data + at * bytes, header.big_endian);
     };
-    RayRow& row = table.rows[i];
-    row.origin = {number(0), number(1), number(2)};
-    row.aim = {number(3), number(4), number(5)};
-    if (columns == 8) {
-      row.t_min = number(6);
-      row.t_max = number(7);
-    }
-    check(row, table.aim, [&] { return place_of(are, 0, i); });
+    add_ray(table, bad, [&] {
+      RayRow row;
+      row.origin = {number(0), number(1), number(2)};
+      row.aim = {number(3), number(4), number(5)};
+      if (columns == 8) {
+        row.t_min = number(6);
+        row.t_max = number(7);
+      }
+      check(row, table.aim, [&] { return place_of(are, 0, i); });
+      return row;
+    });
   }
   return table;
 }
 
 }  // namespace
 
-std::string RayTable::where(std::size_t row) const {
-  return fmt::format("{}: {}", path, place_of(are, rows[row].line, row));
+void RayTable::leave_out(std::span<const BadRay> rays) {
+  if (rays.empty()) return;
+  if (bad.empty()) set_indices(*this);
+  std::size_t kept = 0, next = 0;  // of `rows` and `rays`
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (next < rays.size() && indices[i] == rays[next].ray) {
+      ++next;
+      continue;
+    }
+    rows[kept] = rows[i], indices[kept] = indices[i];
+    ++kept;
+  }
+  rows.resize(kept), indices.resize(kept);
+  const auto before = static_cast<std::ptrdiff_t>(bad.size());
+  bad.insert(bad.end(), rays.begin(), rays.end());
+  std::inplace_merge(bad.begin(), bad.begin() + before, bad.end(),
+                     [](const BadRay& a, const BadRay& b) { return a.ray < b.ray; });
 }
 
-RayTable parse_ray_csv(std::string_view bytes, RayRows are) {
+std::string RayTable::where(std::size_t row) const {
+  return fmt::format("{}: {}", path, place_of(are, rows[row].line, static_cast<std::size_t>(index(row))));
+}
+
+RayTable parse_ray_csv(std::string_view bytes, RayRows are, BadRays bad) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("UTF-16 text (save it as UTF-8)");
   CsvRows rows(bytes);
   if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", needed(are)));
@@ -322,13 +368,14 @@ RayTable parse_ray_csv(std::string_view bytes, RayRows are) {
   RayTable table = table_of(header);
   for (const std::size_t i : header.carried()) table.carried.names.emplace_back(trimmed(rows.fields()[i]));
   while (rows.next()) {
-    table.rows.push_back(CsvRow(header, rows, table.rows.size()).ray());
-    for (const std::size_t i : header.carried()) table.carried.cells.emplace_back(rows.fields()[i]);
+    add_ray(table, bad, [&] { return CsvRow(header, rows, table.rows.size() + table.bad.size()).ray(); });
+    for (const std::size_t i : header.carried())
+      table.carried.cells.emplace_back(i < rows.fields().size() ? rows.fields()[i] : std::string_view());
   }
   return table;
 }
 
-RayTable parse_ray_npy(std::string_view bytes, RayRows are) {
+RayTable parse_ray_npy(std::string_view bytes, RayRows are, BadRays bad) {
   const NpyHeader header = parse_npy_table_header(bytes);
   const auto& shape = header.shape;
   const std::string_view behind = bytes.substr(static_cast<std::size_t>(header.data_begin));
@@ -336,7 +383,7 @@ RayTable parse_ray_npy(std::string_view bytes, RayRows are) {
     if (shape.size() != 1) {
       throw Error(fmt::format("array of structures of shape ({}) (one dimension required)", fmt::join(shape, ", ")));
     }
-    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes), are);
+    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes), are, bad);
   }
   if (header.kind != 'f' || (header.bytes != 4 && header.bytes != 8)) {
     throw Error(fmt::format("unsupported type '{}' (supported: float32, float64)", header.descr));
@@ -345,15 +392,16 @@ RayTable parse_ray_npy(std::string_view bytes, RayRows are) {
     throw Error(fmt::format("array of shape ({}) (must be (N, 6) or (N, 8): x,y,z,dx,dy,dz[,t_min,t_max])",
                             fmt::join(shape, ", ")));
   }
-  return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes), are);
+  return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes), are, bad);
 }
 
-RayTable read_rays(const std::string& path, RayRows are) {
+RayTable read_rays(const std::string& path, RayRows are, BadRays bad) {
   try {
     const std::string bytes = table_bytes(path);
     const bool npy = bytes.starts_with("\x93NUMPY") || (path.ends_with(".npy") && !bytes.empty());
-    RayTable table = npy ? parse_ray_npy(bytes, are) : parse_ray_csv(bytes, are);
+    RayTable table = npy ? parse_ray_npy(bytes, are, bad) : parse_ray_csv(bytes, are, bad);
     table.path = path;
+    for (BadRay& ray : table.bad) ray.why = fmt::format("{}: {}", path, ray.why);
     return table;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));

@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,12 @@ struct RayRow {
   std::int64_t line = 0;  ///< line in the file, from 1; 0 for files without lines
 };
 
+/// A ray that cannot be used.
+struct BadRay {
+  std::int64_t ray = 0;  ///< index in the table, from 0
+  std::string why;       ///< with the file, the line and the ray
+};
+
 /// The rays of a table.
 struct RayTable {
   std::string path;  ///< as opened, for messages
@@ -57,24 +64,36 @@ struct RayTable {
   bool lonlat = false;                     ///< x and y are from columns lon and lat
   bool has_z = true, has_target_z = true;  ///< whether the columns z and tz exist
   std::vector<RayRow> rows;
-  TextColumns carried;  ///< the other columns; one row per ray
+  TextColumns carried;                ///< the other columns; one row per ray, also for those in `bad`
+  std::vector<BadRay> bad;            ///< rays that are left out of `rows`, in order
+  std::vector<std::int64_t> indices;  ///< of the rays in `rows`, if some are left out; otherwise from 0
+
+  std::int64_t index(std::size_t row) const { return indices.empty() ? static_cast<std::int64_t>(row) : indices[row]; }
+  /// Moves rays from `rows` to `bad`: those of these indices, in order, which are in `rows`.
+  void leave_out(std::span<const BadRay> rays);
 
   /// Returns the position of a row for messages: "a.csv: line 8 (ray 6)", or (camera 6); line numbers start at 1, the
   /// others at 0.
   std::string where(std::size_t row) const;
 };
 
+/// Treatment of invalid rays.
+enum class BadRays : std::uint8_t {
+  refused,   ///< an error names the first
+  left_out,  ///< RayTable::bad
+};
+
 /// Throws Error with line and ray but without the file's name: missing columns, duplicate columns, or both direction
 /// and target; rows with more or fewer fields than the header, fields that are not finite numbers, zero directions;
-/// unclosed quotes; an empty text. A header alone is a table without rays.
-RayTable parse_ray_csv(std::string_view bytes, RayRows are = RayRows::rays);
+/// unclosed quotes; an empty text. A header alone is a table without rays. `bad` is about errors of single rows.
+RayTable parse_ray_csv(std::string_view bytes, RayRows are = RayRows::rays, BadRays bad = BadRays::refused);
 
 /// Parses the bytes of a .npy file. Throws Error without the file's name: another type or shape, truncated bytes, and
 /// values that parse_ray_csv() rejects.
-RayTable parse_ray_npy(std::string_view bytes, RayRows are = RayRows::rays);
+RayTable parse_ray_npy(std::string_view bytes, RayRows are = RayRows::rays, BadRays bad = BadRays::refused);
 
 /// Reads a file, or standard input if `path` is "-". Detects .npy by its first bytes; everything else is CSV. Throws
 /// Error naming the file.
-RayTable read_rays(const std::string& path, RayRows are = RayRows::rays);
+RayTable read_rays(const std::string& path, RayRows are = RayRows::rays, BadRays bad = BadRays::refused);
 
 }  // namespace scarp
