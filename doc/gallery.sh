@@ -19,7 +19,7 @@ wanted() { [[ "$which" == all || ! "$*" =~ --samples|--look\ error|--contours ]]
 
 while IFS= read -r line; do
   line=${line#"${line%%[! ]*}"}
-  [[ "$line" =~ ^scarp\ (render|viewshed|shadow|skyview|sunhours|profile)\ jacksboro_fault_dem.npz\  ]] || continue
+  [[ "$line" =~ ^scarp\ (render|viewshed|shadow|horizon|skyview|sunhours|profile)\ jacksboro_fault_dem.npz\  ]] || continue
   subcommand=${BASH_REMATCH[1]}
   line=${line#"${BASH_REMATCH[0]}"}
   line=${line//..\/..\/examples/$root/examples}  # from doc/images

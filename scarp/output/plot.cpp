@@ -22,6 +22,20 @@ double step_for(double range, double count) {
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
+// `unit`: metres per unit of the numbers; about `count` ticks.
+std::vector<PlotTick> round_distances(double begin, double end, double unit, double count) {
+  const double along = step_for((end - begin) / unit, count);
+  // Rounding may move the last tick beyond the end.
+  constexpr double kTickSlack = 1.0 / 1024;  // of a step: less than a pixel
+  const double first = std::ceil(begin / unit / along - kTickSlack), last = std::floor(end / unit / along + kTickSlack);
+  std::vector<PlotTick> ticks;
+  for (double i = first; i <= last; ++i) {
+    const double d = i == 0 ? 0.0 : i * along;  // not -0
+    ticks.push_back({d * unit, fmt::format("{:.6g}", d), {}});
+  }
+  return ticks;
+}
+
 CairoSurface surface_for(const std::string& extension, std::ofstream& stream, int width, int height) {
   if (extension == ".svg")
     return CairoSurface(cairo_svg_surface_create_for_stream(write_bytes, &stream, width, height));
@@ -42,16 +56,14 @@ void Plot::axes(const FigurePen& pen, bool names_distance) const {
   const double text = pen.text(), below = box.y + box.height;
   const double up = step_for(high - low, box.height / (4 * text));
   const bool kilometres = end - begin >= kKilometres;
-  const double unit = kilometres ? 1000 : 1, along = step_for((end - begin) / unit, box.width / (8 * text));
-  // Rounding may move the last tick beyond the end.
-  constexpr double kTickSlack = 1.0 / 1024;  // of a step: less than a pixel
-  const double first = std::ceil(begin / unit / along - kTickSlack), last = std::floor(end / unit / along + kTickSlack);
+  const std::vector<PlotTick> lines =
+      ticks.empty() ? round_distances(begin, end, kilometres ? 1000 : 1, box.width / (8 * text)) : ticks;
   for (double z = std::ceil(low / up) * up; z <= high; z += up) {
     cairo_move_to(cr, box.x, y(z));
     cairo_rel_line_to(cr, box.width, 0);
   }
-  for (double i = first; i <= last; ++i) {
-    cairo_move_to(cr, x(i * along * unit), box.y);
+  for (const PlotTick& line : lines) {
+    cairo_move_to(cr, x(line.at), box.y);
     cairo_rel_line_to(cr, 0, box.height);
   }
   set_colour(cr, kPlotGrid);
@@ -61,19 +73,20 @@ void Plot::axes(const FigurePen& pen, bool names_distance) const {
     const std::string number = fmt::format("{:.10g}", std::abs(z) < up / 2 ? 0.0 : z);
     pen.write(box.x - pen.width_of(number) - text / 2, y(z) + pen.ascent() / 2.5, number);
   }
-  for (double i = first; i <= last; ++i) {
-    const double d = i == 0 ? 0.0 : i * along;  // not -0
-    const std::string number = fmt::format("{:.6g}", d);
-    pen.write(x(d * unit) - pen.width_of(number) / 2, below + 1.3 * pen.line_height(), number);
+  double lowest = 1.3;  // lines of text below the box
+  for (const PlotTick& line : lines) {
+    pen.write(x(line.at) - pen.width_of(line.number) / 2, below + 1.3 * pen.line_height(), line.number);
+    if (line.name.empty()) continue;
+    pen.write(x(line.at) - pen.width_of(line.name) / 2, below + 2.3 * pen.line_height(), line.name);
+    lowest = 2.3;
   }
   if (names_distance) {
-    const std::string name = kilometres ? "distance (km)" : "distance (m)";
-    pen.write(box.x + (box.width - pen.width_of(name)) / 2, below + 2.5 * pen.line_height(), name);
+    const std::string name = !ticks.empty() ? along : kilometres ? "distance (km)" : "distance (m)";
+    pen.write(box.x + (box.width - pen.width_of(name)) / 2, below + (lowest + 1.2) * pen.line_height(), name);
   }
   cairo_save(cr);
   cairo_translate(cr, 1.1 * text, box.y + box.height / 2);
   cairo_rotate(cr, -std::acos(0.0));
-  const std::string upward = "height (m)";
   pen.write(-pen.width_of(upward) / 2, 0, upward);
   cairo_restore(cr);
 }

@@ -14,6 +14,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/commands/horizon_points.h"
+#include "app/cli/options/plot_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/progress.h"
 #include "scarp/base/progress_part.h"
@@ -27,7 +28,8 @@ constexpr const char* kHorizonFooter =
 below zero are kept (--clamp: 0 instead). -90: no ground in that direction, as at the border.
 With --at or --points the output is CSV: point, horizon_azimuth, horizon_elevation (degrees) and
 distance (metres to the ground that is the horizon; empty: no ground). pvlib takes the middle two.
-With --skip-bad also status: ok, invalid, outside or nodata.)";
+With --skip-bad also status: ok, invalid, outside or nodata.
+With --at and a .svg, .pdf or .png output, a picture of the skyline.)";
 
 void run(HorizonOptions options, const Command& command) {
   if (options.at_points()) return write_point_horizons(options);
@@ -82,7 +84,7 @@ void add_horizon(Program& program) {
   command.add(&o.azimuths, {.names = "--azimuths",
                             .help = "number of directions, equally spaced",
                             .range = {1, 3600},
-                            .fallback = "16; 360 at points",
+                            .fallback = "16; at points 360, in figures 1440",
                             .common = true});
   command.add(&o.first_azimuth, {.names = "--first-azimuth",
                                  .help = "first direction, clockwise from true north",
@@ -103,9 +105,24 @@ void add_horizon(Program& program) {
                   .note = "-: CSV from standard input",
                   .common = true,
                   .excludes = {"--at"}});
-  add_output_option(command, o.output, "map, or with --at or --points a .csv table", "tif tiff img asc csv",
-                    "points: standard output");
-  command.add(&o.clamp, {.names = "--clamp", .help = "0 instead of angles below the horizontal", .common = true});
+  const Rule of_skylines =
+      needs("--at X,Y and a .svg, .pdf or .png output", [&o] { return o.at_points() && is_figure(o.output); });
+  command.add(&o.labels, {.names = "--labels",
+                          .value = "FILE",
+                          .help = "points with names for the skyline: CSV (name,x,y[,z]) or a vector file of points",
+                          .files = "csv geojson gpkg shp",
+                          .note = "names of points that the ground hides are omitted",
+                          .fallback = "none",
+                          .common = true,
+                          .rules = {of_skylines}});
+  add_output_option(command, o.output, "map, or with --at or --points a .csv table or a .svg, .pdf or .png skyline",
+                    "tif tiff img asc csv svg pdf png", "points: standard output");
+  add_plot_size_option(command, o.size, "1200x480", of_skylines);
+  command.add(&o.clamp,
+              {.names = "--clamp",
+               .help = "0 instead of angles below the horizontal",
+               .common = true,
+               .rules = {needs("a map or a table", [&o] { return !o.at_points() || !is_figure(o.output); })}});
   command.add(&o.distance, {.names = "--distance",
                             .help = "additional bands: distance to the horizon, in metres",
                             .common = true,
@@ -117,6 +134,7 @@ void add_horizon(Program& program) {
   command.footer(kHorizonFooter);
   command.example("scarp horizon dem.tif --azimuths 36 -o horizon.tif");
   command.example("scarp horizon dem.tif --at 692000,5143000,2 -o skyline.csv");
+  command.example("scarp horizon dem.tif --at 692000,5143000,2 --labels peaks.csv -o skyline.svg");
 }
 
 }  // namespace scarp::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp horizon` at points: a table of the horizon in each azimuth.
+// `scarp horizon` at points: a table of the horizon in each azimuth, or a figure of the skyline.
 #pragma once
 
 #include <optional>
@@ -18,6 +18,7 @@ struct HorizonOptions : MapCommand {
   HorizonInput horizon;
   std::vector<std::string> at;
   PlaceFile points;
+  std::string labels, size;
   bool clamp = false, distance = false;
 
   bool at_points() const { return !at.empty() || !points.path.empty(); }
@@ -25,7 +26,8 @@ struct HorizonOptions : MapCommand {
   std::vector<double> all_azimuths() const;
 };
 
-/// Writes the horizons of --at or --points as CSV to the output, or to standard output. Throws Error; Interrupted.
+/// Writes the horizons of --at or --points as CSV to the output or to standard output, or draws that of one point.
+/// Throws Error; Interrupted.
 void write_point_horizons(HorizonOptions options);
 
 }  // namespace scarp::cli

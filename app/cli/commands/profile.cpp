@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -16,11 +15,11 @@
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/map_part.h"
+#include "app/cli/options/plot_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
-#include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #ifdef SCARP_CAIRO
 #include "scarp/output/profile_figure.h"
@@ -49,12 +48,6 @@ struct ProfileOptions : MapOptions {
 
 constexpr int kWidth = 1200, kHeight = 480;  // of figures
 
-// Width and height of --size; without it a height of `height`.
-std::array<int, 2> size_of(const ProfileOptions& options, int height) {
-  if (options.size.empty()) return {kWidth, height};
-  return pixels_from(options.size, "--size", "1200x480", {.least = 200, .most = 8192});
-}
-
 std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vector<ProfilePoint>& points) {
   std::string out = "distance,x,y,ground,drop,sight,visible\n";
   for (const ProfilePoint& p : points) {
@@ -69,7 +62,7 @@ std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vect
 void draw(const MapInput& input, const ProfileOptions& options, const SightEnds& ends,
           const std::vector<ProfilePoint>& points, const LineOfSight& sight) {
   ProfileFigure figure;
-  const auto [width, height] = size_of(options, kHeight);
+  const auto [width, height] = plot_size(options.size, kWidth, kHeight);
   figure.width = width, figure.height = height;
   for (const ProfilePoint& p : points)
     figure.points.push_back({p.distance, p.ground, p.sight, p.visible, p.after_hole});
@@ -113,7 +106,7 @@ ProfileLine line_of(MapInput& input, const PlaceTable& table, const SightHeights
 }
 
 void run_marches(const ProfileOptions& options, const PlaceTable& table) {
-  const auto [width, height] = size_of(options, 0);
+  const auto [width, height] = plot_size(options.size, kWidth, 0);
   MapInput input(options);
   keep_inputs(options.output, input.files());
   std::vector<std::string> lines;
@@ -136,12 +129,7 @@ void run_marches(const ProfileOptions& options, const PlaceTable& table) {
 void run(ProfileOptions options, const Command& command) {
   if (options.output == "-") options.output.clear();
   check_marches(command, options.march);
-  if (!options.output.empty() && extension_of(options.output) != ".csv" && !is_figure(options.output))
-    throw Error(fmt::format("output '{}': expected .csv, .svg, .pdf or .png", options.output));
-#ifndef SCARP_CAIRO
-  if (is_figure(options.output))
-    throw Error(fmt::format("output '{}': this build draws no figures (SCARP_CAIRO=OFF)", options.output));
-#endif
+  require_table_or_figure(options.output);
   keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
   if (!options.path.file.path.empty()) return write_path_profiles(options.path, options, options.output);
@@ -190,12 +178,7 @@ void add_profile(Program& program) {
   add_profile_path_options(command, o.path);
   add_output_option(command, o.output, "result: .csv, .svg, .pdf or .png; -: CSV to standard output", "csv svg pdf png",
                     "standard output");
-  command.add(&o.size, {.names = "--size",
-                        .value = "WxH",
-                        .help = "size of the figure in pixels",
-                        .fallback = "1200x480; marches: as high as their panels",
-                        .common = true,
-                        .rules = {needs("a .svg, .pdf or .png output", [&o] { return is_figure(o.output); })}});
+  add_plot_size_option(command, o.size, "1200x480; marches: as high as their panels", needs_figure(o.output));
   add_profile_march_options(command, o.march, o.output);
   add_sight_heights(command, o.heights);
   add_curvature_option(command, o.curvature);

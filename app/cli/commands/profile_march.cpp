@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "app/cli/options/march_options.h"
+#include "app/cli/options/plot_options.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
-#include "scarp/base/file_name.h"
 #include "scarp/base/march_trace.h"
 #include "scarp/march/height/height_table.h"
 #include "scarp/march/sampling/shrink_factor.h"
@@ -162,27 +162,21 @@ std::string caption_of(const HeightMarchEntry& march, const MarchPanel& panel, c
 
 }  // namespace
 
-bool is_figure(const std::string& output) {
-  const std::string extension = extension_of(output);
-  return extension == ".svg" || extension == ".pdf" || extension == ".png";
-}
-
 void add_profile_march_options(Command& command, ProfileMarchOptions& options, const std::string& output) {
   std::vector<std::string> names;
   for (const HeightMarchEntry& march : height_marches()) {
     if (march.traced) names.emplace_back(march.name);
   }
-  command.add(List<std::string>{&options.names},
-              {.names = "--march",
-               .value = "NAME[,NAME]",
-               .help = "marches whose steps are drawn, each in a panel",
-               .choices = names,
-               .closed = true,
-               .note = "without --cc: rays are straight",
-               .fallback = "none: a profile with its line of sight",
-               .common = true,
-               .rules = {needs("a .svg, .pdf or .png output", [&output] { return is_figure(output); })},
-               .excludes = {"--cc"}});
+  command.add(List<std::string>{&options.names}, {.names = "--march",
+                                                  .value = "NAME[,NAME]",
+                                                  .help = "marches whose steps are drawn, each in a panel",
+                                                  .choices = names,
+                                                  .closed = true,
+                                                  .note = "without --cc: rays are straight",
+                                                  .fallback = "none: a profile with its line of sight",
+                                                  .common = true,
+                                                  .rules = {needs_figure(output)},
+                                                  .excludes = {"--cc"}});
   command.add(&options.ray,
               {.names = "--ray",
                .value = "X,Y,Z,DX,DY,DZ",

@@ -18,9 +18,6 @@ struct ProfileMarchOptions {
   MarchSettings settings;
 };
 
-/// Whether the output is a figure, by its extension.
-bool is_figure(const std::string& output);
-
 /// Declares --march, --ray and the settings of marches.
 void add_profile_march_options(Command& command, ProfileMarchOptions& options, const std::string& output);
 
