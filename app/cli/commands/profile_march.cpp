@@ -39,10 +39,10 @@ std::optional<std::pair<double, double>> part_over(const HeightField& field, con
   if (!clip(ray.origin.x, ray.direction.x, 0, field.width()) || !clip(ray.origin.y, ray.direction.y, 0, field.depth()))
     return {};
   // A little beyond, so that the figure shows the ground around the end.
-  constexpr double kBeyond = 0.02;
+  constexpr double kBeyondHit = 0.02;
   if (ray.direction.z < 0 && std::isinf(ray.t_max)) {
     const double lowest = (field.min_height() - ray.origin.z) / ray.direction.z;
-    end = std::min(end, lowest + kBeyond * std::abs(lowest - begin));
+    end = std::min(end, lowest + kBeyondHit * std::abs(lowest - begin));
   }
   if (!(begin < end)) return {};
   return std::pair(begin, end);
@@ -218,7 +218,7 @@ ProfileRay typed_ray(MapInput& input, const std::string& text) {
 
 ProfileRay ray_along(const SightLine& line) {
   // Beyond the target, so that a target on the ground is hit in spite of rounding.
-  constexpr double kBeyond = 1.0 / 256;
+  constexpr double kBeyondHit = 1.0 / 256;
   const HeightField& field = line.ground().field();
   const auto at = [&](const SightEnd& end, double z) {
     const HeightFieldSettings& cells = field.settings();
@@ -229,7 +229,7 @@ ProfileRay ray_along(const SightLine& line) {
   ray.ray.origin = at(line.from(), line.eye());
   const dvec3 way = at(line.to(), line.target()) - ray.ray.origin;
   ray.ray.direction = normalize(way);
-  ray.ray.t_max = (1 + kBeyond) * length(way);
+  ray.ray.t_max = (1 + kBeyondHit) * length(way);
   return ray;
 }
 
