@@ -203,7 +203,7 @@ void test_one_by_one(MapInput& input, const PlaceTable& table, std::span<const s
       input.read(parts[k], {});
       tester.emplace(input, table, false);
     }
-    const auto& [from, to] = answers[i].ends;
+    const SightEnd from = answers[i].ends.from, to = answers[i].ends.to;
     const dvec2 cells = {input.field().settings().cell_x, input.field().settings().cell_y};
     const double reach = std::hypot((to.col - from.col) * cells.x, (to.row - from.row) * cells.y);
     status.attempt(i, RowStatus::kNodata, [&] { tester->require_ground_at(i, answers[i].ends); });
