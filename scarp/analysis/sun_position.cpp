@@ -76,6 +76,22 @@ UtcTime parse_time(const std::string& text) {
   return time;
 }
 
+namespace {
+
+// Radians by which a standard atmosphere lifts the sun at this height in metres: Th. Saemundsson, "Atmospheric
+// Refraction", Sky and Telescope 72, 1986, for 10 degrees Celsius. ERFA's model holds down to 3 degrees of altitude.
+double refraction_at(double altitude, double height) {
+  constexpr double kSeaPressure = 1013.25, kFormulaPressure = 1010, kScaleHeight = 8434.5;
+  // The formula grows wildly far below the horizon, where refraction has no effect.
+  constexpr double kLowest = -1;
+  const double degrees = std::max(altitude * ERFA_DR2D, kLowest);
+  const double minutes = 1.02 / std::tan((degrees + 10.3 / (degrees + 5.11)) * ERFA_DD2R);
+  const double pressure = kSeaPressure * std::exp(-height / kScaleHeight);
+  return std::max(minutes, 0.0) / 60 * ERFA_DD2R * pressure / kFormulaPressure;
+}
+
+}  // namespace
+
 SunAtTime::SunAtTime(const UtcTime& time) {
   // The steps of eraApco13() that do not depend on the place. UT1 - UTC: see the header.
   double tai[2], ut1[2];
@@ -95,11 +111,6 @@ SunAtTime::SunAtTime(const UtcTime& time) {
 }
 
 SunPosition SunAtTime::at(const EarthPlace& place, bool refraction) const {
-  // Standard atmosphere: pressure falls by e in 8.4 km.
-  constexpr double kSeaPressure = 1013.25, kScaleHeight = 8434.5, kCelsius = 10, kHumidity = 0.5, kMicrometres = 0.55;
-  double tangent = 0, cube = 0;
-  if (refraction)
-    eraRefco(kSeaPressure * std::exp(-place.height / kScaleHeight), kCelsius, kHumidity, kMicrometres, &tangent, &cube);
   // ERFA's arguments are not const.
   double earth[2][3], from_sun[3];
   eraCpv(const_cast<double(*)[3]>(earth_), earth);
@@ -107,7 +118,7 @@ SunPosition SunAtTime::at(const EarthPlace& place, bool refraction) const {
   eraASTROM astrom;
   // Polar motion is below 0.0002 degree.
   eraApco(terrestrial_.day, terrestrial_.fraction, earth, from_sun, pole_x_, pole_y_, origin_s_, rotation_,
-          place.longitude, place.latitude, place.height, 0, 0, origin_sp_, tangent, cube, &astrom);
+          place.longitude, place.latitude, place.height, 0, 0, origin_sp_, 0, 0, &astrom);
   // From the observer to the sun; the sun hardly moves while its light is under way.
   double sun[3];
   eraSxp(-1, astrom.eh, sun);
@@ -117,7 +128,8 @@ SunPosition SunAtTime::at(const EarthPlace& place, bool refraction) const {
   eraC2s(from_pole, &longitude, &latitude);
   double azimuth = 0, zenith = 0, hour_angle = 0, declination = 0, ascension = 0;
   eraAtioq(eraAnp(longitude), latitude, &astrom, &azimuth, &zenith, &hour_angle, &declination, &ascension);
-  return {azimuth, ERFA_DPI / 2 - zenith};
+  const double altitude = ERFA_DPI / 2 - zenith;
+  return {azimuth, refraction ? altitude + refraction_at(altitude, place.height) : altitude};
 }
 
 SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction) {

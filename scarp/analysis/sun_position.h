@@ -52,8 +52,9 @@ class SunAtTime {
   double rotation_, origin_sp_;        // rotation of the Earth, and the terrestrial origin
 };
 
-/// `refraction`: applies that of a standard atmosphere at this height and 10 degrees Celsius, which lifts the sun by
-/// 0.5 degree at the horizon. Below about 1 degree of altitude refraction is uncertain by more than 0.01 degree.
+/// `refraction`: applies that of a standard atmosphere at this height and 10 degrees Celsius (Saemundsson 1986), which
+/// lifts the sun by 0.5 degree at the horizon. Below about 1 degree of altitude refraction is uncertain by more than
+/// 0.01 degree.
 SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction = false);
 
 }  // namespace scarp

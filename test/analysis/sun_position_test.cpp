@@ -33,6 +33,25 @@ TEST(SunPosition, AltitudeAtThePoleIsTheDeclination) {
   EXPECT_NEAR(sun.altitude / kDegree, -7.783817 - 0.0024, 0.001);
 }
 
+// Refraction by apparent altitude: G. G. Bennett, "The Calculation of Astronomical Refraction in Marine Navigation",
+// Journal of Navigation 35, 1982, for 10 degrees Celsius and 1010 mbar: 34.5 minutes of arc on the horizon.
+TEST(SunPosition, RefractionIsThatOfBennett) {
+  const EarthPlace place{0, 45 * kDegree, 0};
+  const double day = parse_time("2026-03-20T00:00Z").day;
+  for (const double altitude : {0.0, 1.0, 2.0, 5.0, 10.0, 20.0}) {
+    // The evening of an equinox: the sun sinks from 26 degrees.
+    double high = 15.5 / 24, low = 19.0 / 24;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = (high + low) / 2;
+      (sun_position({day, middle}, place, true).altitude > altitude * kDegree ? high : low) = middle;
+    }
+    const double lifted = sun_position({day, high}, place, true).altitude - sun_position({day, high}, place).altitude;
+    const double minutes = 1 / std::tan((altitude + 7.31 / (altitude + 4.4)) * kDegree);
+    // Both formulas agree within 0.1 minutes (J. Meeus, "Astronomical Algorithms", chapter 16); the pressure differs.
+    EXPECT_NEAR(lifted / kDegree * 60, minutes * 1013.25 / 1010, 0.1) << altitude;
+  }
+}
+
 // March equinox of 2026: 20 March 14:46 UTC. The sun is over the equator.
 TEST(SunPosition, IsOnTheEquatorAtEquinox) {
   EXPECT_NEAR(sun_position(parse_time("2026-03-20T14:46Z"), {0, 90 * kDegree, 0}).altitude / kDegree, 0, kTolerance);
