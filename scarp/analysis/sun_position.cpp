@@ -5,6 +5,7 @@
 #include <erfam.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

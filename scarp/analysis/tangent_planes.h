@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "scarp/analysis/map_part.h"
+#include "scarp/analysis/sight.h"
+#include "scarp/base/vec.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
@@ -17,5 +19,9 @@ struct TangentPlanes {
   TangentPlanes() = default;
   TangentPlanes(const HeightField& field, const RowBand& band);
 };
+
+/// The upward normal at a place in columns and rows, east, north and up, of length 1, from bilinear heights one cell
+/// away: at nodes that of TangentPlanes. The place must have a height.
+dvec3 upward_normal(const SightGround& ground, double col, double row);
 
 }  // namespace scarp

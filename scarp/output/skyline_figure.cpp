@@ -138,13 +138,14 @@ class SkylineDrawing {
     cairo_fill(cr_);
   }
 
+  // The name is below: above may be a path.
   void named_dot(const SkylineLabel& label, const PlotColour& c) const {
     colour(c);
     dot(label.at, 4);
     if (label.name.empty()) return;
     const double half = pen_.width_of(label.name) / 2 + pen_.gap();
     const double at = std::clamp(x(label.at.azimuth), plot_.box.x + half, plot_.box.x + plot_.box.width - half);
-    pen_.write_on_picture({at, y(label.at.elevation) - kSkylineText}, 0, label.name);
+    pen_.write_on_picture({at, y(label.at.elevation) + 1.2 * kSkylineText}, 0, label.name);
   }
 
   double width_of_path(std::size_t i) const { return figure_.paths[i].main ? 2.5 : 1.2; }
@@ -152,13 +153,18 @@ class SkylineDrawing {
 
   void path(std::size_t i) const {
     const SunPath& sun = figure_.paths[i];
+    bool apart = true;
     double before = 0;
     for (const SkyPoint& point : sun.points) {
-      // The path leaves the figure on one side and enters it on the other.
+      if (!std::isfinite(point.elevation)) {
+        apart = true;
+        continue;
+      }
       const double at = x(point.azimuth);
-      const bool jumps = std::abs(at - before) > plot_.box.width / 2;
-      before = at;
-      jumps ? cairo_move_to(cr_, at, y(point.elevation)) : cairo_line_to(cr_, at, y(point.elevation));
+      // The path leaves the figure on one side and enters it on the other.
+      apart = apart || std::abs(at - before) > plot_.box.width / 2;
+      apart ? cairo_move_to(cr_, at, y(point.elevation)) : cairo_line_to(cr_, at, y(point.elevation));
+      apart = false, before = at;
     }
     colour(colour_of_path(i));
     cairo_set_line_width(cr_, width_of_path(i));

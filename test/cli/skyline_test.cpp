@@ -5,65 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "cli/drawn_skyline.h"
 #include "cli/maps_cli.h"
-#include "cli/svg_paths.h"
 
 namespace scarp::test {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-// A skyline as it was drawn, with scales from the picture itself.
-class DrawnSkyline {
- public:
-  explicit DrawnSkyline(const std::string& file) : paths_(paths_of(text_of(file))) {
-    // After a corner below the picture, from side to side. Cairo leaves out points on straight lines.
-    const std::vector<SvgPoint>& all = path("fill:rgb(74%,82%,90%)").points;
-    const auto right = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-    points_.assign(all.begin() + 1, right + 1);
-  }
-
-  const std::vector<SvgPoint>& points() const { return points_; }
-  const SvgPoint& top() const {
-    return *std::min_element(points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
-  }
-  // Height of the line in pixels.
-  double y(double azimuth) const {
-    const double x = points_.front().x + azimuth / 360 * (points_.back().x - points_.front().x);
-    auto after = std::find_if(points_.begin() + 1, points_.end(), [&](const SvgPoint& p) { return p.x >= x; });
-    if (after == points_.end()) --after;
-    const SvgPoint &a = *(after - 1), &b = *after;
-    return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
-  }
-  double azimuth(double x, double first = 0) const {
-    return first + 360 * (x - points_.front().x) / (points_.back().x - points_.front().x);
-  }
-  // Pixels of the dashed line at elevation 0.
-  double level() const { return path("stroke-dasharray").points.front().y; }
-  const SvgPath& path(const std::string& style) const {
-    return *std::find_if(paths_.begin(), paths_.end(),
-                         [&](const SvgPath& p) { return p.style.find(style) != std::string::npos; });
-  }
-  // Centres of the dots of names.
-  std::vector<SvgPoint> dots() const {
-    std::vector<SvgPoint> centres;
-    for (const SvgPath& p : paths_) {
-      if (!p.curved || p.style.find("fill:rgb(10%,10%,10%)") == std::string::npos) continue;
-      const auto [west, east] = std::minmax_element(p.points.begin(), p.points.end(),
-                                                    [](const SvgPoint& a, const SvgPoint& b) { return a.x < b.x; });
-      centres.push_back({(west->x + east->x) / 2, p.points.front().y});
-    }
-    return centres;
-  }
-
- private:
-  std::vector<SvgPath> paths_;
-  std::vector<SvgPoint> points_;
-};
 
 // The wall is 50 m high, 100 m east of the eye, without a CRS: a metre is a metre, and grid north is true north.
 class Skyline : public MapsCli {
@@ -92,6 +41,10 @@ TEST_F(Skyline, OutlineIsTheWall) {
       EXPECT_GT(skyline.y(azimuth), level) << azimuth;  // flat ground, seen from above
     }
   }
+  // The nearest layer ends after 100 m, before the wall.
+  const DrawnSkyline nearest(path("s.svg"), "fill:rgb(25%,33%,20%)");
+  EXPECT_GT(nearest.y(60), level);
+  EXPECT_LT(skyline.y(60), level);
 }
 
 // From any first azimuth on, over one turn.

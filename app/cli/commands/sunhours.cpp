@@ -13,8 +13,11 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/sunhours_point.h"
 #include "app/cli/options/horizon_options.h"
+#include "app/cli/options/plot_options.h"
 #include "app/cli/options/shared_options.h"
+#include "app/cli/options/sun_dates.h"
 #include "app/cli/picture/map_run.h"
 #include "app/cli/progress.h"
 #include "scarp/analysis/sky_view.h"
@@ -37,51 +40,9 @@ constexpr const char* kSunHoursFooter =
 time of day, in hours, of the middle of the first and the last step with sun (nodata: none).
 With --energy, four more bands per period, kWh per square metre of the sloping ground under a clear
 sky (ESRA model, Rigollier 2000): the sum, and its parts: beam, diffuse and reflected by the ground.
-The sun of each step is that in its middle, at the centre of the raster.)";
-
-struct SunHoursOptions : MapCommand {
-  std::string from, to, offset, sum = "range";
-  int step = 30;  // minutes
-  bool refraction = false, first_last = false, energy = false;
-  double linke = 3, albedo = 0.2;
-  HorizonInput horizon;
-};
-
-chrono::sys_days day_of(const std::string& text, std::string_view option) {
-  constexpr double kEpoch = 2440587.5;  // Julian date of 1970-01-01
-  try {
-    return chrono::sys_days(chrono::days(std::lround(parse_time(text + "T00:00Z").day - kEpoch)));
-  } catch (const Error&) {
-    throw Error(fmt::format("{} '{}': expected a date from 1900 to 2100, for example 2026-06-21", option, text));
-  }
-}
-
-// Minutes east of UTC; nullopt: not typed.
-std::optional<int> offset_of(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  const std::optional<int> minutes = parse_utc_offset(text);
-  if (!minutes) throw Error(fmt::format("--utc-offset '{}': expected +HH:MM or -HH:MM, for example -04:00", text));
-  return minutes;
-}
-
-std::string offset_text(int minutes) {
-  return fmt::format("{}{:02}:{:02}", minutes < 0 ? '-' : '+', std::abs(minutes) / 60, std::abs(minutes) % 60);
-}
-
-std::string date_text(chrono::sys_days day) {
-  const chrono::year_month_day date(day);
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                     static_cast<unsigned>(date.day()));
-}
-
-std::string dates_text(chrono::sys_days from, chrono::sys_days to) {
-  return from == to ? date_text(from) : date_text(from) + " to " + date_text(to);
-}
-
-double day_of_year(chrono::sys_days day) {
-  const chrono::sys_days first = chrono::year_month_day(day).year() / chrono::January / 1;
-  return static_cast<double>((day - first).count() + 1);
-}
+The sun of each step is that in its middle, at the centre of the raster.
+With --at the output is CSV: date, first_sun, last_sun (local time, to the second), hours, and with
+--energy energy, beam, diffuse, reflected; or a picture of the sun's path over the skyline.)";
 
 // Days that are summed in one band.
 struct Period {
@@ -110,9 +71,10 @@ Moments moments_of(const Period& period, const SunHoursOptions& options, const E
                    double grid_north) {
   Moments up;
   for (chrono::sys_days day = period.first; day <= period.last; day += chrono::days(1)) {
-    const UtcTime midnight = parse_time(date_text(day) + "T00:00Z");
-    for (int minute = 0; minute < kMinutesPerDay; minute += options.step) {
-      const double length = std::min(options.step, kMinutesPerDay - minute), middle = minute + 0.5 * length;
+    const UtcTime midnight = midnight_of(day, 0);
+    const int step = options.minutes();
+    for (int minute = 0; minute < kMinutesPerDay; minute += step) {
+      const double length = std::min(step, kMinutesPerDay - minute), middle = minute + 0.5 * length;
       const UtcTime time{midnight.day, (middle - offset) / kMinutesPerDay};
       const SunPosition sun = sun_position(time, place, options.refraction);
       if (!(sun.altitude > 0)) continue;
@@ -149,9 +111,9 @@ void add_bands(std::vector<ComputedBand>& bands, const std::string& name, SunHou
 }
 
 void run(SunHoursOptions options, const Command& command) {
-  const chrono::sys_days from = day_of(options.from, "--date");
-  const chrono::sys_days to = options.to.empty() ? from : day_of(options.to, "--to");
-  if (to < from) throw Error(fmt::format("--to {}: is before --date {}", options.to, options.from));
+  if (!options.at.empty()) return write_point_sun(options);
+  if (options.output.empty()) throw WrongUsage("-o FILE is required (see 'scarp sunhours --help')");
+  const auto [from, to] = days_of(options.from, options.to);
   const std::vector<Period> periods = periods_of(options, from, to);
   const auto count = static_cast<double>(periods.size()), days = static_cast<double>((to - from).count() + 1);
   const std::optional<int> typed_offset = offset_of(options.offset);
@@ -159,8 +121,7 @@ void run(SunHoursOptions options, const Command& command) {
   MapInput& input = run.input();
   const auto lonlat = input.lonlat_of(input.centre().x, input.centre().y);
   if (!lonlat) throw Error(fmt::format("{}: the sun's position needs a raster with a CRS (give --crs)", input.path()));
-  // Local time by longitude: noon is within half an hour of the sun's highest position.
-  const int offset = typed_offset.value_or(static_cast<int>(std::lround(lonlat->x / 15)) * 60);
+  const int offset = typed_offset.value_or(offset_by_longitude(lonlat->x));
   if (!typed_offset)
     input.notes.push_back(
         fmt::format("days start at midnight UTC{}, chosen from the longitude (--utc-offset)", offset_text(offset)));
@@ -168,11 +129,11 @@ void run(SunHoursOptions options, const Command& command) {
   // Not from the samples of a part: all parts have the same sun.
   const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
   const int bands_per_period = 1 + (options.energy ? 4 : 0) + (options.first_last ? 2 : 0);
-  const double suns = days * kMinutesPerDay / options.step / 2 + (options.energy ? kSkyAzimuths : 0);
+  const double suns = days * kMinutesPerDay / options.minutes() / 2 + (options.energy ? kSkyAzimuths : 0);
   if (!run.begin(29 + 4 * count * bands_per_period, suns * options.horizon.node_azimuth_s())) return;
   const EarthPlace place{lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian, height};
   Metadata metadata = horizon_metadata(options.horizon, input);
-  metadata.emplace_back("STEP", fmt::format("{} minutes", options.step));
+  metadata.emplace_back("STEP", fmt::format("{} minutes", options.minutes()));
   metadata.emplace_back("UTC_OFFSET", offset_text(offset));
   metadata.emplace_back("DATES", dates_text(from, to));
   metadata.emplace_back("REFRACTION", options.refraction ? "standard atmosphere" : "none");
@@ -226,25 +187,43 @@ void add_sunhours(Program& program) {
                         .help = "day, or first day of a range, for example 2026-06-21",
                         .common = true,
                         .required = true});
-  command.add(&o.to,
-              {.names = "--to", .value = "DATE", .help = "last day", .fallback = "that of --date", .common = true});
+  const std::vector<std::string> of_maps{"--at"};
+  const Rule of_pictures =
+      needs("--at X,Y and a .svg, .pdf or .png output", [&o] { return !o.at.empty() && is_figure(o.output); });
+  command.add(&o.to, {.names = "--to",
+                      .value = "DATE",
+                      .help = "last day",
+                      .fallback = "that of --date",
+                      .common = true,
+                      .rules = {needs("a map or a table", [&o] { return o.at.empty() || !is_figure(o.output); })}});
+  command.add(&o.at, {.names = "--at",
+                      .value = "X,Y[,H]",
+                      .help = "point instead of a map, with the height of the eye above the ground",
+                      .fallback = "none",
+                      .common = true});
   command.add(&o.step, {.names = "--step",
                         .value = "MIN",
                         .help = "minutes between positions of the sun",
                         .range = {1, kMinutesPerDay},
+                        .fallback = "30; at a point 1",
                         .common = true});
   command.add(&o.sum, {.names = "--sum",
                        .value = "PERIOD",
                        .help = "period of a band",
                        .choices = {"day", "month", "range"},
                        .closed = true,
-                       .common = true});
+                       .common = true,
+                       .excludes = of_maps});
   command.add(&o.first_last, {.names = "--first-last",
                               .help = "additional bands: local time of first and last sun",
                               .common = true,
                               .rules = {needs("--sum day, or a single day",
-                                              [&o] { return o.sum == "day" || o.to.empty() || o.to == o.from; })}});
-  command.add(&o.energy, {.names = "--energy", .help = "additional bands: energy under a clear sky", .common = true});
+                                              [&o] { return o.sum == "day" || o.to.empty() || o.to == o.from; })},
+                              .excludes = of_maps});
+  command.add(&o.energy, {.names = "--energy",
+                          .help = "additional bands or columns: energy under a clear sky",
+                          .common = true,
+                          .rules = {needs("a map or a table", [&o] { return o.at.empty() || !is_figure(o.output); })}});
   const Rule with_energy = needs("--energy", [&o] { return o.energy; });
   command.add(&o.linke, {.names = "--linke",
                          .value = "T",
@@ -266,11 +245,17 @@ void add_sunhours(Program& program) {
   command.add(
       &o.refraction,
       {.names = "--refraction", .help = "raise the sun by the refraction of a standard atmosphere", .common = true});
-  add_output_option(command, o.output, "raster to write", "tif tiff img asc");
-  add_horizon_options(command, o.horizon, o.curvature);
-  add_map_command(command, o, [options, &command] { run(*options, command); });
+  add_output_option(command, o.output,
+                    "map, or with --at a .csv table or a .svg, .pdf or .png picture of the sun's path",
+                    "tif tiff img asc csv svg pdf png", "point: standard output");
+  add_plot_size_option(command, o.size, "1200x560", of_pictures);
+  add_horizon_options(command, o.horizon, o.curvature, of_maps);
+  add_map_coordinates_option(command, o.coordinates, {needs("--at X,Y", [&o] { return !o.at.empty(); })});
+  add_map_command(
+      command, o, [options, &command] { run(*options, command); }, of_maps);
   command.footer(kSunHoursFooter);
   command.example("scarp sunhours dem.tif --date 2026-06-21 -o hours.tif");
+  command.example("scarp sunhours dem.tif --at 692000,5143000 --date 2026-12-21 -o sun.svg");
   command.example("scarp sunhours dem.tif --date 2026-01-01 --to 2026-12-31 --sum month --step 60 -o months.tif");
 }
 
