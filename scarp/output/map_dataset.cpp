@@ -62,6 +62,8 @@ GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path, b
     to.SetDescription(band.name.c_str());
     if (!band.unit.empty()) to.SetUnitType(band.unit.c_str());
     if (band.nodata) to.SetNoDataValue(*band.nodata);
+    if (band.scale != 1) to.SetScale(band.scale);
+    if (band.offset != 0) to.SetOffset(band.offset);
     if (band.classes.empty()) continue;
     std::string legend;
     GDALColorTable colours;

@@ -105,6 +105,9 @@ void require_same_map(const std::string& written, GDALDataset& expected, const s
   const int step = std::clamp(kSamples / cols, 1, rows);
   std::vector<double> a(static_cast<std::size_t>(cols) * step), b(a.size());
   for (int band = 1; band <= bands; ++band) {
+    if (expected.GetRasterBand(band)->GetScale() != dataset->GetRasterBand(band)->GetScale() ||
+        expected.GetRasterBand(band)->GetOffset() != dataset->GetRasterBand(band)->GetOffset())
+      refuse("does not store the scale of packed samples");
     const SameSample same(*expected.GetRasterBand(band), *dataset->GetRasterBand(band));
     for (int row = 0; row < rows; row += step) {
       const int count = std::min(step, rows - row);

@@ -31,6 +31,7 @@ struct MapBand {
   std::variant<std::span<const std::uint8_t>, std::span<const std::uint16_t>, std::span<const float>> samples;
   std::optional<double> nodata{};
   std::vector<MapClass> classes{};  ///< colour table of Byte bands; empty: none
+  double scale = 1, offset = 0;     ///< the value in `unit` is sample * scale + offset; stored with the band
 };
 
 /// A rectangle of pixels of a map, in columns and rows.

@@ -36,6 +36,79 @@ TEST_F(SkyMaps, HorizonsAreMeasuredFromEveryPixel) {
   EXPECT_NE(points.out.find("\n1,90,14.0308"), std::string::npos) << points.out;  // atan(25 / 100.04)
 }
 
+// By the distances of all azimuths, which are bands of the same map.
+TEST_F(SkyMaps, FarthestHorizonIsTheLargestDistance) {
+  const Names horizon = on_dem("horizon") + Names{"--cc", "0", "--azimuths", "12", "--distance", "--farthest"};
+  const auto result = run(horizon + Names{"-o", path("f.tif")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto map = open(path("f.tif"));
+  ASSERT_EQ(map->GetRasterCount(), 26);
+  EXPECT_STREQ(map->GetRasterBand(25)->GetDescription(), "farthest distance");
+  EXPECT_STREQ(map->GetRasterBand(25)->GetUnitType(), "m");
+  EXPECT_STREQ(map->GetRasterBand(26)->GetDescription(), "farthest azimuth");
+  std::vector<Pixels> bands;
+  for (int band = 1; band <= 26; ++band) bands.push_back(pixels_of(*map, band));
+  for (int row = 0; row < 20; ++row) {
+    for (int col = 0; col < 30; ++col) {
+      float distance = -9999, azimuth = -9999;
+      for (std::size_t i = 0; i < 12; ++i)
+        if (const float here = bands[12 + i].at(col, row); here > distance)
+          distance = here, azimuth = 30 * static_cast<float>(i);
+      EXPECT_EQ(bands[24].at(col, row), distance) << col << ", " << row;
+      EXPECT_EQ(bands[25].at(col, row), azimuth) << col << ", " << row;
+    }
+  }
+  // In row 9, 95 m and 9 rows from the border in the north, 100 m from the wall and 100 m from the border in the west:
+  // at 60 degrees the wall is 100 m / sin 60 away.
+  EXPECT_NEAR(bands[24].at(10, 9), 100.04 / std::sin(std::acos(-1) / 3), 0.01);
+  EXPECT_EQ(bands[25].at(10, 9), 60);
+  EXPECT_EQ(bands[24].at(0, 0), -9999);  // the hole
+  // Without the bands of distances, the same.
+  ASSERT_EQ(run(on_dem("horizon") + Names{"--cc", "0", "--azimuths", "12", "--farthest", "-o", path("g.tif")}).status,
+            0);
+  EXPECT_EQ(pixels_of(*open(path("g.tif")), 13).samples, bands[24].samples);
+  expect_refused(on_dem("horizon") + Names{"--farthest", "--at", "500105,5000105"}, "--farthest cannot be combined");
+}
+
+TEST_F(SkyMaps, PackedAnglesAreWithinHalfAStep) {
+  const Names horizon = on_dem("horizon") + Names{"--azimuths", "7", "--observer-height", "3"};
+  ASSERT_EQ(run(horizon + Names{"-o", path("f.tif")}).status, 0);
+  for (const Names& part : {Names{}, {"--part", "2/3"}}) {
+    const auto result = run(horizon + part + Names{"--pack", "-o", path("p.tif")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto floats = open(path("f.tif")), packed = open(path("p.tif"));
+    ASSERT_EQ(packed->GetRasterCount(), 7);
+    const int first = part.empty() ? 0 : 6, rows = packed->GetRasterYSize();  // 20 rows in parts of 6 or 7
+    for (int band = 1; band <= 7; ++band) {
+      GDALRasterBand& stored = *packed->GetRasterBand(band);
+      EXPECT_EQ(stored.GetRasterDataType(), GDT_UInt16);
+      EXPECT_EQ(stored.GetNoDataValue(), 65535);
+      EXPECT_STREQ(stored.GetUnitType(), "degrees");
+      EXPECT_STREQ(stored.GetDescription(), floats->GetRasterBand(band)->GetDescription());
+      const double step = stored.GetScale();
+      EXPECT_EQ(step, 0.003);
+      const Pixels expected = pixels_of(*floats, band), samples = pixels_of(*packed, band);
+      for (int row = 0; row < rows; ++row) {
+        for (int col = 0; col < 30; ++col) {
+          const float angle = expected.at(col, row + first), sample = samples.at(col, row);
+          if (angle == -9999) {
+            EXPECT_EQ(sample, 65535) << col << ", " << row;
+          } else {
+            const double value = static_cast<double>(sample) * step + stored.GetOffset();
+            // And the rounding of a float of up to 90.
+            EXPECT_NEAR(value, static_cast<double>(angle), step / 2 + 0x1p-18) << col << ", " << row;
+          }
+        }
+      }
+    }
+  }
+  for (const char* option : {"--distance", "--farthest"})
+    expect_refused(horizon + Names{"--pack", option, "-o", path("x.tif")}, "cannot be combined");
+  expect_refused(on_dem("horizon") + Names{"--pack", "--at", "500105,5000105"}, "--pack cannot be combined with --at");
+  expect_refused(on_dem("horizon") + Names{"--azimuths", "1", "--pack", "-o", path("x.xyz")},
+                 "XYZ does not store the scale of packed samples");
+}
+
 TEST_F(SkyMaps, HorizonOfPointsKeepsTheirColumns) {
   const std::string table =
       scratch_.write("sites.csv", "name,x,y,z\n\"mast, north\",500105,5000105,25\nhut,500155,5000055,0\n");

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,14 +33,49 @@ distance (metres to the ground that is the horizon; empty: no ground). pvlib tak
 With --skip-bad also status: ok, invalid, outside or nodata.
 With --at and a .svg, .pdf or .png output, a picture of the skyline.)";
 
+// Angles in steps of 0.003 degrees from -90 on: 0 is a step, and 180 degrees fit into 16 bits with room for nodata.
+ComputedBand packed_band(std::string name, const std::vector<float>& degrees) {
+  constexpr double kPackedStep = 0.003, kPackedFirst = -90;
+  constexpr std::uint16_t kHole = 65535;
+  std::vector<std::uint16_t> pixels(degrees.size());
+  std::transform(degrees.begin(), degrees.end(), pixels.begin(), [&](float angle) {
+    return std::isnan(angle)
+               ? kHole
+               : static_cast<std::uint16_t>(std::lround((static_cast<double>(angle) - kPackedFirst) / kPackedStep));
+  });
+  return {std::move(name), "degrees", std::move(pixels), kHole, {}, kPackedStep, kPackedFirst};
+}
+
+// The farthest horizon of each pixel over the azimuths so far.
+class FarthestHorizon {
+ public:
+  void add(const std::vector<float>& distances, double azimuth) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    if (distance_.empty()) distance_.assign(distances.size(), kNone), azimuth_.assign(distances.size(), kNone);
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      // The first wins; NaN is none.
+      if (!(distances[i] > distance_[i]) && !(std::isnan(distance_[i]) && !std::isnan(distances[i]))) continue;
+      distance_[i] = distances[i], azimuth_[i] = static_cast<float>(azimuth);
+    }
+  }
+  void add_bands(std::vector<ComputedBand>& bands) {
+    bands.push_back(number_band("farthest distance", "m", std::move(distance_)));
+    bands.push_back(number_band("farthest azimuth", "degrees", std::move(azimuth_)));
+  }
+
+ private:
+  std::vector<float> distance_, azimuth_;
+};
+
 void run(HorizonOptions options, const Command& command) {
   if (options.at_points()) return write_point_horizons(options);
   if (options.output.empty()) throw WrongUsage("-o FILE is required (see 'scarp horizon --help')");
-  MapRun run(options, command, "Float32");
+  MapRun run(options, command, options.pack ? "UInt16" : "Float32");
   const std::vector<double> azimuths = options.all_azimuths();
   const auto count = static_cast<double>(azimuths.size());
   run.set_reach(options.horizon.reach());
-  if (!run.begin(13 + 4 * count * (options.distance ? 2 : 1), count * options.horizon.node_azimuth_s())) return;
+  const double bytes = (options.pack ? 2 : 4) * count * (options.distance ? 2 : 1) + (options.farthest ? 8 : 0);
+  if (!run.begin(13 + bytes, count * options.horizon.node_azimuth_s())) return;
   MapInput& input = run.input();
   double highest = -90;
   std::string errors;
@@ -46,19 +83,25 @@ void run(HorizonOptions options, const Command& command) {
     const HorizonPlane plane = horizon_plane(input);
     const Horizons horizons(plane.field, horizon_settings(options.horizon, input), terminal_progress("heights"));
     std::vector<ComputedBand> bands, distances;
+    FarthestHorizon farthest;
     for (std::size_t i = 0; i < azimuths.size(); ++i) {
       const double azimuth = azimuths[i];
-      HorizonRows found = horizons.rows(azimuth / kDegreesPerRadian - plane.grid_north, rows.first, rows.last,
-                                        options.distance, progress_part(progress, static_cast<double>(i), count));
+      HorizonRows found =
+          horizons.rows(azimuth / kDegreesPerRadian - plane.grid_north, rows.first, rows.last,
+                        options.distance || options.farthest, progress_part(progress, static_cast<double>(i), count));
       for (float& angle : found.angle) {
         angle = options.clamp && angle < 0 ? 0 : static_cast<float>(static_cast<double>(angle) * kDegreesPerRadian);
         highest = std::fmax(highest, static_cast<double>(angle));
       }
-      bands.push_back(number_band(fmt::format("horizon {:.10g}", azimuth), "degrees", std::move(found.angle)));
+      const std::string name = fmt::format("horizon {:.10g}", azimuth);
+      bands.push_back(options.pack ? packed_band(name, found.angle)
+                                   : number_band(name, "degrees", std::move(found.angle)));
+      if (options.farthest) farthest.add(found.distance, azimuth);
       if (options.distance)
         distances.push_back(number_band(fmt::format("distance {:.10g}", azimuth), "m", std::move(found.distance)));
     }
     std::move(distances.begin(), distances.end(), std::back_inserter(bands));
+    if (options.farthest) farthest.add_bands(bands);
     std::vector<double> directions;
     for (const double azimuth : azimuths) directions.push_back(azimuth / kDegreesPerRadian - plane.grid_north);
     errors = horizon_errors_text(options.horizon, input, plane.field, directions, rows);
@@ -127,6 +170,16 @@ void add_horizon(Program& program) {
                             .help = "additional bands: distance to the horizon, in metres",
                             .common = true,
                             .excludes = point_options});
+  command.add(&o.farthest,
+              {.names = "--farthest",
+               .help = "2 additional bands: distance of the farthest horizon over all azimuths, its azimuth",
+               .common = true,
+               .excludes = point_options});
+  command.add(&o.pack, {.names = "--pack",
+                        .help = "angles in 16 bits instead of 32, in steps of 0.003 degrees",
+                        .note = "UInt16 with scale and offset, 65535: nodata",
+                        .common = true,
+                        .excludes = {"--at", "--points", "--distance", "--farthest"}});
   add_horizon_options(command, o.horizon, o.curvature, point_options);
   add_map_coordinates_option(command, o.coordinates, {needs("--at or --points", [&o] { return o.at_points(); })});
   add_map_command(

@@ -19,7 +19,7 @@ struct HorizonOptions : MapCommand {
   std::vector<std::string> at;
   PlaceFile points;
   std::string labels, size;
-  bool clamp = false, distance = false;
+  bool clamp = false, distance = false, farthest = false, pack = false;
 
   bool at_points() const { return !at.empty() || !points.path.empty(); }
   /// Degrees clockwise from true north.

@@ -72,12 +72,12 @@ Paint paint_of_classes(const MapBand& band, std::span<const std::uint8_t> codes)
   return {[=](std::size_t i) { return colours[codes[i]]; }, std::move(key)};
 }
 
-// The range of the colours: complete for integers; for other values without 1 % at either end, which excludes lines of
-// sight straight down.
+// The range of the colours: complete for whole numbers; for other values without 1 % at either end, which excludes
+// lines of sight straight down.
 template <class Sample>
-std::pair<double, double> range_of(std::vector<Sample> numbers) {
+std::pair<double, double> range_of(std::vector<Sample> numbers, bool whole_numbers) {
   if (numbers.empty()) return {0, 0};
-  const std::size_t last = numbers.size() - 1, cut = std::is_integral_v<Sample> ? 0 : numbers.size() / 100;
+  const std::size_t last = numbers.size() - 1, cut = whole_numbers ? 0 : numbers.size() / 100;
   const auto at = [&](std::size_t i) {
     std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(i), numbers.end());
     return static_cast<double>(numbers[i]);
@@ -93,9 +93,11 @@ Paint paint_of_numbers(const MapBand& band, std::span<const Sample> samples, con
   };
   std::vector<Sample> numbers;
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(numbers), [&](Sample s) { return !is_hole(s); });
-  const auto [low, high] = range_of(std::move(numbers));
-  FigureLegend legend = legend_of(band.unit.empty() ? band.name : fmt::format("{}, {}", band.name, band.unit), low,
-                                  high, Ramp(ramp, low, high), 1, std::is_integral_v<Sample> ? 1 : 0);
+  const bool whole_numbers = std::is_integral_v<Sample> && band.scale == 1;
+  const auto [low, high] = range_of(std::move(numbers), whole_numbers);
+  const double first = low * band.scale + band.offset, last = high * band.scale + band.offset;
+  FigureLegend legend = legend_of(band.unit.empty() ? band.name : fmt::format("{}, {}", band.name, band.unit), first,
+                                  last, Ramp(ramp, first, last), 1, whole_numbers ? 1 : 0);
   const double per_unit = high > low ? static_cast<double>(legend.colours.size()) / (high - low) : 0;
   const auto colour = [=, low = low, colours = legend.colours](std::size_t i) {
     if (is_hole(samples[i])) return Colour{};

@@ -21,9 +21,13 @@ MapCommand& settled(MapCommand& options, std::string_view sample_type) {
 }
 
 MapBand view_of(const ComputedBand& band) {
-  return {band.name, band.unit,
+  return {band.name,
+          band.unit,
           std::visit([](const auto& pixels) -> decltype(MapBand::samples) { return std::span(pixels); }, band.pixels),
-          band.nodata, band.classes};
+          band.nodata,
+          band.classes,
+          band.scale,
+          band.offset};
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ struct ComputedBand {
   std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> pixels;
   double nodata = 0;
   std::vector<MapClass> classes{};  ///< of Byte bands; empty: none
+  double scale = 1, offset = 0;     ///< as MapBand
 };
 
 /// Nodata of bands of numbers.
