@@ -169,6 +169,21 @@ TEST_F(SunPoint, PictureHasThePathOfTheSun) {
   EXPECT_NEAR((skyline.level() - noon->y) / per_degree, 90 - latitude + kDeclination / kDegree, 0.05);
   // In azimuth cos(declination) / cos(altitude) times that, and a step of coordinates.
   EXPECT_NEAR(skyline.azimuth(noon->x), 180, 0.625 * 2.5 + 0.01);
+  // Sunrise and sunset are marked; a sun that does not set has none.
+  const auto marks = [&] {
+    int count = 0;
+    for (const SvgPath& p : paths_of(text_of(path("s.svg"))))
+      count += p.curved && p.style.find("fill:rgb(62%,20%,16%)") != std::string::npos;
+    return count;
+  };
+  EXPECT_EQ(marks(), 2);
+  const std::string north =
+      scratch_.write("north.asc", "ncols 2\nnrows 2\nxllcorner 20\nyllcorner 70\ncellsize 0.001\n0 0 0 0\n");
+  ASSERT_EQ(run({"sunhours", north, "--crs", "EPSG:4326", "--at", "20.001,70.001", "--date", "2026-06-21", "-o",
+                 path("s.svg")})
+                .status,
+            0);
+  EXPECT_EQ(marks(), 0);
   EXPECT_EQ(run(at(model(500000, 50), "500105,5000105") + Names{"-o", path("s.png"), "--size", "300x200"}).status, 0);
   EXPECT_EQ(text_of(path("s.png")).substr(1, 3), "PNG");
 }

@@ -138,8 +138,9 @@ void draw_sun(const SunHoursOptions& options, MapInput& input, const SunPlace& s
   figure.paths.push_back(path_of(sun, point, date, date_text(date), true));
   const UtcTime midnight = midnight_of(date, point.offset);
   const SunDay day = sun.day(midnight, day_of_year(date));
+  // A sun that is up at midnight neither rises nor sets then.
   for (const auto& time : {day.first, day.last})
-    if (time) figure.marks.push_back({sky_point(sun.sun(midnight, *time)), time_text(time)});
+    if (time && *time > 0 && *time < 24) figure.marks.push_back({sky_point(sun.sun(midnight, *time)), time_text(time)});
   const std::string result = day.first ? fmt::format("first sun {}, last sun {}, {:.2f} hours of sun",
                                                      time_text(day.first), time_text(day.last), day.hours)
                                        : "no sun";
