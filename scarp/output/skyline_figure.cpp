@@ -153,18 +153,13 @@ class SkylineDrawing {
 
   void path(std::size_t i) const {
     const SunPath& sun = figure_.paths[i];
-    bool apart = true;
-    double before = 0;
+    double before = plot_.box.x;
     for (const SkyPoint& point : sun.points) {
-      if (!std::isfinite(point.elevation)) {
-        apart = true;
-        continue;
-      }
       const double at = x(point.azimuth);
       // The path leaves the figure on one side and enters it on the other.
-      apart = apart || std::abs(at - before) > plot_.box.width / 2;
-      apart ? cairo_move_to(cr_, at, y(point.elevation)) : cairo_line_to(cr_, at, y(point.elevation));
-      apart = false, before = at;
+      const bool jumps = &point == &sun.points.front() || std::abs(at - before) > plot_.box.width / 2;
+      before = at;
+      jumps ? cairo_move_to(cr_, at, y(point.elevation)) : cairo_line_to(cr_, at, y(point.elevation));
     }
     colour(colour_of_path(i));
     cairo_set_line_width(cr_, width_of_path(i));

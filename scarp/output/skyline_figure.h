@@ -36,7 +36,7 @@ struct SkylineLabel {
 /// The sun on one day.
 struct SunPath {
   std::string name;                 ///< for the legend
-  std::vector<SkyPoint> points;     ///< in order of time; a NaN elevation separates stretches
+  std::vector<SkyPoint> points;     ///< in order of time
   std::vector<SkylineLabel> hours;  ///< dots on the path; a name may be empty
   bool main = false;                ///< drawn strongly
 };

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -109,14 +108,11 @@ SkyPoint sky_point(const SunPosition& sun) {
 // The path of the sun over a day, with a dot at each full hour.
 SunPath path_of(const SunPlace& sun, const PointOfSun& point, chrono::sys_days day, std::string name, bool main) {
   constexpr int kMinutes = 5, kDay = 24 * 60;
-  constexpr double kLowest = -10 / kDegreesPerRadian;  // below all pictures
   SunPath path{std::move(name), {}, {}, main};
   const UtcTime midnight = midnight_of(day, point.offset);
   for (int minute = 0; minute <= kDay; minute += kMinutes) {
     const SunPosition at = sun.sun(midnight, minute / 60.0);
-    // A gap for the night.
-    path.points.push_back(at.altitude > kLowest ? sky_point(at)
-                                                : SkyPoint{0, std::numeric_limits<double>::quiet_NaN()});
+    path.points.push_back(sky_point(at));
     if (minute % 60 == 0 && minute < kDay && at.altitude > 0)
       path.hours.push_back({sky_point(at), main ? fmt::format("{} h", minute / 60) : ""});
   }
