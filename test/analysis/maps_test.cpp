@@ -128,7 +128,6 @@ TEST(Maps, ShadowsMatchTheJudge) {
   for (const std::size_t count : counts) EXPECT_GT(count, least);
 }
 
-// Terms that the filter cannot decide.
 // Passes over the field are parts of one task.
 TEST(Maps, ProgressNeverDecreases) {
   std::vector<float> heights;
@@ -157,9 +156,10 @@ TEST(Maps, ProgressNeverDecreases) {
          SkyView(field, {}, 4, {SkyMeasure::sky_fraction, SkyMeasure::negative_openness})
              .rows(0, field.rows(), progress);
        }}};
-  for (const auto& [name, map] : maps) {
+  for (const auto& one : maps) {
+    const std::string name = one.first;
     double last = 0;
-    map([&](double share) {
+    one.second([&](double share) {
       EXPECT_GE(share, last) << name;
       last = share;
       return true;
@@ -168,6 +168,7 @@ TEST(Maps, ProgressNeverDecreases) {
   }
 }
 
+// Terms that the filter cannot decide.
 TEST(CrossingSign, IsExact) {
   const double tiny = 0x1p-40;
   EXPECT_EQ(sign_of({1, 3, 1, 5, 1, 6, 1, 2}), 0);

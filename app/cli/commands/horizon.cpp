@@ -36,14 +36,14 @@ With --at and a .svg, .pdf or .png output, a picture of the skyline.)";
 // Angles in steps of 0.003 degrees from -90 on: 0 is a step, and 180 degrees fit into 16 bits with room for nodata.
 ComputedBand packed_band(std::string name, const std::vector<float>& degrees) {
   constexpr double kPackedStep = 0.003, kPackedFirst = -90;
-  constexpr std::uint16_t kHole = 65535;
+  constexpr std::uint16_t kPackedHole = 65535;
   std::vector<std::uint16_t> pixels(degrees.size());
   std::transform(degrees.begin(), degrees.end(), pixels.begin(), [&](float angle) {
     return std::isnan(angle)
-               ? kHole
+               ? kPackedHole
                : static_cast<std::uint16_t>(std::lround((static_cast<double>(angle) - kPackedFirst) / kPackedStep));
   });
-  return {std::move(name), "degrees", std::move(pixels), kHole, {}, kPackedStep, kPackedFirst};
+  return {std::move(name), "degrees", std::move(pixels), kPackedHole, {}, kPackedStep, kPackedFirst};
 }
 
 // The farthest horizon of each pixel over the azimuths so far.

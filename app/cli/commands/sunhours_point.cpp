@@ -41,7 +41,7 @@ PointOfSun point_of(const SunHoursOptions& options, MapInput& input, std::option
   table.rows.push_back({typed_height_place(options.at, "--at"), {}, 0});
   PointOfSun point;
   point.horizon = horizon_settings(options.horizon, input);
-  point.place = horizon_place(input, table, 0, point.horizon);
+  point.place = horizon_place(input, table, 0, horizon_position(input, table, 0), point.horizon);
   point.horizon.eye_height = point.place.eye_height;
   const dvec2 at = point.place.at;
   const auto lonlat = input.lonlat_of(at.x, at.y);
