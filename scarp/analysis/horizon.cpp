@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/analysis/horizon.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {

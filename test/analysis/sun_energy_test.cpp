@@ -119,7 +119,7 @@ TEST(SunEnergy, OfPlanesIsTheirOwnSum) {
       const double open = (1 + std::cos(slope)) / 2;
       // Floats of beam and cosine, and the beam between heights 81 m apart: (81 / 8434.5)^2 / 8.
       constexpr double kShare = 0x1p-16 + 1.2e-5;
-      EXPECT_NEAR(static_cast<double>(found.energy.beam[kMiddle]), beam, kShare * level + 1e-9) << slope;
+      EXPECT_NEAR(static_cast<double>(found.energy.beam[kMiddle]), beam, kShare * level) << slope;
       EXPECT_NEAR(static_cast<double>(found.energy.diffuse[kMiddle]), diffuse * open, kShare * diffuse) << slope;
       EXPECT_NEAR(static_cast<double>(found.energy.reflected[kMiddle]), 0.3 * (level + diffuse) * (1 - open),
                   kShare * (level + diffuse))

@@ -31,7 +31,6 @@ namespace {
 
 namespace chrono = std::chrono;
 
-constexpr int kMinutesPerDay = 24 * 60;
 constexpr int kSkyAzimuths = 64;  // of the sky view factor
 constexpr const char* kSunHoursMethod =
     " towards the centre of the sun; ground linear at crossings of grid lines (scarp sunhours)";

@@ -27,7 +27,7 @@ void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<
                                       .rules = {needs("--engine exact", [&horizon] { return !horizon.swept(); })}});
   command.add(&horizon.engine, {.names = "--engine",
                                 .value = "NAME",
-                                .help = "sweep: approximate, about three times as fast",
+                                .help = "sweep: approximate, about twice as fast",
                                 .choices = {"exact", "sweep"},
                                 .closed = true,
                                 .common = true,

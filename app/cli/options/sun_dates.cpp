@@ -59,8 +59,7 @@ double day_of_year(chrono::sys_days day) {
 }
 
 UtcTime midnight_of(chrono::sys_days day, int offset) {
-  constexpr double kDayMinutes = 24 * 60;
-  return {parse_time(date_text(day) + "T00:00Z").day, -offset / kDayMinutes};
+  return {parse_time(date_text(day) + "T00:00Z").day, -static_cast<double>(offset) / kMinutesPerDay};
 }
 
 int offset_by_longitude(double longitude) { return static_cast<int>(std::lround(longitude / 15)) * 60; }

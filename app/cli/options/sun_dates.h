@@ -10,6 +10,8 @@
 
 namespace scarp::cli {
 
+inline constexpr int kMinutesPerDay = 24 * 60;
+
 /// Days from the first to the last.
 struct DayRange {
   std::chrono::sys_days from, to;
