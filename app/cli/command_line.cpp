@@ -10,6 +10,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/gdal_words.h"
+#include "app/cli/memory/file_memory.h"
 #include "app/cli/progress.h"
 #include "app/options/help.h"
 #include "scarp/base/error.h"
@@ -64,6 +65,7 @@ Program scarp_program() {
   add_los(program);
   add_profile(program);
   add_contours(program);
+  add_merge(program);
   add_info(program);
   add_generate(program);
   add_marches(program);
@@ -97,6 +99,8 @@ int run_program(Program& program, int argc, char** argv) {
     end_progress_line();
     std::fprintf(stderr, "scarp: %s\n", error.what());
     return kSignalled + caught_signal();
+  } catch (const NoFileMemory& error) {
+    return fail(error.what(), kFailed);
   } catch (const std::bad_alloc&) {
     return fail("out of memory (a smaller window or picture needs less)", kFailed);
   } catch (const std::exception& error) {

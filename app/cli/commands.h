@@ -15,6 +15,7 @@ void add_info(Program& program);
 void add_los(Program& program);
 void add_generate(Program& program);
 void add_marches(Program& program);
+void add_merge(Program& program);
 void add_profile(Program& program);
 void add_replay(Program& program);
 void add_section(Program& program);

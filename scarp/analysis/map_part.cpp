@@ -57,19 +57,18 @@ std::vector<Value> fill_rows(const Viewpoint& view, const RowBand& band, Value g
   return map;
 }
 
-// A ray is no longer blocked once it is above all ground.
-RowBand rows_towards(const HeightField& field, const SunDirection& sun, const RowBand& band) {
-  const SunRay ray = sun_ray(field, sun);
-  const double relief = field.max_height() - field.min_height();
-  // One row for the ground next to the first crossing, and one for rounding.
+}  // namespace
+
+RowBand rows_towards(const NodeSteps& steps, int rows, const SunDirection& sun, const RowBand& band, double relief) {
+  const SunRay ray = sun_ray(steps, sun);
+  // A ray is no longer blocked once it is above all ground. One row more for the ground next to the first crossing, and
+  // one for rounding.
   constexpr int kMargin = 2;
   const double reach = kMargin + std::abs(static_cast<double>(ray.row)) * relief / ray.rise;
-  const int rows = static_cast<int>(std::min<double>(std::ceil(reach), field.rows()));
-  return ray.row < 0 ? RowBand{std::max(0, band.first - rows), band.last}
-                     : RowBand{band.first, std::min(field.rows(), band.last + (ray.row > 0 ? rows : 0))};
+  const int more = static_cast<int>(std::min<double>(std::ceil(reach), rows));
+  return ray.row < 0 ? RowBand{std::max(0, band.first - more), band.last}
+                     : RowBand{band.first, std::min(rows, band.last + (ray.row > 0 ? more : 0))};
 }
-
-}  // namespace
 
 void require_band(const HeightField& field, const RowBand& band) {
   if (band.first < 0 || band.last > field.rows() || band.first >= band.last)
@@ -126,7 +125,8 @@ std::vector<std::uint16_t> observer_count_rows(std::span<const Viewpoint> views,
 std::vector<Shade> shadow_rows(const HeightField& field, const SunDirection& sun, const RowBand& band,
                                const Progress& progress) {
   require_band(field, band);
-  return band_of(field, rows_towards(field, sun, band), band,
+  const double relief = field.max_height() - field.min_height();
+  return band_of(field, rows_towards(node_steps(field), field.rows(), sun, band, relief), band,
                  [&](const HeightField& rows, int) { return shadow(rows, sun, progress); });
 }
 

@@ -30,6 +30,10 @@ struct RowBand {
 /// Throws Error unless 1 <= part <= parts <= rows.
 RowBand row_band(int rows, int part, int parts);
 
+/// Returns the rows, of `rows` in all, that the shadows of a band depend on, if no ground is more than `relief` metres
+/// above the ground of the band. `steps` as for sun_ray(), which it throws as.
+RowBand rows_towards(const NodeSteps& steps, int rows, const SunDirection& sun, const RowBand& band, double relief);
+
 /// Throws Error for an empty band, and one that is not inside the field.
 void require_band(const HeightField& field, const RowBand& band);
 

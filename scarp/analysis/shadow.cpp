@@ -27,9 +27,9 @@ SunRay sun_ray(const NodeSteps& steps, const SunDirection& sun) {
   return ray;
 }
 
-SunRay sun_ray(const HeightField& field, const SunDirection& sun) {
-  return sun_ray({{field.settings().cell_x, 0}, {0, -field.settings().cell_y}}, sun);
-}
+NodeSteps node_steps(const HeightField& field) { return {{field.settings().cell_x, 0}, {0, -field.settings().cell_y}}; }
+
+SunRay sun_ray(const HeightField& field, const SunDirection& sun) { return sun_ray(node_steps(field), sun); }
 
 std::vector<Shade> shadow(const HeightField& field, const SunDirection& sun, const Progress& progress) {
   const SightGround ground(field);

@@ -42,6 +42,8 @@ struct NodeSteps {
   dvec2 col, row;  ///< to the next column and row
 };
 
+/// The steps of a field, relative to grid north.
+NodeSteps node_steps(const HeightField& field);
 /// Throws Error if the direction is out of range. `azimuth` is relative to the north of the steps.
 SunRay sun_ray(const NodeSteps& steps, const SunDirection& sun);
 /// The same with the field's cells and grid north.

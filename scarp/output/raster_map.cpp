@@ -13,6 +13,7 @@
 #include "scarp/output/gdal_writing.h"
 #include "scarp/output/map_dataset.h"
 #include "scarp/output/map_files.h"
+#include "scarp/output/map_writing.h"
 
 namespace scarp {
 namespace {
@@ -45,28 +46,23 @@ std::string name_of_option(const std::string& option) {
   return option.substr(0, equals);
 }
 
-CPLStringList options_of(const RasterMap& map) {
+CPLStringList options_of(const MapFormat& format) {
   CPLStringList options;
-  const bool floats = std::holds_alternative<std::span<const float>>(map.bands[0].samples);
-  if (map.driver == "GTiff") {
+  if (format.driver == "GTiff") {
     for (const char* option : {"TILED=YES", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
-    options.SetNameValue("PREDICTOR", floats ? "3" : "2");
-    // Some other programs do not read files that omit tiles, so maps are complete up to this size, for which empty
-    // tiles take 1 MB and a second of processor time.
-    constexpr double kLargestComplete = 1 << 26;
-    if (map.part && static_cast<double>(map.cols) * map.rows > kLargestComplete)
-      options.SetNameValue("SPARSE_OK", "TRUE");
-  } else if (map.driver == "COG") {
+    options.SetNameValue("PREDICTOR", format.floats ? "3" : "2");
+    if (format.sparse) options.SetNameValue("SPARSE_OK", "TRUE");
+  } else if (format.driver == "COG") {
     for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
     // Averages of class codes are not class codes.
-    options.SetNameValue("RESAMPLING", map.bands[0].classes.empty() ? "AVERAGE" : "NEAREST");
+    options.SetNameValue("RESAMPLING", format.classes ? "NEAREST" : "AVERAGE");
   }
-  if (map.driver == "GPKG") options.SetNameValue("TILE_FORMAT", floats ? "TIFF" : "PNG");
+  if (format.driver == "GPKG") options.SetNameValue("TILE_FORMAT", format.floats ? "TIFF" : "PNG");
   for (const auto& [driver, option] : kLossless)
-    if (map.driver == driver) options.AddString(option);
-  for (const std::string& option : map.creation_options) {
+    if (format.driver == driver) options.AddString(option);
+  for (const std::string& option : format.creation_options) {
     const std::string name = name_of_option(option);
     // Few of the other compressions support a predictor.
     if (EQUAL(name.c_str(), "COMPRESS")) {
@@ -82,10 +78,9 @@ CPLStringList options_of(const RasterMap& map) {
 }
 
 // GeoTIFF is exact by default. Lossy compression is a choice for measures, but codes would change their meaning.
-bool may_change_samples(const RasterMap& map) {
-  const bool floats = std::holds_alternative<std::span<const float>>(map.bands[0].samples);
-  const bool tiff = map.driver == "GTiff" || map.driver == "COG";
-  return map.creation_options.empty() ? !tiff : !floats;
+bool may_change_samples(const MapFormat& format) {
+  const bool tiff = format.driver == "GTiff" || format.driver == "COG";
+  return format.creation_options.empty() ? !tiff : !format.floats;
 }
 
 int CPL_STDCALL report(double done, const char*, void* progress) {
@@ -93,35 +88,62 @@ int CPL_STDCALL report(double done, const char*, void* progress) {
   return !call || call(done) ? TRUE : FALSE;
 }
 
+// Keeps GDAL from collecting a twentieth of the machine's memory in blocks before it writes them.
+class BlockLimit {
+ public:
+  BlockLimit() : before_(GDALGetCacheMax64()) { GDALSetCacheMax64(std::min<GIntBig>(before_, 64 << 20)); }
+  ~BlockLimit() { GDALSetCacheMax64(before_); }
+  BlockLimit(const BlockLimit&) = delete;
+  BlockLimit& operator=(const BlockLimit&) = delete;
+
+ private:
+  GIntBig before_;
+};
+
 // Writes the map with or without its colour table.
 void write_once(const std::string& path, const RasterMap& map, bool coloured, const Progress& progress) {
+  // Some other programs do not read files that omit tiles, so maps are complete up to this size, for which empty tiles
+  // take 1 MB and a second of processor time.
+  constexpr double kLargestComplete = 1 << 26;
+  const GdalWriting writing(AuxiliaryFiles::written);
+  const GDALDatasetUniquePtr source = dataset_of(map, path, coloured);
+  write_dataset(path, *source,
+                {.driver = map.driver,
+                 .creation_options = map.creation_options,
+                 .floats = std::holds_alternative<std::span<const float>>(map.bands[0].samples),
+                 .classes = !map.bands[0].classes.empty(),
+                 .sparse = map.part && static_cast<double>(map.cols) * map.rows > kLargestComplete,
+                 .bytes = bytes_of(map)},
+                progress);
+}
+
+}  // namespace
+
+void write_dataset(const std::string& path, GDALDataset& source, const MapFormat& format, const Progress& progress) {
   MapFiles files(path);
   GdalWriting writing(AuxiliaryFiles::written);
   writing.hide(files.folder());
-  const CPLStringList options = options_of(map);
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(map.driver.c_str());
-  if (!driver) throw Error(fmt::format("{}: GDAL has no driver '{}'", path, map.driver));
-  const GDALDatasetUniquePtr source = dataset_of(map, path, coloured);
+  const CPLStringList options = options_of(format);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver.c_str());
+  if (!driver) throw Error(fmt::format("{}: GDAL has no driver '{}'", path, format.driver));
   // GDAL copies bands of rows of this many bytes. Its default takes as much memory again as the rest of the program.
-  std::optional<CPLConfigOptionSetter> swath;
-  if (map.part) swath.emplace("GDAL_SWATH_SIZE", "2000000", true);
+  const CPLConfigOptionSetter swath("GDAL_SWATH_SIZE", "2000000", true);
+  const BlockLimit limit;
   bool stopped = false;
   const Progress watched = [&](double done) {
     stopped = progress && !progress(done);
     return !stopped;
   };
-  GDALDatasetUniquePtr copy(driver->CreateCopy(files.path().c_str(), source.get(), FALSE, options.List(), report,
+  GDALDatasetUniquePtr copy(driver->CreateCopy(files.path().c_str(), &source, FALSE, options.List(), report,
                                                const_cast<Progress*>(&watched)));
   const bool good = copy != nullptr;
   copy.reset();
   if (stopped) throw Interrupted();
-  writing.require_good(path, bytes_of(map));
-  if (!good) throw Error(fmt::format("{}: {} cannot hold this map (name the output *.tif)", path, map.driver));
-  if (may_change_samples(map)) require_same_map(files.path(), *source, path, map.driver);
+  writing.require_good(path, format.bytes);
+  if (!good) throw Error(fmt::format("{}: {} cannot hold this map (name the output *.tif)", path, format.driver));
+  if (may_change_samples(format)) require_same_map(files.path(), source, path, format.driver);
   files.commit();
 }
-
-}  // namespace
 
 void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options,
                            std::string_view sample_type) {

@@ -62,6 +62,19 @@ void require_raster_driver(const std::string& driver, const std::vector<std::str
 /// file if there is none.
 std::string raster_driver_of(const std::string& path);
 
+/// The format of a merged map.
+struct MergedFormat {
+  std::string driver = "GTiff";                 ///< GDAL's short name
+  std::vector<std::string> creation_options{};  ///< NAME=VALUE
+};
+
+/// Joins bands of rows of one map, in any order, into one raster, as if it had been written at once: the files must
+/// have metadata PART "I/N: rows FIRST to LAST of ROWS", and otherwise the same metadata, bands and columns. Reads a
+/// few rows at a time. Throws Error naming the file: not a part, a part of another map, parts that are missing or given
+/// twice; and as write_raster_map().
+void merge_raster_maps(const std::string& path, const std::vector<std::string>& parts, const MergedFormat& format,
+                       const Progress& progress = {});
+
 /// Writes the map to `path`, completely or not at all, with all files that the format needs. GTiff and COG files are
 /// tiled and compressed (DEFLATE) unless options say otherwise. Throws Error naming the file: an invalid option, a
 /// format that cannot store the map, failed writing (disk full).

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,17 +79,20 @@ void run(HorizonOptions options, const Command& command) {
   if (!run.begin(13 + bytes, count * options.horizon.node_azimuth_s())) return;
   MapInput& input = run.input();
   double highest = -90;
-  std::string errors;
+  std::optional<HorizonPlane> plane;
+  std::optional<Horizons> horizons;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
-    const HorizonPlane plane = horizon_plane(input);
-    const Horizons horizons(plane.field, horizon_settings(options.horizon, input), terminal_progress("heights"));
+    if (!horizons) {
+      plane = horizon_plane(input);
+      horizons.emplace(plane->field, horizon_settings(options.horizon, input), terminal_progress("heights"));
+    }
     std::vector<ComputedBand> bands, distances;
     FarthestHorizon farthest;
     for (std::size_t i = 0; i < azimuths.size(); ++i) {
       const double azimuth = azimuths[i];
       HorizonRows found =
-          horizons.rows(azimuth / kDegreesPerRadian - plane.grid_north, rows.first, rows.last,
-                        options.distance || options.farthest, progress_part(progress, static_cast<double>(i), count));
+          horizons->rows(azimuth / kDegreesPerRadian - plane->grid_north, rows.first, rows.last,
+                         options.distance || options.farthest, progress_part(progress, static_cast<double>(i), count));
       for (float& angle : found.angle) {
         angle = options.clamp && angle < 0 ? 0 : static_cast<float>(static_cast<double>(angle) * kDegreesPerRadian);
         highest = std::fmax(highest, static_cast<double>(angle));
@@ -102,18 +106,24 @@ void run(HorizonOptions options, const Command& command) {
     }
     std::move(distances.begin(), distances.end(), std::back_inserter(bands));
     if (options.farthest) farthest.add_bands(bands);
-    std::vector<double> directions;
-    for (const double azimuth : azimuths) directions.push_back(azimuth / kDegreesPerRadian - plane.grid_north);
-    errors = horizon_errors_text(options.horizon, input, plane.field, directions, rows);
     return bands;
   };
   const auto summary = [&] {
+    std::vector<double> directions;
+    for (const double azimuth : azimuths) directions.push_back(azimuth / kDegreesPerRadian - plane->grid_north);
+    const std::string errors = horizon_errors_text(options.horizon, input, plane->field, directions, run.rows());
     return fmt::format("{} azimuths, highest {:.4g} degrees; {}{}", azimuths.size(), highest, input.curvature_text(),
                        errors);
   };
   Metadata metadata = horizon_metadata(options.horizon, input);
   metadata.emplace_back("CLAMP", options.clamp ? "0 instead of angles below the horizontal" : "none");
-  run.write({horizon_method(options.horizon) + kHorizonMethod, metadata, "viridis", compute, summary});
+  run.write({horizon_method(options.horizon) + kHorizonMethod,
+             metadata,
+             "viridis",
+             compute,
+             summary,
+             {&highest},
+             !options.horizon.swept()});
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_run.h"
+#include "app/cli/progress.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/analysis/sun_disc.h"
 #ifdef SCARP_ERFA
@@ -67,12 +68,9 @@ struct SunSpread {
   double lowest = 0, highest = 0;  // altitudes at centre and corners
 };
 
-SunSpread sun_spread(const MapInput& input, const std::string& text, bool refraction) {
+SunSpread sun_spread(const MapInput& input, const std::string& text, double height, bool refraction) {
   const SunAtTime sky(parse_time(text));
   const double last_col = input.cols() - 1, last_row = input.rows() - 1;
-  // A --dry-run reads no samples. Kilometres of height move the sun by less than a microradian.
-  const bool read = input.part() == input.whole();
-  const double height = read ? 0.5 * (input.field().min_height() + input.field().max_height()) : 0;
   const auto position = [&](double col, double row) {
     const auto at = input.lonlat_of(col, row);
     if (!at) throw Error(fmt::format("{}: --time needs a raster with a CRS (give --crs, or --sun)", input.path()));
@@ -95,11 +93,14 @@ SunSpread sun_spread(const MapInput& input, const std::string& text, bool refrac
 
 void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vector<Sun>& suns, double& lowest) {
   double error = 0;
+  // Not from the samples of a part: all parts have the same sun. A --dry-run reads no samples; kilometres of height
+  // move the sun by less than a microradian.
+  const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
   std::shared_ptr<const NodePlaces> places;
   for (const std::string& text : options.times) {
     SunSpread spread;
     try {
-      spread = sun_spread(input, text, options.refraction);
+      spread = sun_spread(input, text, height, options.refraction);
     } catch (const Error& error_of_time) {
       throw Error(fmt::format("--time: {}", error_of_time.what()));
     }
@@ -210,14 +211,36 @@ ComputedBand band_of(const Sun& sun, const std::vector<Shade>& shades, LitPixels
            {kShadowNodata, "no sample", {255, 255, 255, 0}}}};
 }
 
+// The rows that the shadows of a band depend on. The band is read for its lowest ground; the highest ground is bounded
+// by the type of the samples, so that floats need all rows, as suns of their own for each pixel do.
+RowBand rows_towards_suns(MapInput& input, const std::vector<Sun>& suns, const ShadowOptions& options,
+                          const RowBand& band) {
+  const std::optional<double> highest = input.highest_possible();
+  if (!highest || options.per_cell || options.raster_output.dry_run) return {0, input.rows()};
+  input.read({0, band.first, input.cols(), band.rows()}, terminal_progress("read lowest ground"));
+  if (input.field().all_nodata()) return band;
+  const double relief = *highest - input.field().min_height();
+  const HeightField field = input.field_at(input.centre().x, input.centre().y, HUGE_VAL);
+  RowBand rows = band;
+  // The disc's lowest strip of --fraction is the first to be hidden.
+  const double below = options.fraction ? kSunDiameter / 2 : 0;
+  for (const Sun& sun : suns) {
+    const SunDirection lowest{sun.direction.azimuth, sun.direction.altitude - below};
+    if (!(lowest.altitude > 0)) return {0, input.rows()};
+    const RowBand needed = rows_towards(node_steps(field), input.rows(), lowest, band, relief);
+    rows = {std::min(rows.first, needed.first), std::max(rows.last, needed.last)};
+  }
+  return rows;
+}
+
 void run(ShadowOptions options, const Command& command) {
   MapRun run(options, command, options.fraction ? "Float32" : "Byte");
   MapInput& input = run.input();
   double lowest = std::numbers::pi / 2;
-  if (options.raster_output.dry_run) suns_of(input, options, lowest);  // reports wrong suns
-  const auto bands = static_cast<double>(options.suns.size() + options.times.size());
-  if (!run.begin(bands * (options.fraction ? 4 : 1) + 1, bands * node_seconds(options))) return;
   const std::vector<Sun> suns = suns_of(input, options, lowest);
+  run.set_rows([&](const RowBand& band) { return rows_towards_suns(input, suns, options, band); });
+  const auto bands = static_cast<double>(suns.size());
+  if (!run.begin(bands * (options.fraction ? 4 : 1) + 1, bands * node_seconds(options))) return;
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
   LitPixels pixels;
@@ -238,9 +261,9 @@ void run(ShadowOptions options, const Command& command) {
     }
     return computed;
   };
-  run.write({method_of(options), {{"SUN", places}}, "grey", compute, [&] {
-               return fmt::format("{}; {:.3g} % lit", places, pixels.percent());
-             }});
+  const auto summary = [&] { return fmt::format("{}; {:.3g} % lit", places, pixels.percent()); };
+  run.write(
+      {method_of(options), {{"SUN", places}}, "grey", compute, summary, {&pixels.lit, &pixels.with_sample}, true});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -85,12 +86,15 @@ void run(SkyviewOptions options, const Command& command) {
     metadata.emplace_back("FORMULA " + name, measure_of(name).formula);
   }
   std::vector<Mean> means(measures.size());
-  std::string errors;
+  std::optional<HorizonPlane> plane;
+  std::optional<SkyView> sky;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
-    const HorizonPlane plane = horizon_plane(input);
-    const SkyView sky(plane.field, horizon_settings(options.horizon, input), options.azimuths, measures,
-                      terminal_progress("heights"));
-    auto values = sky.rows(rows.first, rows.last, progress);
+    if (!sky) {
+      plane = horizon_plane(input);
+      sky.emplace(plane->field, horizon_settings(options.horizon, input), options.azimuths, measures,
+                  terminal_progress("heights"));
+    }
+    auto values = sky->rows(rows.first, rows.last, progress);
     std::vector<ComputedBand> bands;
     for (std::size_t m = 0; m < values.size(); ++m) {
       const MeasureText& text = measure_of(options.measures[m]);
@@ -99,18 +103,21 @@ void run(SkyviewOptions options, const Command& command) {
       means[m].add(values[m]);
       bands.push_back(number_band(text.name, text.unit, std::move(values[m])));
     }
-    std::vector<double> azimuths;
-    for (int i = 0; i < options.azimuths; ++i) azimuths.push_back(2 * std::numbers::pi * i / options.azimuths);
-    errors = horizon_errors_text(options.horizon, input, plane.field, azimuths, rows);
     return bands;
   };
   const auto summary = [&] {
     std::string text;
     for (std::size_t m = 0; m < means.size(); ++m)
       text += fmt::format("{}mean {} {:.4g}", m == 0 ? "" : ", ", options.measures[m], means[m].value());
+    std::vector<double> azimuths;
+    for (int i = 0; i < options.azimuths; ++i) azimuths.push_back(2 * std::numbers::pi * i / options.azimuths);
+    const std::string errors = horizon_errors_text(options.horizon, input, plane->field, azimuths, run.rows());
     return fmt::format("{}; {}{}", text, input.curvature_text(), errors);
   };
-  run.write({horizon_method(options.horizon) + kSkyMethod, metadata, "grey", compute, summary});
+  std::vector<double*> totals;
+  for (Mean& mean : means) totals.insert(totals.end(), {&mean.sum, &mean.count});
+  run.write({horizon_method(options.horizon) + kSkyMethod, metadata, "grey", compute, summary, totals,
+             !options.horizon.swept()});
 }
 
 }  // namespace

@@ -141,38 +141,46 @@ void run(SunHoursOptions options, const Command& command) {
     metadata.emplace_back("LINKE_TURBIDITY", fmt::format("{:.10g}", options.linke));
     metadata.emplace_back("ALBEDO", fmt::format("{:.10g}", options.albedo));
   }
-  float longest = 0;
-  std::string errors;
+  double longest = 0;
+  std::optional<HorizonPlane> plane;
+  std::optional<Horizons> horizons;
+  std::optional<SkyView> sky;
+  std::vector<double> azimuths;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
-    const HorizonPlane plane = horizon_plane(input);
-    const HorizonSettings settings = horizon_settings(options.horizon, input);
-    const Horizons horizons(plane.field, settings, terminal_progress("heights"));
-    std::vector<float> seen;
-    if (options.energy) {
-      const SkyView sky(plane.field, settings, kSkyAzimuths, {SkyMeasure::sky_view_factor});
-      seen = std::move(sky.rows(rows.first, rows.last, terminal_progress("sky view"))[0]);
+    if (!horizons) {
+      plane = horizon_plane(input);
+      const HorizonSettings settings = horizon_settings(options.horizon, input);
+      horizons.emplace(plane->field, settings, terminal_progress("heights"));
+      if (options.energy) sky.emplace(plane->field, settings, kSkyAzimuths, std::vector{SkyMeasure::sky_view_factor});
     }
+    std::vector<float> seen;
+    if (sky) seen = std::move(sky->rows(rows.first, rows.last, terminal_progress("sky view"))[0]);
     const ClearSkyGround ground{options.linke, options.albedo, seen};
-    std::vector<double> azimuths;
+    azimuths.clear();
     std::vector<ComputedBand> bands;
     for (std::size_t i = 0; i < periods.size(); ++i) {
       const Period& period = periods[i];
-      const Moments up = moments_of(period, options, place, offset, plane.grid_north);
+      const Moments up = moments_of(period, options, place, offset, plane->grid_north);
       for (const SunMoment& moment : up.moments) azimuths.push_back(moment.sun.azimuth);
-      SunHours found = sun_hours(horizons, up.moments, rows.first, rows.last, options.energy ? &ground : nullptr,
+      SunHours found = sun_hours(*horizons, up.moments, rows.first, rows.last, options.energy ? &ground : nullptr,
                                  progress_part(progress, static_cast<double>(i), count));
-      for (const float hours : found.hours) longest = std::fmax(longest, hours);
+      for (const float hours : found.hours) longest = std::fmax(longest, static_cast<double>(hours));
       add_bands(bands, period.name, std::move(found), up, options);
     }
-    errors = horizon_errors_text(options.horizon, input, plane.field, azimuths, rows);
     return bands;
   };
   const auto summary = [&] {
+    const std::string errors = horizon_errors_text(options.horizon, input, plane->field, azimuths, run.rows());
     return fmt::format("{} {}, at most {:.4g} hours of sun; {}{}", periods.size(),
-                       periods.size() == 1 ? "period" : "periods", static_cast<double>(longest), input.curvature_text(),
-                       errors);
+                       periods.size() == 1 ? "period" : "periods", longest, input.curvature_text(), errors);
   };
-  run.write({horizon_method(options.horizon) + kSunHoursMethod, metadata, "viridis", compute, summary});
+  run.write({horizon_method(options.horizon) + kSunHoursMethod,
+             metadata,
+             "viridis",
+             compute,
+             summary,
+             {&longest},
+             !options.horizon.swept()});
 }
 
 }  // namespace

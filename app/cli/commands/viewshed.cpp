@@ -269,9 +269,13 @@ RasterWindow part_in_reach(MapInput& input, const std::vector<Stand>& stands) {
 // If pixels out of range are not nodata, as holes are, all samples are read.
 void set_area(MapRun& run, const ViewshedOptions& options, bool marks_range, const std::vector<Stand>& stands) {
   const RasterWindow near = part_in_reach(run.input(), stands), whole = run.input().whole();
-  if (options.crop) return run.set_area(near, near);
   const bool all = !options.raster_output.preview.empty() || marks_range;
-  run.set_area(whole, all ? whole : near);
+  run.set_area(options.crop ? near : whole, all && !options.crop ? whole : near);
+  // A line of sight stays between the rows of its ends.
+  run.set_rows([&](RowBand rows) {
+    for (const Stand& one : stands) rows = {std::min(rows.first, one.node.row), std::max(rows.last, one.node.row + 1)};
+    return rows;
+  });
 }
 
 std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
@@ -443,9 +447,12 @@ void run(ViewshedOptions options, const Command& command) {
                                                               : "least visible heights";
     return fmt::format("{}; {}", what, input.curvature_text());
   };
-  run.write({kMethod, metadata, "viridis",
+  run.write({kMethod,
+             metadata,
+             "viridis",
              [&](const RowBand& rows, const Progress& progress) { return std::vector{band(rows, progress)}; },
-             summary});
+             summary,
+             {&targets.visible, &targets.hidden}});
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "app/cli/options/raster_options.h"
@@ -110,6 +112,13 @@ void MapInput::read(const RasterWindow& part, const Progress& progress) {
 std::optional<double> MapInput::height_at_centre() {
   const HeightField one = height_field_from(file_->read({cols() / 2, rows() / 2, 1, 1}, {}));
   return one.all_nodata() ? std::nullopt : std::optional(one.min_height());
+}
+
+std::optional<double> MapInput::highest_possible() const {
+  const auto height = [&](auto most) { return static_cast<double>(most) * header_.scale + header_.offset; };
+  if (sample_type() == SampleType::int16) return height(std::numeric_limits<std::int16_t>::max());
+  if (sample_type() == SampleType::uint16) return height(std::numeric_limits<std::uint16_t>::max());
+  return {};
 }
 
 Georeference MapInput::georeference_of(const RasterWindow& part) const {

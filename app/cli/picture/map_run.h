@@ -2,7 +2,7 @@
 // The course of a subcommand that computes a map, from its options to the written file:
 //
 //   MapRun                    checks the options and the output, and opens the raster
-//   set_area(), set_reach()   optional: the pixels to write and the samples that they depend on, by default all
+//   set_area() ...            optional: the pixels to write and the samples that they depend on, by default all
 //   begin()                   prints the cost (--dry-run) or reads the samples
 //   write()                   computes the rows, writes raster and preview, and prints the summary
 //
@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "app/cli/options/map_input.h"
+#include "app/cli/options/memory_options.h"
 #include "app/cli/picture/raster_output.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/base/parallel.h"
@@ -27,9 +29,12 @@
 
 namespace scarp::cli {
 
+class MapJournal;
+
 /// Options of a subcommand that computes a map.
 struct MapCommand : MapOptions {
   RasterOutput raster_output;
+  MemoryOptions memory;
 };
 
 /// Declares the options of every map, and the function that the subcommand runs after their effect was checked.
@@ -63,6 +68,11 @@ struct MapRecipe {
   std::function<std::vector<ComputedBand>(const RowBand& rows, const Progress& progress)> compute;
   /// Returns the result in words, over all rows computed.
   std::function<std::string()> summary;
+  /// Numbers of the summary that compute() updates, which --resume keeps.
+  std::vector<double*> totals{};
+  /// Whether strips of rows take together about as long as all rows at once. If a map is beyond the limit of memory, it
+  /// is then computed by strips, which use it place by place.
+  bool has_cheap_strips = false;
 };
 
 class MapRun {
@@ -77,22 +87,34 @@ class MapRun {
   /// nodata.
   void set_area(const RasterWindow& whole, const RasterWindow& read);
 
+  /// A --part depends only on these rows of the raster, as a function of its own. After set_area().
+  void set_rows(const std::function<RowBand(const RowBand& output)>& rows);
+
   /// For horizons: the output depends on its rows and on ground up to `metres` away, which may be infinite.
   void set_reach(double metres);
 
   /// Reads the samples. With --dry-run, prints size, memory and time instead, and returns false.
   bool begin(double bytes_per_pixel, double seconds_per_pixel);
 
+  /// The rows of the samples that were read which write() computes.
+  RowBand rows() const { return area_.rows(); }
+
   /// Computes and writes the map. Throws Error naming the file; Interrupted.
   void write(const MapRecipe& recipe);
 
  private:
+  std::vector<ComputedBand> compute(const MapRecipe& recipe, std::optional<MapJournal>& journal);
+  int strips_of(const MapRecipe& recipe) const;
+  std::string identity(int strips) const;
+
   MapCommand& options_;
   const Command& command_;
-  ThreadLimit limit_;
+  ThreadLimit threads_;
+  std::unique_ptr<MemoryLimit> memory_;
   std::chrono::steady_clock::time_point start_;
   MapInput input_;
   MapArea area_;
+  double needed_ = 0;  // bytes
 };
 
 }  // namespace scarp::cli

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/part_number.h"
 #include "app/cli/picture/map_preview.h"
 #include "app/cli/progress.h"
-#include "app/options/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/map_vectors.h"
@@ -42,11 +42,15 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                   .excludes = excludes});
   command.add(&options.part, {.names = "--part",
                               .value = "I/N",
-                              .help = "part I of N of the output, as a separate raster",
-                              .note = "bands of rows, from north to south",
+                              .help = "part I of N of the output, as a separate raster (scarp merge joins them)",
+                              .note = "bands of rows, from north to south; auto: the task of a job array",
                               .fallback = "all",
                               .common = true,
                               .excludes = excludes});
+  command.add(&options.resume, {.names = "--resume",
+                                .help = "keep finished rows in OUTPUT.resume, and go on if the file exists",
+                                .common = true,
+                                .excludes = excludes});
   command.add(&options.preview, {.names = "--preview",
                                  .value = "FILE",
                                  .help = "picture of the first band over the shaded model, with a legend",
@@ -73,6 +77,7 @@ void settle_output(RasterOutput& options, const MapOptions& map, std::string_vie
     if (options.driver.empty()) options.driver = raster_driver_of(map.output);
     require_raster_driver(options.driver, options.creation, sample_type);
   }
+  if (options.part == kAutomaticPart) options.part = part_of_job_array();
   keep_inputs(map.output, map.typed);
   // Only a check: formats choose their own temporary files.
   if (!options.dry_run) const ReplaceFile writable(map.output);
@@ -97,15 +102,12 @@ void write_map(const RasterOutput& options, const std::string& output, const Ras
 
 MapArea map_area(const MapInput& input, const RasterOutput& options, const RasterWindow& whole,
                  const RasterWindow& read) {
-  MapArea area{whole, read, {}};
+  MapArea area{whole, whole, read, {}};
   if (!options.part.empty()) {
-    constexpr std::string_view kForm = "I/N, whole numbers with 1 <= I <= N, for example 3/16";
-    const auto n = numbers_from(options.part, '/', 2, 2, "--part", kForm);
-    if (!(n[0] >= 1 && n[0] <= n[1] && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1])))
-      throw Error(fmt::format("--part '{}': expected {}", options.part, kForm));
-    if (n[1] > whole.rows)
+    const auto [part, parts] = part_from(options.part);
+    if (parts > whole.rows)
       throw Error(fmt::format("--part '{}': {} has only {} rows", options.part, input.path(), whole.rows));
-    const RowBand rows = row_band(whole.rows, static_cast<int>(n[0]), static_cast<int>(n[1]));
+    const RowBand rows = row_band(whole.rows, part, parts);
     area.output.row += rows.first;
     area.output.rows = rows.rows();
   }
@@ -130,25 +132,28 @@ RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapAr
   map.metadata = std::move(metadata);
   map.metadata.insert(map.metadata.begin(),
                       {{"SCARP_VERSION", SCARP_VERSION}, {"METHOD", method}, {"SOURCE", input.path()}});
-  if (output.cols != input.cols() || (options.part.empty() && output.rows != input.rows()))
+  if (const RasterWindow& whole = area.whole; whole != input.whole())
     map.metadata.emplace_back(
-        "WINDOW", fmt::format("columns {} to {}, rows {} to {} of {} x {}", output.col, output.col + output.cols - 1,
-                              output.row, output.row + output.rows - 1, input.cols(), input.rows()));
+        "WINDOW", fmt::format("columns {} to {}, rows {} to {} of {} x {}", whole.col, whole.col + whole.cols - 1,
+                              whole.row, whole.row + whole.rows - 1, input.cols(), input.rows()));
   if (!options.part.empty())
     map.metadata.emplace_back("PART", fmt::format("{}: rows {} to {} of {}", options.part, output.row,
                                                   output.row + output.rows - 1, input.rows()));
   return map;
 }
 
-void print_dry_run(const MapInput& input, const MapArea& area, const std::string& output, double bytes_per_node,
-                   double seconds) {
+double memory_of(const MapInput& input, const MapArea& area, double bytes_per_node) {
   const double read = static_cast<double>(area.read.cols) * area.read.rows,
                computed = static_cast<double>(area.computed.cols) * area.computed.rows;
-  const double samples = input.sample_type() == SampleType::float32 ? 4 : 2;
+  return read * (input.sample_type() == SampleType::float32 ? 4 : 2) + computed * bytes_per_node;
+}
+
+void print_dry_run(const MapArea& area, const std::string& output, double memory, double limit, double seconds) {
   constexpr double kMebi = 1 << 20;
-  fmt::print("{}: {} x {} pixels; about {:.0f} MiB of memory and {:.1f} s; nothing written (--dry-run)\n", output,
-             area.output.cols, area.output.rows, std::ceil((read * samples + computed * bytes_per_node) / kMebi),
-             seconds);
+  const std::string in_files =
+      memory > limit ? fmt::format(" (at most {:.0f} at once, the rest in files)", limit / kMebi) : "";
+  fmt::print("{}: {} x {} pixels; about {:.0f} MiB of memory{} and {:.1f} s; nothing written (--dry-run)\n", output,
+             area.output.cols, area.output.rows, std::ceil(memory / kMebi), in_files, seconds);
 }
 
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,

@@ -19,13 +19,13 @@ namespace scarp::cli {
 struct RasterOutput {
   std::string driver;                 ///< empty: by the extension; "polygons": a vector file
   std::vector<std::string> creation;  ///< NAME=VALUE
-  std::string part;                   ///< I/N; empty: all
+  std::string part;                   ///< I/N, or "auto" before settle_output(); empty: all
   std::string preview;                ///< picture; empty: none
-  bool dry_run = false, quiet = false;
+  bool dry_run = false, quiet = false, resume = false;
 };
 
-/// Declares --of, --co, --part, --preview, --dry-run and --quiet. `excludes`: options with which the output is not a
-/// raster.
+/// Declares --of, --co, --part, --resume, --preview, --dry-run and --quiet. `excludes`: options with which the output
+/// is not a raster.
 void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes = {});
 
 /// Throws Error, before hours of work, for formats and files that cannot be written, formats that cannot store samples
@@ -41,6 +41,7 @@ void write_map(const RasterOutput& options, const std::string& output, const Ras
 
 /// The nodes that an output covers.
 struct MapArea {
+  RasterWindow whole;     ///< the output without --part
   RasterWindow output;    ///< pixels of the output, in columns and rows of the raster
   RasterWindow read;      ///< samples to read
   RasterWindow computed;  ///< pixels to compute, in both; all others are nodata; no rows if there are none
@@ -58,9 +59,11 @@ MapArea map_area(const MapInput& input, const RasterOutput& options, const Raste
 RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapArea& area, const std::string& method,
                  std::vector<std::pair<std::string, std::string>> metadata);
 
-/// Prints the requirements of a run: size of the output, memory, seconds.
-void print_dry_run(const MapInput& input, const MapArea& area, const std::string& output, double bytes_per_node,
-                   double seconds);
+/// Estimated memory of a map in bytes: its samples, and `bytes_per_node` of each node computed.
+double memory_of(const MapInput& input, const MapArea& area, double bytes_per_node);
+
+/// Prints the requirements of a run: size of the output, memory, of which `limit` bytes may be used, and seconds.
+void print_dry_run(const MapArea& area, const std::string& output, double memory, double limit, double seconds);
 
 /// Prints the notes, and unless quiet the last line: output, size, `what`, seconds.
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,

@@ -175,7 +175,6 @@ template <class T>
 std::vector<T> read_as(const ReadingPlan& plan, const Stored& stored, Findings& found, GdalSession& session,
                        const Progress& progress) {
   const RasterWindow& window = plan.window;
-  refuse_beyond_memory({0, 0, plan.cols, plan.rows}, sizeof(T));
   PieceReader<T> reader(*plan.band, stored, found, session);
   if (!plan.decimates) {
     std::vector<T> samples(static_cast<std::size_t>(window.cols) * static_cast<std::size_t>(window.rows));
@@ -306,7 +305,8 @@ void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample) {
 }
 
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
-                      const std::optional<Decimation>& decimation, GdalSession& session, const Progress& progress) {
+                      const std::optional<Decimation>& decimation, bool beyond_memory, GdalSession& session,
+                      const Progress& progress) {
   const GDALDataType type = band.GetRasterDataType();
   const std::string_view type_name = GDALGetDataTypeName(type);
   empty_samples(band);  // rejects complex ones
@@ -328,7 +328,13 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   if (stored.mask && !plan.decimates && !hides_some(*stored.mask, window, session)) stored.mask = nullptr;
   Findings found;
   found.beyond_are_holes = !nodata;
-  const auto read_floats = [&] { read.samples = read_as<float>(plan, stored, found, session, progress); };
+  const auto require_room = [&](std::size_t bytes) {
+    if (!beyond_memory) refuse_beyond_memory({0, 0, plan.cols, plan.rows}, static_cast<int>(bytes));
+  };
+  const auto read_floats = [&] {
+    require_room(sizeof(float));
+    read.samples = read_as<float>(plan, stored, found, session, progress);
+  };
   const auto integers = [&]<class T>(T, std::string_view becomes) {
     if (read.nodata && !holds<T>(*read.nodata)) {
       read.notes.push_back(
@@ -337,6 +343,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
     }
     stored.nodata = read.nodata;
     if (stored.mask) return read_floats();
+    require_room(sizeof(T));
     read.samples = read_as<T>(plan, stored, found, session, progress);
     if (!becomes.empty())
       read.notes.push_back(fmt::format("{} samples are kept as {}", stored.signed_bytes ? "Int8" : type_name, becomes));

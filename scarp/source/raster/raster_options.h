@@ -71,6 +71,8 @@ struct RasterOptions {
   std::string channel;                   ///< channel of an EXR; default: the only one, else Y, else R
   std::string key;                       ///< array in a .npz; default: the only one with heights
   std::optional<Decimation> decimation;  ///< default: all samples
+  /// Whether operator new may return more memory than is free, so that no raster is refused for its size.
+  bool beyond_memory = false;
 
   bool operator==(const RasterOptions&) const = default;
 };

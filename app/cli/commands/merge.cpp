@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// `scarp merge`: joins the parts of a map.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/options/kept_inputs.h"
+#include "app/cli/options/shared_options.h"
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+#include "scarp/output/raster_map.h"
+
+namespace scarp::cli {
+namespace {
+
+struct MergeOptions {
+  std::vector<std::string> parts;
+  std::string output, driver;
+  std::vector<std::string> creation;
+  bool quiet = false;
+};
+
+void run(const MergeOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const MergedFormat format{options.driver.empty() ? raster_driver_of(options.output) : options.driver,
+                            options.creation};
+  require_raster_driver(format.driver, format.creation_options);
+  keep_inputs(options.output, options.parts);
+  merge_raster_maps(options.output, options.parts, format, terminal_progress("merge"));
+  if (options.quiet) return;
+  fmt::print("{}: {} parts; {:.2f} s\n", options.output, options.parts.size(),
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+}  // namespace
+
+void add_merge(Program& program) {
+  Command& command = program.add("merge", "Join the parts of a map that --part has written");
+  const auto options = std::make_shared<MergeOptions>();
+  MergeOptions& o = *options;
+  command.add(&o.parts, {.names = "PART",
+                         .help = "rasters that a map subcommand has written with --part I/N: all of them, in any order",
+                         .files = "*",
+                         .common = true,
+                         .required = true});
+  add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  command.add(&o.driver, {.names = "--of",
+                          .value = "FORMAT",
+                          .help = "GDAL's short name of the output format",
+                          .choices = {"GTiff", "COG"},
+                          .note = "any raster format of gdalinfo --formats that can be written",
+                          .fallback = "by the extension",
+                          .common = true});
+  command.add(&o.creation, {.names = "--co",
+                            .value = "NAME=VALUE",
+                            .help = "creation option of the format",
+                            .note = "repeatable",
+                            .repeats = true,
+                            .fallback = "GTiff: tiled, DEFLATE",
+                            .common = true});
+  command.add(&o.quiet, {.names = "--quiet", .help = "no summary", .common = true});
+  command.runs([options, &command] {
+    command.require_effect({});
+    run(*options);
+  });
+  command.footer(R"(The parts are compared: all must be there, and come from one command and one input. The result is
+the raster that the command writes without --part.)");
+  command.example("scarp shadow dem.tif --sun 135,20 --part 1/2 -o north.tif");
+  command.example("scarp shadow dem.tif --sun 135,20 --part 2/2 -o south.tif");
+  command.example("scarp merge north.tif south.tif -o shadow.tif");
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Keeps the program within a limit of memory, whatever it computes: operator new puts arrays that no longer fit into
+// nameless files (file_memory.h), and pages of these are dropped from memory when they become too many. Algorithms do
+// not know it, so results are the same for every limit; those that use memory in order lose little time.
+//
+//   in memory    the program and GDAL's blocks, then arrays until half of the rest is used
+//   in files     all other arrays of 2 MiB and more; the other half of the rest holds their pages
+//
+// doc/dev/decisions/cli.md has the alternatives.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace scarp::cli {
+
+/// One at a time.
+class MemoryLimit {
+ public:
+  /// Least limit in bytes: the program and its libraries take about 100 MiB, GDAL's blocks up to 64 MiB.
+  static constexpr double kLeast = 256 << 20;
+
+  /// `bytes` >= kLeast. `folder` for files; it is not examined before memory runs out.
+  MemoryLimit(double bytes, const std::string& folder);
+  ~MemoryLimit();
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+  double bytes() const { return bytes_; }
+  const std::string& folder() const { return folder_; }
+
+ private:
+  void watch(std::size_t most_file_pages);
+
+  double bytes_;
+  std::string folder_;
+  std::mutex mutex_;
+  std::condition_variable ends_;
+  bool ended_ = false;
+  std::thread watcher_;
+};
+
+/// Memory that the program may use, in bytes: that of the machine or of its control group.
+double machine_memory();
+
+/// Returns memory in a file for an array that does not fit below the limit; nullptr if it does, or if there is no
+/// limit. Throws std::bad_alloc. For operator new.
+void* beyond_memory_limit(std::size_t bytes, std::size_t alignment);
+
+}  // namespace scarp::cli
