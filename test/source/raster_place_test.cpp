@@ -103,8 +103,20 @@ TEST_F(RasterPlaceTest, WestwardColumnsAreFlipped) {
 }
 
 TEST_F(RasterPlaceTest, RejectsRotatedRastersWithARemedy) {
-  expect_says(error(placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610")), "gdalwarp");
+  expect_says(error(placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610")), "gdalwarp -dstnodata -9999 IN");
   expect_says(error(placed({500000, 0, 30, 5000000, 30, 0}, "EPSG:32610")), "gdalwarp");
+  // The pixels around the warped raster are no ground at 0 m.
+  const auto rotated = placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610");
+  const auto marked = [&](GDALDataset& d) {
+    rotated(d);
+    d.GetRasterBand(1)->SetNoDataValue(-1);
+  };
+  expect_says(error(marked), "gdalwarp IN");
+  RasterOptions options;
+  options.nodata = 5;
+  expect_says(error(rotated, options), "gdalwarp -srcnodata 5 -dstnodata 5 IN");
+  expect_says(read_error(write_tiff("b.tif", GDT_Byte, 3, 2, {1, 2, 3, 4, 5, 6}, rotated)),
+              "gdalwarp -ot Float32 -dstnodata -9999 IN");
   // A rotation that moves no sample by a thousandth of a cell is noise.
   EXPECT_NO_THROW(read(placed({500000, 30, 1e-9, 5000000, 1e-9, -30}, "EPSG:32610")));
 }
@@ -272,7 +284,7 @@ TEST_F(RasterPlaceTest, GroundControlPointsNeedAWarp) {
     EXPECT_EQ(CE_None, d.SetGCPs(3, points, &srs));
     GDALDeinitGCPs(3, points);
   };
-  expect_says(error(edit), "gdalwarp");
+  expect_says(error(edit), "gdalwarp -dstnodata -9999 IN");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/raster/ground_scale.h"
+#include "scarp/source/raster/warp_words.h"
 
 namespace scarp {
 namespace {
@@ -124,6 +125,14 @@ Degrees like_degrees(const GeoTransform& map, double cols, double rows) {
   return at_origin ? Degrees::perhaps : Degrees::yes;
 }
 
+std::string nodata_words_of(GDALDataset& dataset, const RasterOptions& options) {
+  if (dataset.GetRasterCount() == 0) return {};
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  int declared = 0;
+  band.GetNoDataValue(&declared);
+  return warp_nodata_words(GDALGetDataTypeName(band.GetRasterDataType()), declared != 0, options.nodata);
+}
+
 OGRSpatialReference wgs84() {
   OGRSpatialReference crs;
   crs.importFromEPSG(4326);
@@ -133,7 +142,7 @@ OGRSpatialReference wgs84() {
 
 }  // namespace
 
-void check_geotransform(const GeoTransform& map, int cols, int rows) {
+void check_geotransform(const GeoTransform& map, int cols, int rows, const std::string& nodata_words) {
   for (const double x : map) {
     if (!std::isfinite(x)) throw Error("geotransform is not finite (specify the outer edges with --bounds W,S,E,N)");
   }
@@ -142,7 +151,8 @@ void check_geotransform(const GeoTransform& map, int cols, int rows) {
                across_rows = std::abs(map[4]) * cols / std::abs(map[5]);
   if (map[2] != 0 || map[4] != 0) {
     if (!(across_cols <= kLargestDriftInCells && across_rows <= kLargestDriftInCells)) {
-      throw Error("geotransform is rotated or sheared (make the raster north-up first: gdalwarp IN OUT.tif)");
+      throw Error(fmt::format(
+          "geotransform is rotated or sheared (make the raster north-up first: gdalwarp{} IN OUT.tif)", nodata_words));
     }
   }
   if (map[1] == 0 || map[5] == 0)
@@ -173,12 +183,14 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
     if (!options.crs.empty() && options.crs != kNoCrs)
       throw Error("no geotransform that --crs could apply to (specify the outer edges, too: --bounds W,S,E,N)");
     if (dataset.GetGCPCount() > 0)
-      throw Error("ground control points without a geotransform (warp the raster first: gdalwarp IN OUT.tif)");
+      throw Error(
+          fmt::format("ground control points without a geotransform (warp the raster first: gdalwarp{} IN OUT.tif)",
+                      nodata_words_of(dataset, options)));
     geo.cell_size_found = "no georeference: cells of 1 m, assuming that north is up";
     place.notes.push_back("no georeference, assuming cells of 1 m (override with --bounds W,S,E,N and --crs)");
     return place;
   }
-  check_geotransform(*map, dataset.GetRasterXSize(), dataset.GetRasterYSize());
+  check_geotransform(*map, dataset.GetRasterXSize(), dataset.GetRasterYSize(), nodata_words_of(dataset, options));
 
   // Samples are at pixel centres; rows run south, columns east.
   place.flip_rows = (*map)[5] > 0;

@@ -32,8 +32,8 @@ using GeoTransform = std::array<double, 6>;
 /// Displacements below this, in cells, count as rounding in the file: 1e-3 cells is Scarp's horizontal accuracy.
 inline constexpr double kLargestDriftInCells = 1e-3;
 
-/// Throws Error without the file's name: not finite, rotated, cells of zero size.
-void check_geotransform(const GeoTransform& map, int cols, int rows);
+/// Throws Error without the file's name: not finite, rotated, cells of zero size. `nodata_words`: warp_nodata_words().
+void check_geotransform(const GeoTransform& map, int cols, int rows, const std::string& nodata_words);
 
 /// Returns a full circle in map units if the map's x is a longitude, otherwise 0. This is decided by the CRS in the
 /// options, else by the file's (`own`, may be null), else by whether the bounds fit degrees. Throws Error without the

@@ -18,6 +18,7 @@
 #include "scarp/source/raster/raster_place.h"
 #include "scarp/source/raster/raw_band.h"
 #include "scarp/source/raster/tile_layout.h"
+#include "scarp/source/raster/warp_words.h"
 #include "scarp/source/xml_text.h"
 
 namespace scarp {
@@ -70,7 +71,8 @@ Tile look_at(const std::string& path, const RasterOptions& options, const GdalSe
   if (dataset->GetGeoTransform(tile.map.data()) != CE_None)
     throw Error(
         "no georeference, which tiles require (add one first: gdal_translate -a_ullr W N E S -a_srs CRS IN OUT.tif)");
-  check_geotransform(tile.map, tile.cols, tile.rows);
+  check_geotransform(tile.map, tile.cols, tile.rows,
+                     warp_nodata_words(GDALGetDataTypeName(tile.type), tile.nodata.has_value()));
   if (tile.map[1] < 0 || tile.map[5] > 0)
     throw Error("rows or columns run against the map (tiles must be north-up, convert it first: gdalwarp IN OUT.tif)");
   return tile;
@@ -94,9 +96,10 @@ void compare(const Tile& first, const Tile& tile, const RasterOptions& options) 
     throw Error(
         fmt::format("{} is {}, but that of '{}' is {} (tiles must agree: {})", what, its, first.path, others, remedy));
   };
+  const std::string nodata = warp_nodata_words(GDALGetDataTypeName(tile.type), tile.nodata.has_value());
   const char* const ignore_axes[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
   if (tile.has_crs != first.has_crs || (tile.has_crs && !tile.crs.IsSame(&first.crs, ignore_axes)))
-    differ("CRS", text_of(tile), text_of(first), "gdalwarp -t_srs CRS IN OUT.tif");
+    differ("CRS", text_of(tile), text_of(first), fmt::format("gdalwarp -t_srs CRS{} IN OUT.tif", nodata));
   if (tile.type != first.type)
     differ("sample type", GDALGetDataTypeName(tile.type), GDALGetDataTypeName(first.type),
            "gdal_translate -ot TYPE IN OUT.tif");
@@ -114,7 +117,8 @@ void compare(const Tile& first, const Tile& tile, const RasterOptions& options) 
   if (std::abs(tile.map[1] - first.map[1]) * tile.cols > kLargestDriftInCells * first.map[1] ||
       std::abs(tile.map[5] - first.map[5]) * tile.rows > kLargestDriftInCells * -first.map[5]) {
     differ("cell size", fmt::format("{} x {}", tile.map[1], -tile.map[5]),
-           fmt::format("{} x {}", first.map[1], -first.map[5]), "gdalwarp -tr X Y -tap IN OUT.tif");
+           fmt::format("{} x {}", first.map[1], -first.map[5]),
+           fmt::format("gdalwarp -tr X Y -tap{} IN OUT.tif", nodata));
   }
 }
 
@@ -129,8 +133,8 @@ TileRect rect_of(const Tile& first, const Tile& tile) {
   if (drift > kLargestDriftInCells)
     throw Error(fmt::format(
         "offset by {:.3g} of a cell from the samples of '{}', but tiles are not resampled (align the grids: "
-        "gdalwarp -tr X Y -tap IN OUT.tif)",
-        drift, first.path));
+        "gdalwarp -tr X Y -tap{} IN OUT.tif)",
+        drift, first.path, warp_nodata_words(GDALGetDataTypeName(tile.type), tile.nodata.has_value())));
   return {std::llround(col), std::llround(row), tile.cols, tile.rows};
 }
 
