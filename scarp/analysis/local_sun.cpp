@@ -4,21 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "scarp/analysis/sun_disc.h"
+#include "scarp/base/ellipsoid.h"
 #include "scarp/base/parallel.h"
 
 namespace scarp {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
-
-// Metres east and north per degree on the ellipsoid of WGS 84.
-dvec2 metres_per_degree(double latitude) {
-  constexpr double kAxis = 6378137, kEccentricity2 = 0.00669437999014;
-  const double sine = std::sin(latitude * kRadians), w2 = 1 - kEccentricity2 * sine * sine, w = std::sqrt(w2);
-  return {kRadians * kAxis / w * std::cos(latitude * kRadians), kRadians * kAxis * (1 - kEccentricity2) / (w2 * w)};
-}
 
 // The nodes [first, first + count) of an axis of `nodes`, and their neighbours: on an axis of one node, both neighbours
 // are outside the field.
@@ -62,7 +58,7 @@ std::vector<T> map_of(const SunGround& ground, const LocalSun& sun, const RowBan
                       const Progress& progress, const Value& value) {
   const HeightField& field = ground.field();
   require_band(field, band);
-  const SunAtTime sky(sun.time);
+  const std::optional<SunAtTime> sky = sun.fixed ? std::nullopt : std::optional<SunAtTime>(std::in_place, sun.time);
   const auto cols = static_cast<std::size_t>(field.cols());
   std::vector<T> map(cols * static_cast<std::size_t>(band.rows()), hole);
   constexpr std::int64_t kGrain = 16;  // rows
@@ -77,7 +73,8 @@ std::vector<T> map_of(const SunGround& ground, const LocalSun& sun, const RowBan
             const auto height = ground.heights().height(node);
             if (!height) continue;
             const dvec3& at = places.at(col, row);
-            const SunPosition here = sky.at({at.x * kRadians, at.y * kRadians, *height}, sun.refraction);
+            const SunPosition here = sky ? sky->at({at.x * kRadians, at.y * kRadians, *height}, sun.refraction)
+                                         : SunPosition{sun.fixed->azimuth, sun.fixed->altitude};
             map[static_cast<std::size_t>(row - band.first) * cols + static_cast<std::size_t>(col)] =
                 value(node, places.steps(node), here);
           }
@@ -90,9 +87,14 @@ std::vector<T> map_of(const SunGround& ground, const LocalSun& sun, const RowBan
 
 NodeSteps node_steps(const dvec3& here, const dvec3& west, const dvec3& east, int cols, const dvec3& north,
                      const dvec3& south, int rows) {
-  const dvec2 metres = metres_per_degree(here.y);
+  constexpr Ellipsoid kEarth;
+  const double lon = here.x * kRadians, lat = here.y * kRadians;
+  const dvec3 to_east = east_of(lon), to_north = north_of(lon, lat);
   const auto step = [&](const dvec3& from, const dvec3& to, int steps) {
-    return dvec2(std::remainder(to.x - from.x, 360.0), to.y - from.y) * metres / static_cast<double>(steps);
+    const dvec3 way =
+        (kEarth.point(to.x * kRadians, to.y * kRadians) - kEarth.point(from.x * kRadians, from.y * kRadians)) /
+        static_cast<double>(steps);
+    return dvec2(dot(way, to_east), dot(way, to_north));
   };
   return {step(west, east, cols), step(north, south, rows)};
 }

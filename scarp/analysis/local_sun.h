@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,9 +24,11 @@ struct LocalSun {
   /// at once (NodePlaces, scarp/source/raster/node_places.h). For fields of one column or row, the neighbouring nodes
   /// outside are also requested.
   std::function<void(int row, int first_col, std::span<dvec3> places)> places{};
+  /// In place of the sun of the time: the same direction at every node, its azimuth from true north at the node.
+  std::optional<SunDirection> fixed = std::nullopt;
 };
 
-/// Returns the codes of the band. Throws Error for a wrapped field, an empty band, or a place at a pole.
+/// Returns the codes of the band. Throws Error for a wrapped field or an empty band.
 std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                 const Progress& progress = {});
 
@@ -33,7 +36,8 @@ std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, co
 std::vector<float> local_lit_share(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                    const Progress& progress = {});
 
-/// Returns the steps between nodes at `here`, from places one or two columns and rows apart. Places as above.
+/// Returns the steps between nodes at `here`, from places one or two columns and rows apart. Places as above. At a
+/// pole, north is that of the longitude of `here`.
 NodeSteps node_steps(const dvec3& here, const dvec3& west, const dvec3& east, int cols, const dvec3& north,
                      const dvec3& south, int rows);
 

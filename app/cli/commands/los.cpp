@@ -148,7 +148,7 @@ class Tester {
  public:
   // `many`: whether the lines are so many that structures over the whole part pay off.
   Tester(const MapInput& input, const PlaceTable& table, bool many)
-      : input_(input), table_(table), many_(many), bilinear_(input.bilinear_ground(input.field())) {
+      : input_(input), table_(table), bilinear_(input.bilinear_ground(input.field())) {
     if (many && !bilinear_) maxima_.emplace(input.field());
   }
 
@@ -160,14 +160,13 @@ class Tester {
     });
   }
 
-  // Thread-safe. `field` is that of MapInput::field_at() for the line.
-  void test(std::size_t i, const HeightField& field, Answer& answer) const {
+  // Thread-safe. `cells` is MapInput::cells_along() for the line.
+  void test(std::size_t i, const dvec2& cells, Answer& answer) const {
+    const HeightField field = with_cells(input_.field(), cells);
     const SightEnd from = in_part(input_, answer.ends.from), to = in_part(input_, answer.ends.to);
     named(i, [&] {
       if (!bilinear_) {
         answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr);
-      } else if (many_) {
-        answer.line = bilinear_->line_of_sight(from, to);
       } else {
         answer.line = BilinearGround(field, *bilinear_).line_of_sight(from, to);
       }
@@ -186,29 +185,24 @@ class Tester {
 
   const MapInput& input_;
   const PlaceTable& table_;
-  bool many_;
   std::optional<BilinearGround> bilinear_;
   std::optional<BlockMaxima> maxima_;
 };
 
-// Tests lines on the planes of their own observers. `parts`: what each of them depends on; empty: it has been read.
+dvec2 cells_of(MapInput& input, const SightEnds& ends) {
+  return input.cells_along({ends.from.col, ends.from.row}, {ends.to.col, ends.to.row});
+}
+
+// Tests lines one after the other. `parts`: what each of them depends on.
 void test_one_by_one(MapInput& input, const PlaceTable& table, std::span<const std::size_t> lines, RowStatus& status,
                      std::vector<Answer>& answers, std::span<const RasterWindow> parts) {
   const Progress progress = terminal_progress("los");
-  std::optional<Tester> tester;
-  if (parts.empty()) tester.emplace(input, table, false);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const std::size_t i = lines[k];
-    if (!parts.empty()) {
-      input.read(parts[k], {});
-      tester.emplace(input, table, false);
-    }
-    const SightEnd from = answers[i].ends.from, to = answers[i].ends.to;
-    const dvec2 cells = {input.field().settings().cell_x, input.field().settings().cell_y};
-    const double reach = std::hypot((to.col - from.col) * cells.x, (to.row - from.row) * cells.y);
-    status.attempt(i, RowStatus::kNodata, [&] { tester->require_ground_at(i, answers[i].ends); });
-    status.attempt(i, RowStatus::kInvalid,
-                   [&] { tester->test(i, input.field_at(from.col, from.row, reach), answers[i]); });
+    input.read(parts[k], {});
+    const Tester tester(input, table, false);
+    status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
+    status.attempt(i, RowStatus::kInvalid, [&] { tester.test(i, cells_of(input, answers[i].ends), answers[i]); });
     if (!progress(static_cast<double>(k + 1) / static_cast<double>(lines.size()))) throw Interrupted();
   }
 }
@@ -223,17 +217,19 @@ void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std
   }
   if (parts.empty()) return;
   if (!read_together(input, parts)) return test_one_by_one(input, table, lines, status, answers, parts);
-  if (is_geographic(input.georeference())) return test_one_by_one(input, table, lines, status, answers, {});
   const Tester tester(input, table, true);
-  for (const std::size_t i : lines)
+  std::vector<dvec2> cells(answers.size());
+  for (const std::size_t i : lines) {
     status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
+    status.attempt(i, RowStatus::kInvalid, [&] { cells[i] = cells_of(input, answers[i].ends); });
+  }
   constexpr std::int64_t kGrain = 64;
   parallel_for(
       static_cast<std::int64_t>(lines.size()), kGrain,
       [&](std::int64_t begin, std::int64_t end) {
         for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
           const std::size_t i = lines[k];
-          status.attempt(i, RowStatus::kInvalid, [&] { tester.test(i, input.field(), answers[i]); });
+          status.attempt(i, RowStatus::kInvalid, [&] { tester.test(i, cells[i], answers[i]); });
         }
       },
       terminal_progress("los"));

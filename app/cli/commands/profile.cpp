@@ -84,7 +84,7 @@ void draw(const MapInput& input, const ProfileOptions& options, const SightEnds&
 }
 #endif
 
-// The typed line, its ends in the part that was read, and the field with the lengths of its cells at its start.
+// The typed line, its ends in the part that was read, and the field with the lengths of its cells along the line.
 struct ProfileLine {
   SightEnds ends, here;
   HeightField field;
@@ -98,11 +98,9 @@ ProfileLine line_of(MapInput& input, const PlaceTable& table, const SightHeights
   input.close();
   require_ground(input, from, "observer");
   require_ground(input, to, "target");
-  const HeightFieldSettings& cells = input.field().settings();
   return {ends,
           {in_part(input, from), in_part(input, to)},
-          input.field_at(from.col, from.row,
-                         std::hypot((to.col - from.col) * cells.cell_x, (to.row - from.row) * cells.cell_y))};
+          with_cells(input.field(), input.cells_along({from.col, from.row}, {to.col, to.row}))};
 }
 
 void run_marches(const ProfileOptions& options, const PlaceTable& table) {

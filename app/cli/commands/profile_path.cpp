@@ -27,20 +27,15 @@ RasterWindow part_of(const MapInput& input, const Polyline& line) {
 }
 
 // Rows at every `spacing` metres, and at the end.
-std::string rows_of(MapInput& input, std::size_t number, const Polyline& line, std::optional<double> typed,
+std::string rows_of(MapInput& input, std::size_t number, Polyline line, std::optional<double> typed,
                     std::string_view status) {
   input.read(part_of(input, line), terminal_progress("read"));
-  double reach = 0;
-  const dvec2 first = line.front().at, here = input.cells_at(first.x, first.y, 0);
-  for (const Vertex& vertex : line) reach = std::max(reach, segment_length(first, vertex.at, here));
-  const HeightField field = input.field_at(first.x, first.y, reach);
-  const dvec2 cell{field.settings().cell_x, field.settings().cell_y};
-  std::vector<double> lengths;
-  for (std::size_t i = 1; i < line.size(); ++i) lengths.push_back(segment_length(line[i - 1].at, line[i].at, cell));
+  const dvec2 first = line.front().at, cell = input.cells_at(first.x, first.y, 0);
+  const std::vector<double> lengths = measure(input, line);
   constexpr double kMostStations = 1e8;
   const auto stations =
       stations_of(line, lengths, typed.value_or(std::min(cell.x, cell.y)), "--spacing", kMostStations);
-  const SightGround ground(field);
+  const SightGround ground(input.field());
   std::string text;
   for (const Station& station : stations) {
     const dvec2 at = station.vertex.at, place = input.place_of(at.x, at.y);

@@ -58,7 +58,7 @@ std::string place_text(double azimuth, double altitude) {
 }
 
 // Azimuth of grid north on the plane of the whole raster.
-double grid_north_of(MapInput& input) { return input.grid_north_at(input.centre().x, input.centre().y, HUGE_VAL); }
+double grid_north_of(MapInput& input) { return input.whole_grid_north(); }
 
 #ifdef SCARP_ERFA
 // The variation of the sun over a raster at one time.
@@ -78,12 +78,14 @@ SunSpread sun_spread(const MapInput& input, const std::string& text, double heig
   };
   SunSpread spread{position(last_col / 2, last_row / 2)};
   const SunPosition& sun = spread.centre;
+  const double centre_north = input.north_at(last_col / 2, last_row / 2);  // true north turns over the raster
   spread.lowest = spread.highest = sun.altitude;
   for (const double col : {0.0, last_col})
     for (const double row : {0.0, last_row}) {
       const SunPosition corner = position(col, row);
       const double cosine = std::sin(sun.altitude) * std::sin(corner.altitude) +
-                            std::cos(sun.altitude) * std::cos(corner.altitude) * std::cos(sun.azimuth - corner.azimuth);
+                            std::cos(sun.altitude) * std::cos(corner.altitude) *
+                                std::cos(sun.azimuth - centre_north - corner.azimuth + input.north_at(col, row));
       spread.error = std::max(spread.error, std::acos(std::min(cosine, 1.0)));
       spread.lowest = std::min(spread.lowest, corner.altitude);
       spread.highest = std::max(spread.highest, corner.altitude);
@@ -91,12 +93,25 @@ SunSpread sun_spread(const MapInput& input, const std::string& text, double heig
   return spread;
 }
 
+decltype(LocalSun::places) node_places(const MapInput& input) {
+  if (input.georeference().crs_wkt.empty())
+    throw Error(fmt::format("{}: --sun-per-cell needs a raster with a CRS (give --crs)", input.path()));
+  const auto places = std::make_shared<const NodePlaces>(input.georeference(), input.cols(), input.rows());
+  return [places](int row, int first_col, std::span<dvec3> nodes) { places->row(row, first_col, nodes); };
+}
+
+// A direction whose azimuth counts from true north at every pixel.
+Sun fixed_sun(const MapInput& input, const SunDirection& direction, const std::string& name) {
+  return {
+      {}, name, place_text(direction.azimuth, direction.altitude), LocalSun{{}, false, node_places(input), direction}};
+}
+
 void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vector<Sun>& suns, double& lowest) {
   double error = 0;
   // Not from the samples of a part: all parts have the same sun. A --dry-run reads no samples; kilometres of height
   // move the sun by less than a microradian.
   const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
-  std::shared_ptr<const NodePlaces> places;
+  const auto places = options.per_cell ? node_places(input) : nullptr;
   for (const std::string& text : options.times) {
     SunSpread spread;
     try {
@@ -114,13 +129,10 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
       suns.push_back({{azimuth - grid_north_of(input), altitude}, text, place_text(azimuth, altitude)});
       continue;
     }
-    if (!places) places = std::make_shared<const NodePlaces>(input.georeference(), input.cols(), input.rows());
-    suns.push_back(
-        {{},
-         text,
-         place_text(azimuth, altitude) + " at the centre",
-         LocalSun{parse_time(text), options.refraction,
-                  [places](int row, int first_col, std::span<dvec3> nodes) { places->row(row, first_col, nodes); }}});
+    suns.push_back({{},
+                    text,
+                    place_text(azimuth, altitude) + " at the centre",
+                    LocalSun{parse_time(text), options.refraction, places}});
   }
   if (!options.per_cell)
     input.notes.push_back(
@@ -130,7 +142,17 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
 }
 #endif
 
-// `lowest`: the lowest altitude of the suns of --time, radians.
+void note_turn_of_north(MapInput& input) {
+  constexpr double kNoticed = 0.5 / kDegreesPerRadian;  // the radius of the sun, rounded up
+  const double turn = input.turn_of_north();
+  if (turn > kNoticed)
+    input.notes.push_back(
+        fmt::format("north is that of the centre for the whole raster; it is up to {:.3g} degrees off in the corners "
+                    "(--sun-per-cell)",
+                    turn * kDegreesPerRadian));
+}
+
+// `lowest`: the lowest altitude of the suns, radians.
 std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& lowest) {
   std::vector<Sun> suns;
   for (const std::string& text : options.suns) {
@@ -140,9 +162,19 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& 
     if (!(n[1] > 0 && n[1] <= 90) || std::abs(n[0]) > 360)
       throw Error(fmt::format("--sun '{}': expected {}", text, kForm));
     const double azimuth = n[0] / kDegreesPerRadian, altitude = n[1] / kDegreesPerRadian;
-    suns.push_back(
-        {{azimuth - grid_north_of(input), altitude}, fmt::format("sun {}", text), place_text(azimuth, altitude)});
+    const std::string name = fmt::format("sun {}", text);
+    if (options.per_cell) {
+#ifdef SCARP_ERFA
+      suns.push_back(fixed_sun(input, {azimuth, altitude}, name));
+      lowest = std::min(lowest, altitude);
+      continue;
+#else
+      throw Error("--sun-per-cell: this build has one sun for the whole raster (SCARP_ERFA=OFF)");
+#endif
+    }
+    suns.push_back({{azimuth - grid_north_of(input), altitude}, name, place_text(azimuth, altitude)});
   }
+  if (!options.suns.empty() && !options.per_cell) note_turn_of_north(input);
   if (!options.times.empty()) {
 #ifdef SCARP_ERFA
     add_suns_of_times(input, options, suns, lowest);
@@ -247,9 +279,8 @@ void run(ShadowOptions options, const Command& command) {
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     // A single sun needs a plane for the whole raster; rays per cell need one only as far as a shadow reaches.
     const double relief = input.field().max_height() - input.field().min_height();
-    const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
-    const HeightField field =
-        input.field_at(input.centre().x, input.centre().y, whole ? HUGE_VAL : relief / std::tan(lowest));
+    const bool whole = !options.per_cell || lowest <= 0;
+    const HeightField field = input.whole_field(whole ? HUGE_VAL : relief / std::tan(lowest));
     const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
     const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
     std::vector<ComputedBand> computed;
@@ -290,8 +321,7 @@ void add_shadow(Program& program) {
                               .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
   command.add(&o.per_cell, {.names = "--sun-per-cell",
                             .help = "the sun's position, north and scale at every pixel instead of at the centre",
-                            .common = true,
-                            .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
+                            .common = true});
   command.add(&o.fraction, {.names = "--fraction",
                             .help = "lit fraction of the sun's disc (0.533 degrees) instead of codes",
                             .common = true});

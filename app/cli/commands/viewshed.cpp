@@ -99,11 +99,8 @@ PlaceTable along_lines(MapInput& input, const PlaceTable& lines, double spacing,
     const std::int64_t number = lines.rows[i].line;
     try {
       if (!lines.rows[i].bad.empty()) throw Error(lines.rows[i].bad);
-      const Polyline line = polyline_of(input, lines, i);
-      std::vector<double> lengths;
-      for (std::size_t k = 1; k < line.size(); ++k)
-        lengths.push_back(
-            segment_length(line[k - 1].at, line[k].at, input.cells_at(line[k - 1].at.x, line[k - 1].at.y, 0)));
+      Polyline line = polyline_of(input, lines, i);
+      const std::vector<double> lengths = measure(input, line);
       dvec2 last(-1.0);
       for (const Station& station : stations_of(line, lengths, spacing, "--observer-spacing", kMostStations)) {
         const dvec2 at = station.vertex.at, sample{std::floor(at.x + 0.5), std::floor(at.y + 0.5)};

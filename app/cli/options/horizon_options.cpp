@@ -57,10 +57,7 @@ std::string horizon_errors_text(const HorizonInput& horizon, const MapInput& inp
                      errors.count, errors.p99 * kDegreesPerRadian, errors.largest * kDegreesPerRadian);
 }
 
-HorizonPlane horizon_plane(MapInput& input) {
-  const dvec2 at = input.centre();
-  return {input.field_at(at.x, at.y, HUGE_VAL), input.grid_north_at(at.x, at.y, HUGE_VAL)};
-}
+HorizonPlane horizon_plane(MapInput& input) { return {input.whole_field(HUGE_VAL), input.whole_grid_north()}; }
 
 Metadata horizon_metadata(const HorizonInput& horizon, const MapInput& input) {
   Metadata metadata{

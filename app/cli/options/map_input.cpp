@@ -13,20 +13,16 @@
 #include "app/cli/options/raster_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/progress.h"
+#include "scarp/base/ellipsoid.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_raster.h"
+#include "scarp/source/raster/warp_words.h"
 
 namespace scarp::cli {
 namespace {
 
-// The same samples with other cell lengths.
-HeightField with_cells(const HeightField& field, double cell_x, double cell_y) {
-  HeightFieldSettings settings = field.settings();
-  settings.cell_x = cell_x;
-  settings.cell_y = cell_y;
-  return field.visit(
-      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
-}
+// Grid north is a difference over this length on the ground, as in source/raster/ground_scale.h.
+constexpr double kNorthStep_m = 1000;
 
 }  // namespace
 
@@ -70,6 +66,14 @@ void add_surface_option(Command& command, std::string& surface) {
 
 std::string_view surface_text(std::string_view surface) {
   return surface == "crossings" ? "linear at crossings of grid lines" : surface;
+}
+
+HeightField with_cells(const HeightField& field, const dvec2& cells) {
+  HeightFieldSettings settings = field.settings();
+  settings.cell_x = cells.x;
+  settings.cell_y = cells.y;
+  return field.visit(
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
 }
 
 MapInput::MapInput(const MapOptions& options)
@@ -215,31 +219,105 @@ std::optional<dvec2> MapInput::lonlat_of(double col, double row) const {
   return dvec2(points[0].x, points[0].y);
 }
 
-const MetricPlane& MapInput::plane_at(double col, double row, double reach) {
-  if (last_ && last_->col == col && last_->row == row && last_->reach >= reach) return last_->plane;
-  last_ = Plane{col, row, reach, metric_plane(georeference(), cols(), rows(), col, row, reach)};
-  const double error = last_->plane.error_cells;
-  if (error > options_.plane_error) {
-    const dvec2 at = lonlat_of(col, row).value_or(dvec2(0, 0));
-    const int zone = std::clamp(static_cast<int>((at.x + 180) / 6) + 1, 1, 60);
-    throw Error(
-        fmt::format("{}: degrees: samples are up to {:.2g} cells off the metric plane, limit {} (first: gdalwarp "
-                    "-t_srs EPSG:{}{:02} "
-                    "-r bilinear {} utm.tif; or set a distance limit; or raise --plane-error)",
-                    path(), error, options_.plane_error, at.y < 0 ? 327 : 326, zone, path()));
-  }
-  return last_->plane;
+const MetricPlanes& MapInput::planes() {
+  if (!planes_) planes_.emplace(georeference(), cols(), rows());
+  return *planes_;
+}
+
+void MapInput::check_plane(const MetricPlane& plane, const dvec2& at) const {
+  if (!(plane.error_cells > options_.plane_error)) return;
+  std::string warp;
+  if (const auto lonlat = lonlat_of(at.x, at.y); lonlat && body_.earth)
+    warp = fmt::format(
+        "; or first: gdalwarp -t_srs '+proj=aeqd +lat_0={:.6f} +lon_0={:.6f} +datum=WGS84' -r bilinear{} {} plane.tif",
+        lonlat->y, lonlat->x, warp_nodata_words(header_.file_type, header_.nodata.has_value(), options_.raster.nodata),
+        path());
+  throw Error(fmt::format(
+      "{}: samples are up to {:.2g} cells off the metric plane at {:.10g},{:.10g}, limit {} (set a distance limit; or "
+      "raise --plane-error{})",
+      path(), plane.error_cells, place_of(at.x, at.y).x, place_of(at.x, at.y).y, options_.plane_error, warp));
+}
+
+void MapInput::note_plane(const MetricPlane& plane) {
+  if (!geographic_ || std::exchange(plane_is_noted_, true)) return;
+  notes.push_back(
+      fmt::format("degrees: computed on a local metric plane, cells {:.6g} x {:.6g} m, samples up to {:.2g} cells off",
+                  plane.cell_x, plane.cell_y, plane.error_cells));
+}
+
+MetricPlane MapInput::plane_at(const dvec2& at, double reach) {
+  const std::pair key(at.x, at.y);
+  if (const auto known = around_.find(key); known != around_.end() && known->second.reach >= reach)
+    return known->second.plane;
+  const MetricPlane plane = planes().around(at, reach);
+  check_plane(plane, at);
+  around_[key] = {reach, plane};
+  return plane;
 }
 
 HeightField MapInput::field_at(double col, double row, double reach) {
-  if (!geographic_) return field_;
-  const MetricPlane& plane = plane_at(col, row, reach);
-  if (!std::exchange(plane_is_noted_, true))
-    notes.push_back(
-        fmt::format("degrees: computed on a local metric plane, cells {:.6g} x {:.6g} m, samples up "
-                    "to {:.2g} cells off",
-                    plane.cell_x, plane.cell_y, plane.error_cells));
-  return with_cells(field_, plane.cell_x, plane.cell_y);
+  const MetricPlane plane = plane_at({col, row}, reach);
+  note_plane(plane);
+  return with_cells(field_, {plane.cell_x, plane.cell_y});
+}
+
+dvec2 MapInput::cells_at(double col, double row, double reach) {
+  const MetricPlane plane = plane_at({col, row}, reach);
+  return {plane.cell_x, plane.cell_y};
+}
+
+dvec2 MapInput::cells_along(const dvec2& from, const dvec2& to) {
+  const MetricPlane plane = planes().along(from, to);
+  check_plane(plane, 0.5 * (from + to));
+  note_plane(plane);
+  return {plane.cell_x, plane.cell_y};
+}
+
+double MapInput::distance(const dvec2& from, const dvec2& to) { return planes().distance(from, to); }
+
+double MapInput::grid_north_at(double col, double row, double reach) {
+  const MetricPlane plane = plane_at({col, row}, reach);
+  return geographic_ ? plane.grid_north_azimuth : find_north({col, row}).value_or(plane.grid_north_azimuth);
+}
+
+std::optional<double> MapInput::find_north(const dvec2& at) const {
+  const double step = kNorthStep_m / georeference().cell_y_m;
+  const auto here = lonlat_of(at.x, at.y), north = lonlat_of(at.x, at.y - step), south = lonlat_of(at.x, at.y + step);
+  if (!here || !north || !south) return std::nullopt;
+  const auto point = [](const dvec2& lonlat) {
+    return Ellipsoid().point(lonlat.x / kDegreesPerRadian, lonlat.y / kDegreesPerRadian);
+  };
+  const dvec3 chord = point(*north) - point(*south);
+  const double lon = here->x / kDegreesPerRadian, lat = here->y / kDegreesPerRadian;
+  return std::atan2(dot(chord, east_of(lon)), dot(chord, north_of(lon, lat)));
+}
+
+double MapInput::north_at(double col, double row) const {
+  return find_north({col, row}).value_or(georeference().grid_north_azimuth);
+}
+
+double MapInput::turn_of_north() const {
+  const auto centre_north = find_north(centre());
+  double most = 0;
+  for (const double col : {0.0, cols() - 1.0})
+    for (const double row : {0.0, rows() - 1.0})
+      if (const auto north = find_north({col, row}); north && centre_north)
+        most = std::max(most, std::abs(std::remainder(*north - *centre_north, 2 * std::numbers::pi)));
+  return most;
+}
+
+HeightField MapInput::whole_field(double reach) {
+  return geographic_ ? field_at(centre().x, centre().y, reach) : field_;
+}
+
+dvec2 MapInput::whole_cells() {
+  return geographic_ ? cells_at(centre().x, centre().y, HUGE_VAL)
+                     : dvec2(georeference().cell_x_m, georeference().cell_y_m);
+}
+
+double MapInput::whole_grid_north() {
+  if (geographic_) return grid_north_at(centre().x, centre().y, HUGE_VAL);
+  return north_at(centre().x, centre().y);
 }
 
 std::optional<BilinearGround> MapInput::bilinear_ground(const HeightField& field) const {
@@ -249,16 +327,6 @@ std::optional<BilinearGround> MapInput::bilinear_ground(const HeightField& field
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path(), error.what()));
   }
-}
-
-dvec2 MapInput::cells_at(double col, double row, double reach) {
-  if (!geographic_) return {georeference().cell_x_m, georeference().cell_y_m};
-  const MetricPlane& plane = plane_at(col, row, reach);
-  return {plane.cell_x, plane.cell_y};
-}
-
-double MapInput::grid_north_at(double col, double row, double reach) {
-  return geographic_ ? plane_at(col, row, reach).grid_north_azimuth : georeference().grid_north_azimuth;
 }
 
 }  // namespace scarp::cli

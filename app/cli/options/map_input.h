@@ -3,6 +3,7 @@
 // Samples are read in parts (map_part.h). Positions count from the raster's north-west sample, whatever part is read.
 #pragma once
 
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -51,6 +52,9 @@ void add_curvature_option(Command& command, std::optional<double>& coefficient);
 void add_surface_option(Command& command, std::string& surface);
 /// "bilinear", or a description of `crossings`.
 std::string_view surface_text(std::string_view surface);
+
+/// The same samples with other lengths of a column and a row step.
+HeightField with_cells(const HeightField& field, const dvec2& cells);
 
 class MapInput {
  public:
@@ -106,16 +110,33 @@ class MapInput {
   /// Longitude and latitude in degrees; nullopt without a CRS.
   std::optional<dvec2> lonlat_of(double col, double row) const;
 
-  /// field() with the cell lengths at a place, for geographic rasters; other rasters keep those at their centre.
-  /// Throws Error if samples within `reach` metres are displaced by more than --plane-error allows.
+  /// field() with the cell lengths at a place. Throws Error if samples within `reach` metres are displaced by more than
+  /// --plane-error allows.
   HeightField field_at(double col, double row, double reach);
+  /// Azimuth of grid north at a place, in radians, for the longitude of lonlat_of(). Throws as field_at().
+  double grid_north_at(double col, double row, double reach);
+  /// Lengths in metres of a column and a row step, as those of field_at(). Without a check if `reach` is 0.
+  dvec2 cells_at(double col, double row, double reach);
+  /// The same along a line, which has its geodesic length with them. Throws Error if samples on the line are displaced
+  /// by more than --plane-error allows.
+  dvec2 cells_along(const dvec2& from, const dvec2& to);
+  /// Geodesic distance in metres between two positions.
+  double distance(const dvec2& from, const dvec2& to);
+
+  /// field(), grid north and cell lengths for maps that have one plane, that at the centre. Throws Error as field_at()
+  /// for rasters in degrees; projected rasters always have one.
+  HeightField whole_field(double reach);
+  double whole_grid_north();
+  dvec2 whole_cells();
+  /// Azimuth of grid north at a place, in radians, for the longitude of lonlat_of(); that of the georeference without a
+  /// CRS.
+  double north_at(double col, double row) const;
+  /// The largest difference of grid north at the corners from that at the centre, in radians; 0 without a CRS.
+  double turn_of_north() const;
+
   /// The ground of --surface bilinear; nullopt for `crossings`. `field` is one of field_at(). Throws Error naming the
   /// file.
   std::optional<BilinearGround> bilinear_ground(const HeightField& field) const;
-  /// Azimuth of grid north at a place, in radians.
-  double grid_north_at(double col, double row, double reach);
-  /// Lengths in metres of a column and a row step, as those of field_at().
-  dvec2 cells_at(double col, double row, double reach);
 
  private:
   // nullopt outside the domain of the CRS.
@@ -125,7 +146,13 @@ class MapInput {
   // A question for messages if the raster has a pixel at y,x.
   std::string swapped_hint(const TablePlace& place, bool lonlat) const;
   [[noreturn]] void refuse_outside(const TablePlace& place, bool lonlat, std::string_view what) const;
-  const MetricPlane& plane_at(double col, double row, double reach);
+  const MetricPlanes& planes();
+  MetricPlane plane_at(const dvec2& at, double reach);
+  // Throws Error if the error of a plane at a place exceeds --plane-error.
+  void check_plane(const MetricPlane& plane, const dvec2& at) const;
+  void note_plane(const MetricPlane& plane);
+  // nullopt without a CRS and outside its domain.
+  std::optional<double> find_north(const dvec2& at) const;
 
   const MapOptions& options_;
   std::optional<OpenedRaster> file_;
@@ -136,11 +163,12 @@ class MapInput {
   Body body_;
   bool geographic_ = false;
   std::optional<CoordinateFrame> frame_, lonlat_;
-  struct Plane {
-    double col, row, reach;
+  std::optional<MetricPlanes> planes_;
+  struct CheckedPlane {
+    double reach;
     MetricPlane plane;
   };
-  std::optional<Plane> last_;  // consecutive places often have the same observer
+  std::map<std::pair<double, double>, CheckedPlane> around_;  // by column and row
   bool plane_is_noted_ = false, border_is_noted_ = false;
 };
 

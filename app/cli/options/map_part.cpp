@@ -65,7 +65,7 @@ bool read_together(MapInput& input, std::span<const RasterWindow> parts) {
 
 RasterWindow rows_around(MapInput& input, const RasterWindow& rows, double distance) {
   if (!std::isfinite(distance)) return input.whole();
-  const double beside = std::floor(distance / input.cells_at(input.centre().x, input.centre().y, HUGE_VAL).y) + 2;
+  const double beside = std::floor(distance / input.whole_cells().y) + 2;
   return clipped(input, 0, rows.row - beside, input.cols() - 1, rows.row + rows.rows - 1 + beside);
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -13,6 +14,14 @@
 #include "scarp/base/file_name.h"
 
 namespace scarp::cli {
+namespace {
+
+Vertex between(const Vertex& from, const Vertex& to, double along) {
+  const auto z = from.z && to.z ? std::optional(*from.z + along * (*to.z - *from.z)) : std::nullopt;
+  return {from.at + along * (to.at - from.at), z};
+}
+
+}  // namespace
 
 PlaceTable read_paths(const PlaceFile& file) {
   const std::string extension = extension_of(file.path);
@@ -48,8 +57,23 @@ Polyline polyline_of(MapInput& input, const PlaceTable& table, std::size_t row) 
   return line;
 }
 
-double segment_length(const dvec2& from, const dvec2& to, const dvec2& cell) {
-  return std::hypot((to.x - from.x) * cell.x, (to.y - from.y) * cell.y);
+std::vector<double> measure(MapInput& input, Polyline& line) {
+  constexpr double kPiece_m = 1000, kMostPieces = 1e5;
+  std::vector<double> lengths;
+  Polyline pieces{line.front()};
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vertex &from = line[i - 1], &to = line[i];
+    const bool flat = input.georeference().crs_wkt.empty();
+    const double whole = input.distance(from.at, to.at);
+    const int count =
+        flat || !(whole > kPiece_m) ? 1 : static_cast<int>(std::min(std::ceil(whole / kPiece_m), kMostPieces));
+    for (int k = 1; k <= count; ++k) {
+      pieces.push_back(k == count ? to : between(from, to, static_cast<double>(k) / count));
+      lengths.push_back(input.distance(pieces[pieces.size() - 2].at, pieces.back().at));
+    }
+  }
+  line = std::move(pieces);
+  return lengths;
 }
 
 std::vector<Station> stations_of(const Polyline& line, std::span<const double> lengths, double spacing,
@@ -64,8 +88,7 @@ std::vector<Station> stations_of(const Polyline& line, std::span<const double> l
     const Vertex &from = line[i], &to = line[i + 1];
     for (; static_cast<double>(next) * spacing < before + lengths[i]; ++next) {
       const double distance = static_cast<double>(next) * spacing, along = (distance - before) / lengths[i];
-      const auto z = from.z && to.z ? std::optional(*from.z + along * (*to.z - *from.z)) : std::nullopt;
-      stations.push_back({distance, {from.at + along * (to.at - from.at), z}});
+      stations.push_back({distance, between(from, to, along)});
     }
     before += lengths[i];
   }

@@ -25,8 +25,8 @@ using Polyline = std::vector<Vertex>;
 /// Throws Error for a vertex outside the raster.
 Polyline polyline_of(MapInput& input, const PlaceTable& table, std::size_t row);
 
-/// Length of the segment between two positions in metres, if these are the lengths of a column and a row step.
-double segment_length(const dvec2& from, const dvec2& to, const dvec2& cell);
+/// Splits long segments, over which the scale of the map changes, and returns the lengths of all segments in metres.
+std::vector<double> measure(MapInput& input, Polyline& line);
 
 /// A point on a polyline.
 struct Station {

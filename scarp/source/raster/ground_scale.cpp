@@ -7,7 +7,9 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
+#include "scarp/base/ellipsoid.h"
 #include "scarp/base/error.h"
 #include "scarp/base/vec.h"
 
@@ -31,25 +33,13 @@ struct PjDeleter {
 using Pj = std::unique_ptr<PJ, PjDeleter>;
 using PjContext = std::unique_ptr<PJ_CONTEXT, PjDeleter>;
 
-struct EarthEllipsoid {
-  double a = 0;   // semi-major axis, metres
-  double e2 = 0;  // eccentricity squared
+struct NamedEllipsoid : Ellipsoid {
   std::string name;
-
-  double prime_vertical_radius(double lat) const { return a / std::sqrt(1 - e2 * std::sin(lat) * std::sin(lat)); }
-  double meridian_radius(double lat) const {
-    const double w2 = 1 - e2 * std::sin(lat) * std::sin(lat);
-    return a * (1 - e2) / (w2 * std::sqrt(w2));
-  }
-  dvec3 point(double lon, double lat) const {
-    const double n = prime_vertical_radius(lat);
-    return {n * std::cos(lat) * std::cos(lon), n * std::cos(lat) * std::sin(lon), n * (1 - e2) * std::sin(lat)};
-  }
 };
 
-EarthEllipsoid ellipsoid_of(PJ_CONTEXT* context, const PJ* crs) {
+NamedEllipsoid ellipsoid_of(PJ_CONTEXT* context, const PJ* crs) {
   const Pj ellipsoid(proj_get_ellipsoid(context, crs));
-  EarthEllipsoid result;
+  NamedEllipsoid result;
   double b = 0;
   if (!ellipsoid || !proj_ellipsoid_get_parameters(context, ellipsoid.get(), &result.a, &b, nullptr, nullptr) ||
       !(result.a > 0)) {
@@ -73,7 +63,7 @@ double axis_unit(PJ_CONTEXT* context, const PJ* crs) {
 }
 
 GroundScale geographic(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
-  const EarthEllipsoid ellipsoid = ellipsoid_of(context, crs);
+  const NamedEllipsoid ellipsoid = ellipsoid_of(context, crs);
   const double unit = axis_unit(context, crs), lat = y * unit;
   if (!(std::abs(lat) < std::numbers::pi / 2)) {
     throw Error(fmt::format(
@@ -89,17 +79,33 @@ GroundScale geographic(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
   return scale;
 }
 
-GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
+// A projected CRS, its geographic base, and the transformation from the one to the other.
+struct Projection {
+  Pj transform;
+  NamedEllipsoid ellipsoid;
+  double unit = 1;   // metres per map unit
+  double angle = 1;  // radians per unit of the base
+};
+
+Projection projection_of(PJ_CONTEXT* context, const PJ* crs) {
   const Pj base(proj_crs_get_geodetic_crs(context, crs));
   if (!base) throw Error("the coordinate reference system has no geographic base (choose another with --crs)");
-  const EarthEllipsoid ellipsoid = ellipsoid_of(context, base.get());
-  const double unit = axis_unit(context, crs), angle = axis_unit(context, base.get());
-  Pj transform(proj_create_crs_to_crs_from_pj(context, crs, base.get(), nullptr, nullptr));
+  Projection projection{nullptr, ellipsoid_of(context, base.get()), axis_unit(context, crs),
+                        axis_unit(context, base.get())};
+  Pj& transform = projection.transform;
+  transform.reset(proj_create_crs_to_crs_from_pj(context, crs, base.get(), nullptr, nullptr));
   if (transform) transform.reset(proj_normalize_for_visualization(context, transform.get()));
   if (!transform) {
     throw Error(fmt::format("PROJ cannot invert the projection: {} (choose another CRS with --crs)",
                             proj_context_errno_string(context, proj_context_errno(context))));
   }
+  return projection;
+}
+
+GroundScale projected(const Projection& projection, double x, double y) {
+  const Pj& transform = projection.transform;
+  const NamedEllipsoid& ellipsoid = projection.ellipsoid;
+  const double unit = projection.unit, angle = projection.angle;
   const auto geographic_at = [&](double map_x, double map_y) {
     const PJ_COORD at = proj_trans(transform.get(), PJ_FWD, proj_coord(map_x, map_y, 0, 0));
     if (!std::isfinite(at.xy.x) || !std::isfinite(at.xy.y)) {
@@ -118,9 +124,7 @@ GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
 
   // East and north at the centre, in space.
   const dvec2 centre = geographic_at(x, y);
-  const double sin_lon = std::sin(centre.x), cos_lon = std::cos(centre.x);
-  const dvec3 east(-sin_lon, cos_lon, 0);
-  const dvec3 north(-std::sin(centre.y) * cos_lon, -std::sin(centre.y) * sin_lon, std::cos(centre.y));
+  const dvec3 east = east_of(centre.x), north = north_of(centre.x, centre.y);
 
   GroundScale scale;
   scale.metres_per_x = length(along_x);
@@ -147,10 +151,17 @@ GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
 
 }  // namespace
 
-GroundScale ground_scale_at(const std::string& crs, double x, double y) {
-  const PjContext context(proj_context_create());
+struct GroundScales::Crs {
+  PjContext context;
+  Pj crs;
+  std::optional<Projection> projection;  // only of projected CRS
+};
+
+GroundScales::GroundScales(const std::string& crs) : crs_(std::make_unique<Crs>()) {
+  auto& [context, pj, projection] = *crs_;
+  context.reset(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);
-  Pj pj(proj_create(context.get(), crs.c_str()));
+  pj.reset(proj_create(context.get(), crs.c_str()));
   // Remove vertical parts and datum shifts: neither affects the length of a map unit.
   for (;;) {
     if (!pj)
@@ -165,12 +176,19 @@ GroundScale ground_scale_at(const std::string& crs, double x, double y) {
       break;
     }
   }
+  if (proj_get_type(pj.get()) == PJ_TYPE_PROJECTED_CRS) projection = projection_of(context.get(), pj.get());
+}
+
+GroundScales::~GroundScales() = default;
+
+GroundScale GroundScales::at(double x, double y) const {
+  const auto& [context, pj, projection] = *crs_;
   switch (proj_get_type(pj.get())) {
     case PJ_TYPE_GEOGRAPHIC_2D_CRS:
     case PJ_TYPE_GEOGRAPHIC_3D_CRS:
       return geographic(context.get(), pj.get(), x, y);
     case PJ_TYPE_PROJECTED_CRS:
-      return projected(context.get(), pj.get(), x, y);
+      return projected(*projection, x, y);
     case PJ_TYPE_ENGINEERING_CRS: {
       GroundScale scale;
       scale.metres_per_x = scale.metres_per_y = axis_unit(context.get(), pj.get());
@@ -183,5 +201,7 @@ GroundScale ground_scale_at(const std::string& crs, double x, double y) {
   }
   throw Error("the coordinate reference system is neither geographic nor projected (choose another with --crs)");
 }
+
+GroundScale ground_scale_at(const std::string& crs, double x, double y) { return GroundScales(crs).at(x, y); }
 
 }  // namespace scarp

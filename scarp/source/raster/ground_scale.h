@@ -14,6 +14,7 @@
 // Accuracy: better than 1e-6 of the length at the point; the map's scale changes away from it.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,24 @@ struct GroundScale {
   std::vector<std::string> notes;  ///< warnings, one line each
 };
 
-/// Returns the ground scale at (x, y), given in the CRS's units with x east (longitude) and y north (latitude),
-/// regardless of the axis order of the CRS. `crs` is WKT or any text that PROJ accepts. Throws Error: a CRS that PROJ
-/// cannot use, a point outside its domain, a pole of a geographic CRS.
+/// The ground scales of one CRS. Not thread-safe, because PROJ's transformations are not.
+class GroundScales {
+ public:
+  /// `crs` is WKT or any text that PROJ accepts. Throws Error for a CRS that PROJ cannot use.
+  explicit GroundScales(const std::string& crs);
+  ~GroundScales();
+
+  /// Returns the ground scale at (x, y), given in the CRS's units with x east (longitude) and y north (latitude),
+  /// regardless of the axis order of the CRS. Throws Error: a CRS that PROJ cannot use, a point outside its domain, a
+  /// pole of a geographic CRS.
+  GroundScale at(double x, double y) const;
+
+ private:
+  struct Crs;
+  std::unique_ptr<Crs> crs_;
+};
+
+/// Returns the ground scale at one point, as GroundScales::at().
 GroundScale ground_scale_at(const std::string& crs, double x, double y);
 
 }  // namespace scarp

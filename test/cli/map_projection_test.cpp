@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+// Maps and lines over large projected rasters, where north and scale change, against PROJ's geodesics.
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <geodesic.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/maps_cli.h"
+
+namespace scarp::test {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+class MapProjection : public MapsCli {
+ protected:
+  // A raster of level ground at 100 m, whose north-west sample is at (x, y), with some other heights.
+  struct Ground {
+    int epsg, cols, rows;
+    double x, y, cell;
+  };
+  using Heights = std::function<float(int col, int row)>;
+  std::string write(
+      const Ground& ground, const std::string& name, const Heights& heights = [](int, int) { return 100.0f; }) {
+    GDALAllRegister();
+    const GDALDatasetUniquePtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+        path(name).c_str(), ground.cols, ground.rows, 1, GDT_Float32, nullptr));
+    double map[] = {ground.x - ground.cell / 2, ground.cell, 0, ground.y + ground.cell / 2, 0, -ground.cell};
+    dataset->SetGeoTransform(map);
+    OGRSpatialReference crs;
+    crs.importFromEPSG(ground.epsg);
+    dataset->SetSpatialRef(&crs);
+    std::vector<float> samples;
+    for (int row = 0; row < ground.rows; ++row)
+      for (int col = 0; col < ground.cols; ++col) samples.push_back(heights(col, row));
+    EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, ground.cols, ground.rows, samples.data(), ground.cols,
+                                                  ground.rows, GDT_Float32, 0, 0, nullptr),
+              CE_None);
+    return path(name);
+  }
+
+  // Geodesics on WGS 84 between positions of a CRS.
+  class Judge {
+   public:
+    explicit Judge(int epsg) {
+      OGRSpatialReference map, lonlat;
+      map.importFromEPSG(epsg);
+      lonlat.importFromEPSG(4326);
+      for (auto* crs : {&map, &lonlat}) crs->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+      transform_.reset(OGRCreateCoordinateTransformation(&map, &lonlat));
+      geod_init(&earth_, 6378137, 1 / 298.257223563);
+    }
+    struct Way {
+      double distance, azimuth;  // metres, degrees 0..360
+    };
+    Way way(double x1, double y1, double x2, double y2) const {
+      transform_->Transform(1, &x1, &y1);
+      transform_->Transform(1, &x2, &y2);
+      Way way{};
+      geod_inverse(&earth_, y1, x1, y2, x2, &way.distance, &way.azimuth, nullptr);
+      if (way.azimuth < 0) way.azimuth += 360;
+      return way;
+    }
+
+   private:
+    struct Deleter {
+      void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
+    };
+    std::unique_ptr<OGRCoordinateTransformation, Deleter> transform_;
+    geod_geodesic earth_{};
+  };
+
+  // The fields of the last row of a table.
+  static std::vector<double> last_row(const std::string& csv) {
+    std::vector<double> row;
+    std::istringstream all(csv);
+    for (std::string line; std::getline(all, line);) {
+      row.clear();
+      std::istringstream fields(line);
+      for (std::string field; std::getline(fields, field, ',');) row.push_back(std::strtod(field.c_str(), nullptr));
+    }
+    return row;
+  }
+
+  // Compares a viewshed of level ground on a flat Earth with geodesics: pixels are visible in a sector. Pixels closer
+  // to its border than `cells`, the error that the plane may have, may have either value.
+  void expect_sector(const Ground& ground, double x, double y, double reach, double from, double to, double cells) {
+    const std::string dem = write(ground, fmt::format("{}.tif", ground.epsg));
+    const auto result = run({"viewshed", dem, "--observer", fmt::format("{:.10g},{:.10g},50", x, y), "--cc", "0",
+                             "--max-distance", fmt::format("{}", reach), "--azimuth", fmt::format("{},{}", from, to),
+                             "--plane-error", fmt::format("{}", cells), "-o", path("seen.tif")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto dataset = open(path("seen.tif"));
+    ASSERT_TRUE(dataset);
+    const Pixels pixels = pixels_of(*dataset);
+    const Judge judge(ground.epsg);
+    const double margin = cells * ground.cell;
+    int seen = 0, wrong = 0;
+    for (int row = 0; row < ground.rows; ++row)
+      for (int col = 0; col < ground.cols; ++col) {
+        const auto [distance, azimuth] = judge.way(x, y, ground.x + col * ground.cell, ground.y - row * ground.cell);
+        const bool visible = pixels.at(col, row) == 1;
+        seen += visible;
+        const auto beside = [&](double border) {
+          const double off = std::remainder(azimuth - border, 360) * kRadians;
+          return std::cos(off) > 0 && std::abs(distance * std::sin(off)) <= margin;
+        };
+        if (distance <= margin || std::abs(distance - reach) <= margin || beside(from) || beside(to)) continue;
+        wrong += visible != (distance < reach && azimuth > from && azimuth < to);
+      }
+    EXPECT_EQ(wrong, 0);
+    // The pixels of the sector, by its area.
+    EXPECT_GT(seen, 100);
+  }
+};
+
+TEST_F(MapProjection, ViewshedsUseNorthAndScaleOfTheObserver) {
+  // The west of a raster over all of UTM zone 33 and its neighbours, where grid north is 3 degrees off.
+  expect_sector({32633, 670, 60, 165500, 5180000, 1000}, 170500, 5150000, 45000, 20, 110, 0.1);
+  // East and west of Greenland, where grid north is far from true north.
+  expect_sector({3413, 150, 150, -900000, -1500000, 1000}, -850000, -1550000, 40000, 20, 110, 0.1);
+  // Far from the centre of a raster of 10 degrees of latitude.
+  expect_sector({3857, 100, 1800, 1000000, 7200000, 1000}, 1050000, 7100000, 20000, 200, 300, 0.2);
+}
+
+TEST_F(MapProjection, RefusesPlanesWithLargeErrors) {
+  const std::string dem = write({3857, 100, 1800, 1000000, 7200000, 1000}, "mercator.tif");
+  const Names view{"viewshed", dem, "--observer", "1050000,7100000,50", "-o", path("x.tif")};
+  expect_refused(view, "gdalwarp -t_srs '+proj=aeqd +lat_0=53.");
+  const auto near = run(view + Names{"--max-distance", "9000"});
+  EXPECT_EQ(near.status, 0) << near.err;
+  EXPECT_EQ(run(view + Names{"--plane-error", "9999"}).status, 0);
+  expect_refused({"los", dem, "--from", "1000000,5500000", "--to", "1090000,7100000"}, "--plane-error");
+}
+
+TEST_F(MapProjection, LinesHaveGeodesicLengths) {
+  const std::string dem = write({3857, 100, 1800, 1000000, 7200000, 1000}, "mercator.tif");
+  const Judge judge(3857);
+  const auto expect_length = [&](double x1, double y1, double x2, double y2) {
+    const double expected = judge.way(x1, y1, x2, y2).distance;
+    const Names ends{
+        dem, "--from", fmt::format("{},{},50", x1, y1), "--to", fmt::format("{},{},50", x2, y2), "--plane-error", "99"};
+    const auto los = run(Names{"los"} + ends), profile = run(Names{"profile"} + ends);
+    ASSERT_EQ(los.status, 0) << los.err;
+    ASSERT_EQ(profile.status, 0) << profile.err;
+    EXPECT_NEAR(last_row(los.out)[2], expected, 1e-9 * expected);
+    EXPECT_NEAR(last_row(profile.out)[0], expected, 1e-9 * expected);
+  };
+  expect_length(1010000, 7150000, 1010000, 7100000);
+  expect_length(1010000, 5450000, 1080000, 5470000);
+  expect_length(1000000, 5500000, 1090000, 7100000);
+}
+
+TEST_F(MapProjection, StationsAlongPathsAreEvenlySpacedOnTheGround) {
+  const std::string dem = write({3857, 100, 1800, 1000000, 7200000, 1000}, "mercator.tif");
+  const std::string road = scratch_.write("road.csv", "x,y\n1010000,5500000\n1010000,7100000\n");
+  const auto result = run({"profile", dem, "--path", road, "--spacing", "25000"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Judge judge(3857);
+  std::istringstream rows(result.out);
+  std::string line;
+  std::getline(rows, line);
+  double last_y = 0;
+  int stations = 0;
+  for (; std::getline(rows, line); ++stations) {
+    const std::vector<double> row = last_row(line);
+    const double length = stations > 0 ? judge.way(1010000, last_y, row[2], row[3]).distance : 0;
+    // The scale changes by 1 in 1000 over the pieces of 1 km on which it is constant.
+    if (stations > 0 && row[3] < 7100000) {
+      EXPECT_NEAR(length, 25000, 1);
+    }
+    last_y = row[3];
+  }
+  EXPECT_GT(stations, 30);
+}
+
+#ifdef SCARP_ERFA
+
+// The sun's geographic position from the low-precision formulas of the Astronomical Almanac, within 0.01 degree.
+struct SubsolarPoint {
+  double lon, lat;  // degrees
+};
+SubsolarPoint subsolar(double days_since_2000, double utc_hours) {
+  const double n = days_since_2000, mean = 280.460 + 0.9856474 * n, anomaly = (357.528 + 0.9856003 * n) * kRadians;
+  const double ecliptic = (mean + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * kRadians,
+               tilt = (23.439 - 0.0000004 * n) * kRadians;
+  const double ascension = std::atan2(std::cos(tilt) * std::sin(ecliptic), std::cos(ecliptic)) / kRadians;
+  const double equation_of_time = std::remainder(mean - ascension, 360);  // degrees
+  return {std::remainder(-15 * (utc_hours - 12) - equation_of_time, 360),
+          std::asin(std::sin(tilt) * std::sin(ecliptic)) / kRadians};
+}
+
+// A tower at a pole: its shadow lies opposite to the meridian of the sun.
+TEST_F(MapProjection, ShadowsAtPolesPointAwayFromTheSun) {
+  struct Pole {
+    int epsg;
+    double side;  // 1: north
+    const char* day;
+    double days;  // since noon of 1 January 2000
+  };
+  for (const auto& [epsg, side, day, days] : {Pole{3413, 1, "2026-06-21", 9668}, Pole{3976, -1, "2026-12-21", 9851}})
+    for (const double hour : {3.0, 12.0}) {
+      SCOPED_TRACE(fmt::format("EPSG:{} at {} h", epsg, hour));
+      const std::string dem = write({epsg, 101, 101, -5000, 5000, 100}, fmt::format("{}.tif", epsg),
+                                    [](int col, int row) { return col == 50 && row == 50 ? 1600.0f : 0.0f; });
+      // The direction to the sun on the map: along its meridian, away from the pole.
+      OGRSpatialReference map, lonlat;
+      map.importFromEPSG(epsg);
+      lonlat.importFromEPSG(4326);
+      for (auto* crs : {&map, &lonlat}) crs->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+      OGRCoordinateTransformation* transform = OGRCreateCoordinateTransformation(&lonlat, &map);
+      const SubsolarPoint sun = subsolar(days + (hour - 12) / 24, hour);
+      double x = sun.lon, y = side * 89;
+      transform->Transform(1, &x, &y);
+      OGRCoordinateTransformation::DestroyCT(transform);
+      const double expected = std::atan2(-x, -y);  // clockwise from grid north
+      for (const bool per_cell : {false, true}) {
+        Names words{"shadow",         dem, "--time", fmt::format("{}T{:02}:00Z", day, static_cast<int>(hour)), "-o",
+                    path("shade.tif")};
+        if (per_cell) words.emplace_back("--sun-per-cell");
+        const auto result = run(words);
+        ASSERT_EQ(result.status, 0) << result.err;
+        const auto dataset = open(path("shade.tif"));
+        ASSERT_TRUE(dataset);
+        const Pixels pixels = pixels_of(*dataset);
+        double east = 0, north = 0;
+        for (int row = 0; row < 101; ++row)
+          for (int col = 0; col < 101; ++col)
+            if (pixels.at(col, row) == 2 && (col != 50 || row != 50)) east += col - 50, north += 50 - row;
+        // The shadow is one pixel wide and 36 long: its axis is within half a pixel of its pixels.
+        EXPECT_NEAR(std::remainder(std::atan2(east, north) - expected, 2 * std::numbers::pi), 0, 0.5 / 18);
+        const std::string note = "it is up to ";
+        const auto off = result.err.find(note);
+        EXPECT_EQ(off == std::string::npos, per_cell) << result.err;
+        if (per_cell) continue;
+        // At a corner, the sun's direction differs by at most the angle between the verticals; the note has three
+        // digits.
+        const double most = Judge(epsg).way(0, 0, 5000, 5000).distance / 6399594;
+        const double degrees = std::strtod(result.err.c_str() + off + note.size(), nullptr);
+        EXPECT_GT(degrees, 0);
+        EXPECT_LT(degrees, 1.001 * most / kRadians);
+      }
+    }
+}
+
+// A wall along a column, where grid north is 3 degrees west of true north, and a sun between both: the shadow is on the
+// other side than with the north of the raster's centre.
+TEST_F(MapProjection, SunPerCellTurnsFixedSunsWithNorth) {
+  const std::string dem = write({32633, 670, 60, 165500, 5180000, 1000}, "zone.tif",
+                                [](int col, int) { return col == 20 ? 9000.0f : 0.0f; });
+  const double grid_north = Judge(32633).way(185500, 5140000, 185500, 5141000).azimuth;
+  EXPECT_LT(grid_north, 357.5);
+  for (const bool per_cell : {false, true}) {
+    Names words{"shadow", dem, "--sun", "358,1", "-o", path("shade.tif")};
+    if (per_cell) words.emplace_back("--sun-per-cell");
+    const auto result = run(words);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err.find("degrees off in the corners") == std::string::npos, per_cell) << result.err;
+    const auto dataset = open(path("shade.tif"));
+    ASSERT_TRUE(dataset);
+    const Pixels pixels = pixels_of(*dataset);
+    EXPECT_EQ(pixels.at(19, 40) == 0, !per_cell);
+    EXPECT_EQ(pixels.at(21, 40) == 0, per_cell);
+  }
+}
+
+#endif
+
+}  // namespace
+}  // namespace scarp::test
