@@ -278,6 +278,23 @@ TEST_F(PictureScale, OtherFilesGetOnlyANote) {
   EXPECT_TRUE(has_note(raw, "--height-range LOW,HIGH, --scale"));
 }
 
+// As gdalwarp writes around a raster without a nodata value.
+TEST_F(SuspectedNodata, NotesACollarOfZerosAroundHighGround) {
+  const auto notes = [&](const std::vector<double>& samples, GDALDataType type = GDT_Int16) {
+    return has_note(read_raster(write_tiff("collar.tif", type, 3, 3, samples), {}), "--nodata=0");
+  };
+  for (const GDALDataType type : {GDT_Int16, GDT_Byte, GDT_Float32})
+    EXPECT_TRUE(notes({0, 0, 0, 101, 180, 240, 0, 0, 0}, type)) << type;
+  EXPECT_TRUE(notes({150, 2500, 3000, 400, 500, 0, 600, 0, 0}));
+  EXPECT_FALSE(notes({0, 0, 0, 99, 180, 240, 0, 0, 0})) << "a coast";
+  EXPECT_FALSE(notes({150, 200, 250, 300, 0, 350, 400, 450, 500})) << "a pit";
+  EXPECT_FALSE(notes({0, 0, 0, 0, 250, 0, 0, 0, 0})) << "a tower";
+  EXPECT_FALSE(notes({-5, 0, 0, 101, 180, 240, 0, 0, 0})) << "below the sea";
+  RasterOptions options;
+  options.nodata = 0;
+  EXPECT_FALSE(has_note(read_raster(path("collar.tif"), options), "--nodata=0"));
+}
+
 TEST_F(SuspectedNodata, PlausibleHeightsGetNoNote) {
   const auto quiet = [](const std::string& file) {
     const Raster raster = read_raster(file, {});

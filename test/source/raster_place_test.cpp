@@ -105,7 +105,7 @@ TEST_F(RasterPlaceTest, WestwardColumnsAreFlipped) {
 TEST_F(RasterPlaceTest, RejectsRotatedRastersWithARemedy) {
   expect_says(error(placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610")), "gdalwarp -dstnodata -9999 IN");
   expect_says(error(placed({500000, 0, 30, 5000000, 30, 0}, "EPSG:32610")), "gdalwarp");
-  // The pixels around the warped raster are no ground at 0 m.
+  // Pixels around the warped raster are marked.
   const auto rotated = placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610");
   const auto marked = [&](GDALDataset& d) {
     rotated(d);

@@ -17,6 +17,18 @@ constexpr double kLowMarks[] = {-32768, -32767, -9999, -99999, -999999};
 // so no step between successive values is larger.
 constexpr double kReliefOfTheEarth_m = 20000;
 
+// Real coasts have lower samples than this somewhere: a sea that no sample approaches is a collar of zeros, as gdalwarp
+// writes around rasters without a nodata value.
+constexpr double kLowestCoast_m = 100;
+
+template <class T>
+bool any_corner_is_zero(const std::vector<T>& samples, int cols, int rows) {
+  const auto at = [&](int col, int row) {
+    return samples[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(col)];
+  };
+  return at(0, 0) == 0 || at(cols - 1, 0) == 0 || at(0, rows - 1) == 0 || at(cols - 1, rows - 1) == 0;
+}
+
 // The lowest and highest value, and those next to them.
 struct Ends {
   double lowest, above_lowest, below_highest, highest;
@@ -66,6 +78,16 @@ std::vector<std::string> suspected_nodata(const Raster& raster, std::optional<do
           ends.lowest < -kBeyondHeights ||
               std::find(std::begin(kLowMarks), std::end(kLowMarks), ends.lowest) != std::end(kLowMarks),
           false, ends.above_lowest - ends.lowest, ends.highest - ends.above_lowest);
+  // If there are only two values, either may be the ground.
+  const bool far_above_zero = ends.lowest == 0 && ends.lowest != ends.below_highest && ends.several &&
+                              ends.above_lowest * std::abs(raster.scale) > kLowestCoast_m;
+  if (far_above_zero &&
+      std::visit([&](const auto& samples) { return any_corner_is_zero(samples, raster.cols, raster.rows); },
+                 raster.samples))
+    notes.push_back(
+        fmt::format("the lowest sample is 0, also at a corner, and all others are at least {:.10g}: zeros may be a "
+                    "collar without ground (if so, add --nodata=0)",
+                    ends.above_lowest));
   // As float32, to which samples of wide types were converted.
   const bool is_greatest = greatest && static_cast<float>(ends.highest) == static_cast<float>(*greatest);
   look_at("highest", ends.highest, ends.highest > kBeyondHeights, is_greatest, ends.highest - ends.below_highest,

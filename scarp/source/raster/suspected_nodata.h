@@ -4,6 +4,7 @@
 //   lowest sample            -32768, -32767, -9999, -99999, -999999, below -1e30
 //   highest sample           above 1e30; the largest value of its type, if isolated
 //   either                   if isolated by more than the relief of the Earth
+//   zeros                    at a corner, below ground that is everywhere more than 100 m above zero
 //
 // A value is isolated if it is farther from the next value than all others are from each other; if there are only two
 // values, the one farther from 0 is isolated.
