@@ -84,8 +84,8 @@ std::vector<MapProgram> map_programs(const std::string& scarp, const Question& a
        "viewshed",
        scarp,
        "scarp",
-       {scarp, "viewshed", kDem, fmt::format("--observer={},{},{}", x, y, height), "--co", kTiled, "--co", kPlain, "-o",
-        "seen.tif"},
+       {scarp, "viewshed", kDem, "--crs", "none", fmt::format("--observer={},{},{}", x, y, height), "--co", kTiled,
+        "--co", kPlain, "-o", "seen.tif"},
        "",
        "seen.tif",
        is_one},
@@ -284,7 +284,7 @@ std::vector<Json> MapPrograms::measure_cumulative(int size) {
   };
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   const auto own = run_program(
-      {options_.scarp, "viewshed", kDem, "--observers", "observers.csv", "--observer-height",
+      {options_.scarp, "viewshed", kDem, "--crs", "none", "--observers", "observers.csv", "--observer-height",
        std::to_string(options_.observer_height), "--mode", "count", "--co", kTiled, "--co", kPlain, "-o", "count.tif"},
       folder.path(), kNoLimit);
   add("scarp", own->wall_s, own->cpu_s, own->peak_mb);

@@ -239,10 +239,11 @@ void MapInput::check_plane(const MetricPlane& plane, const dvec2& at) const {
 }
 
 void MapInput::note_plane(const MetricPlane& plane) {
-  if (!geographic_ || std::exchange(plane_is_noted_, true)) return;
+  constexpr double kNoticed = 0.1;  // cells, of projected rasters
+  if ((!geographic_ && plane.error_cells < kNoticed) || std::exchange(plane_is_noted_, true)) return;
   notes.push_back(
-      fmt::format("degrees: computed on a local metric plane, cells {:.6g} x {:.6g} m, samples up to {:.2g} cells off",
-                  plane.cell_x, plane.cell_y, plane.error_cells));
+      fmt::format("{}computed on a local metric plane, cells {:.6g} x {:.6g} m, samples up to {:.2g} cells off",
+                  geographic_ ? "degrees: " : "", plane.cell_x, plane.cell_y, plane.error_cells));
 }
 
 MetricPlane MapInput::plane_at(const dvec2& at, double reach) {

@@ -34,7 +34,7 @@ struct MapOptions {
   RasterOptions raster;
   std::string coordinates;          ///< kind of coordinates of places; empty: map, or local without a georeference
   std::optional<double> curvature;  ///< coefficient; empty: depends on the body
-  double plane_error = 0.1;         ///< cells
+  double plane_error = 0.5;         ///< cells
   std::string surface = "crossings";
   int threads = 0;
   std::string output;
