@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/viewshed_summary.h"
+#include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_part.h"
 #include "app/cli/options/path_file.h"
 #include "app/cli/options/place_file.h"
@@ -25,8 +27,11 @@
 #include "scarp/analysis/map_part.h"
 #include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/progress_part.h"
+#include "scarp/base/replace_file.h"
+#include "scarp/source/whole_file.h"
 
 namespace scarp::cli {
 namespace {
@@ -46,6 +51,17 @@ constexpr const char* kFooter = R"(Modes:
 Pixels without a sample, or outside every observer's limits, are nodata; those of `angle` also where
 the target is hidden. Visible pixels must differ from all others; others may be equal.
 
+Summary (--summary), a row per row of the observers:
+  the other columns of --observers
+  observer  from 1
+  status    with --skip-bad: ok, invalid, outside or nodata; other rows are empty
+  x,y       sample of the observer, in --coords
+  eye       height above sea, metres
+  area      of the visible pixels, square metres
+  share     of the pixels within the limits, 0 to 1
+  farthest  distance of the farthest visible pixel, metres
+With --part, area, share and distance are those of the part.
+
 Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
 -f -q, with the output as last word.)";
 
@@ -53,7 +69,7 @@ struct ViewshedOptions : MapCommand {
   std::vector<std::string> observers;
   PlaceFile observers_file;
   std::optional<double> spacing;  // metres; the file holds lines
-  std::string mode = "visible", azimuth, pitch;
+  std::string mode = "visible", azimuth, pitch, summary, each;
   SightHeights heights;
   double min_distance = 0;
   std::optional<double> max_distance, nodata;
@@ -69,6 +85,7 @@ struct Stand {
   dvec2 at;
   std::string what;  // for messages
   std::size_t row;   // of the table of observers
+  std::string name;  // "observer 3", or the name of the row
 };
 
 // An observer over the part of the raster that was read, with its own plane if the raster is in degrees.
@@ -151,6 +168,14 @@ void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, doub
   }
 }
 
+// The name of a row: that of a column `name`, in any case.
+std::string name_of_row(const PlaceTable& table, std::size_t row) {
+  const std::vector<std::string>& names = table.carried.names;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (lower_case(names[k]) == "name" && !table.carried.at(row, k).empty()) return table.carried.at(row, k);
+  return fmt::format("observer {}", row + 1);
+}
+
 std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, const PlaceTable& table,
                              RowStatus& status) {
   input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());
@@ -172,7 +197,7 @@ std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, co
     }
     const double reach = options.max_distance.value_or(std::numeric_limits<double>::infinity());
     set_limits(settings, options, options.azimuth.empty() ? 0 : input.grid_north_at(node.col, node.row, reach));
-    stands.push_back({node, settings, reach, snapped, what, i});
+    stands.push_back({node, settings, reach, snapped, what, i, name_of_row(table, i)});
     // Measured in samples, which suits degrees and metres.
     const dvec2 typed = input.position_of(row.from, table.lonlat, what);
     farthest = std::max(farthest, std::hypot(typed.x - node.col, typed.y - node.row));
@@ -275,7 +300,7 @@ void set_area(MapRun& run, const ViewshedOptions& options, bool marks_range, con
   });
 }
 
-std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
+std::vector<Viewpoint> views_of(std::span<const Observer> observers) {
   std::vector<Viewpoint> views;
   for (const Observer& one : observers) views.emplace_back(one.field, one.node, one.settings);
   return views;
@@ -295,13 +320,46 @@ struct TargetCount {
   }
 };
 
-// The best visibility of each node over all observers.
-std::vector<Seen> best_seen(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
-  if (observers.size() == 1) {
-    const Observer& one = observers.front();
-    return viewshed_rows(one.field, one.node, one.settings, rows, progress);
+// The observers of a map, and of its summary.
+struct Watch {
+  std::span<const Observer> observers;
+  ViewshedSummary* summary;  // nullptr: none
+  std::size_t first;         // of the observers, in the summary
+
+  Watch one(std::size_t k) const { return {observers.subspan(k, 1), summary, first + k}; }
+};
+
+// The viewshed of the observer `k`, which the summary adds up.
+std::vector<Seen> codes_of(const Watch& watch, std::size_t k, const RowBand& rows, const Progress& progress) {
+  const Observer& one = watch.observers[k];
+  auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
+  if (watch.summary)
+    watch.summary->add(watch.first + k, Viewpoint(one.field, one.node, one.settings), codes, rows.first);
+  return codes;
+}
+
+// observer_count_rows(), one observer after the other if there is a summary.
+std::vector<std::uint16_t> counts_of(const Watch& watch, const RowBand& rows, const Progress& progress) {
+  if (!watch.summary) return observer_count_rows(views_of(watch.observers), rows, progress);
+  std::vector<std::uint16_t> counts;
+  const auto all = static_cast<double>(watch.observers.size());
+  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
+    const auto codes = codes_of(watch, k, rows, progress_part(progress, static_cast<double>(k), all));
+    if (counts.empty()) counts.assign(codes.size(), kCountOutOfRange);
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+      if (codes[i] == Seen::hole) counts[i] = kCountHole;
+      if (codes[i] != Seen::visible && codes[i] != Seen::hidden) continue;
+      if (counts[i] == kCountOutOfRange) counts[i] = 0;
+      counts[i] = static_cast<std::uint16_t>(counts[i] + (codes[i] == Seen::visible));
+    }
   }
-  const auto counts = observer_count_rows(views_of(observers), rows, progress);
+  return counts;
+}
+
+// The best visibility of each node over all observers.
+std::vector<Seen> best_seen(const Watch& watch, const RowBand& rows, const Progress& progress) {
+  if (watch.observers.size() == 1) return codes_of(watch, 0, rows, progress);
+  const auto counts = counts_of(watch, rows, progress);
   std::vector<Seen> best;
   best.reserve(counts.size());
   for (const std::uint16_t count : counts)
@@ -312,12 +370,12 @@ std::vector<Seen> best_seen(const std::vector<Observer>& observers, const RowBan
   return best;
 }
 
-ComputedBand visible_band(const std::vector<Observer>& observers, const PixelValues& values, const RowBand& rows,
-                          TargetCount& targets, const Progress& progress) {
+ComputedBand visible_band(const Watch& watch, const PixelValues& values, const RowBand& rows, TargetCount& targets,
+                          const Progress& progress) {
   const int value_of[] = {values.hidden, values.visible, values.out_of_range, values.nodata};
   std::vector<std::uint8_t> pixels;
   if (rows.rows() > 0) {
-    const auto seen = best_seen(observers, rows, progress);
+    const auto seen = best_seen(watch, rows, progress);
     pixels.reserve(seen.size());
     for (const Seen code : seen) pixels.push_back(static_cast<std::uint8_t>(value_of[static_cast<std::size_t>(code)]));
     targets.add(seen);
@@ -325,15 +383,15 @@ ComputedBand visible_band(const std::vector<Observer>& observers, const PixelVal
   return {"visible", "", std::move(pixels), static_cast<double>(values.nodata), values.classes()};
 }
 
-ComputedBand count_band(const std::vector<Observer>& observers, const RowBand& rows, const Progress& progress) {
+ComputedBand count_band(const Watch& watch, const RowBand& rows, const Progress& progress) {
   std::vector<std::uint16_t> counts;
-  if (rows.rows() > 0) counts = observer_count_rows(views_of(observers), rows, progress);
+  if (rows.rows() > 0) counts = counts_of(watch, rows, progress);
   std::replace(counts.begin(), counts.end(), kCountOutOfRange, kCountHole);
   return {"observers that see the pixel", "", std::move(counts), kCountHole};
 }
 
 // Returns NaN for pixels without a value.
-std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, const RowBand& rows,
+std::vector<float> least_pixels(std::span<const Observer> observers, HeightDatum datum, const RowBand& rows,
                                 const Progress& progress) {
   std::vector<float> pixels;
   if (rows.rows() == 0) return pixels;
@@ -357,16 +415,15 @@ std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDa
 }
 
 // The same for angles.
-std::vector<float> angle_pixels(const std::vector<Observer>& observers, const RowBand& rows, TargetCount& targets,
+std::vector<float> angle_pixels(const Watch& watch, const RowBand& rows, TargetCount& targets,
                                 const Progress& progress) {
   std::vector<float> pixels;
   std::vector<Seen> best;
   if (rows.rows() == 0) return pixels;
-  const auto count = static_cast<double>(observers.size());
-  for (std::size_t k = 0; k < observers.size(); ++k) {
-    const Observer& one = observers[k];
-    const auto codes =
-        viewshed_rows(one.field, one.node, one.settings, rows, progress_part(progress, static_cast<double>(k), count));
+  const auto count = static_cast<double>(watch.observers.size());
+  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
+    const Observer& one = watch.observers[k];
+    const auto codes = codes_of(watch, k, rows, progress_part(progress, static_cast<double>(k), count));
     const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
     if (pixels.empty()) pixels.assign(angles.size(), kNothing), best.assign(codes.size(), Seen::out_of_range);
     for (std::size_t i = 0; i < angles.size(); ++i) {
@@ -406,12 +463,75 @@ std::string places_text(const std::vector<Stand>& stands) {
   return text + (stands.size() > kListed ? "; ..." : "");
 }
 
+// The band of a mode, for some observers and rows.
+class BandMaker {
+ public:
+  BandMaker(const ViewshedOptions& options, const std::optional<PixelValues>& values)
+      : options_(options), values_(values), nodata_(options.nodata.value_or(kNoNumber)) {}
+
+  ComputedBand make(const Watch& watch, const RowBand& rows, const Progress& progress) {
+    if (values_) return visible_band(watch, *values_, rows, targets_, progress);
+    if (options_.mode == "count") return count_band(watch, rows, progress);
+    if (options_.mode == "angle")
+      return checked_band("angle above horizontal", "degrees", angle_pixels(watch, rows, targets_, progress), nodata_);
+    // The sweep for heights finds no codes.
+    for (std::size_t k = 0; watch.summary && rows.rows() > 0 && k < watch.observers.size(); ++k)
+      codes_of(watch, k, rows, {});
+    const bool dem = options_.mode == "dem";
+    return checked_band(dem ? "least visible height above sea" : "least visible height above ground", "m",
+                        least_pixels(watch.observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress),
+                        nodata_);
+  }
+
+  std::string text(std::size_t observers) const {
+    if (values_ || options_.mode == "angle") return targets_.text();
+    return options_.mode == "count" ? fmt::format("{} observers", observers) : "least visible heights";
+  }
+  /// Numbers of text().
+  std::vector<double*> totals() { return {&targets_.visible, &targets_.hidden}; }
+
+ private:
+  const ViewshedOptions& options_;
+  const std::optional<PixelValues>& values_;
+  double nodata_;
+  TargetCount targets_;
+};
+
+// "seen.tif" to "seen_3.tif", for the third row of the observers.
+std::vector<std::string> numbered_files(const ViewshedOptions& options, const std::vector<Stand>& stands) {
+  std::vector<std::string> files;
+  const std::string stem = options.output.substr(0, options.output.size() - extension_of(options.output).size());
+  for (const Stand& one : stands) {
+    files.push_back(fmt::format("{}_{}{}", stem, one.row + 1, options.output.substr(stem.size())));
+    keep_inputs(files.back(), options.typed);
+  }
+  return files;
+}
+
+void write_summary(const ViewshedOptions& options, const ViewshedSummary& summary, const PlaceTable& table,
+                   const RowStatus& status, const std::vector<Stand>& stands) {
+  std::vector<SummaryRow> rows;
+  for (const Stand& one : stands) rows.push_back({one.row, one.at});
+  write_whole_file(options.summary,
+                   summary_csv(summary, table, options.observers_file.skip_bad ? &status : nullptr, rows));
+}
+
+void check_summary(const ViewshedOptions& options) {
+  if (options.summary.empty()) return;
+  if (extension_of(options.summary) != ".csv")
+    throw Error(fmt::format("--summary '{}': expected a name that ends in .csv", options.summary));
+  keep_apart("--summary", options.summary, options.output, options.typed);
+  if (!options.raster_output.dry_run) const ReplaceFile writable(options.summary);
+}
+
 void run(ViewshedOptions options, const Command& command) {
   options.mode = mode_of(options.mode);
   const bool codes = options.mode == "visible", counts = options.mode == "count";
   const std::optional<PixelValues> values = codes ? std::optional(pixel_values(options)) : std::nullopt;
+  check_summary(options);
   MapRun run(options, command, codes ? "Byte" : counts ? "UInt16" : "Float32");
   MapInput& input = run.input();
+  if (!options.summary.empty()) keep_inputs(options.summary, input.files());
   const PlaceTable places = observer_table(options);
   const bool skips = options.observers_file.skip_bad;
   const PlaceTable table = options.spacing ? along_lines(input, places, *options.spacing, skips) : places;
@@ -419,37 +539,34 @@ void run(ViewshedOptions options, const Command& command) {
   std::vector<Stand> stands = stands_of(input, options, table, status);
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
   constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
-  if (!run.begin(codes || counts ? 3 : 12, static_cast<double>(stands.size()) * kNode_s)) return;
+  const double bands = options.each.empty() ? 1 : static_cast<double>(stands.size());
+  if (!run.begin(bands * (codes || counts ? 3 : 12), static_cast<double>(stands.size()) * kNode_s)) return;
   keep_usable(stands, input, status);
   Metadata metadata{{"MODE", options.mode},
                     {"OBSERVERS", places_text(stands)},
                     {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)}};
   for (auto& pair : input.curvature_metadata()) metadata.push_back(std::move(pair));
-  TargetCount targets;
-  const double nodata = options.nodata.value_or(kNoNumber);
-  const auto band = [&](const RowBand& rows, const Progress& progress) {
+  BandMaker maker(options, values);
+  ViewshedSummary summary(stands.size());
+  const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const std::vector<Observer> observers = observers_of(input, stands);
-    if (values) return visible_band(observers, *values, rows, targets, progress);
-    if (counts) return count_band(observers, rows, progress);
-    if (options.mode == "angle")
-      return checked_band("angle above horizontal", "degrees", angle_pixels(observers, rows, targets, progress),
-                          nodata);
-    const bool dem = options.mode == "dem";
-    return checked_band(dem ? "least visible height above sea" : "least visible height above ground", "m",
-                        least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress), nodata);
+    const Watch all{observers, options.summary.empty() ? nullptr : &summary, 0};
+    std::vector<ComputedBand> computed;
+    if (options.each.empty()) return std::vector{maker.make(all, rows, progress)};
+    for (std::size_t k = 0; k < stands.size(); ++k) {
+      computed.push_back(maker.make(
+          all.one(k), rows, progress_part(progress, static_cast<double>(k), static_cast<double>(stands.size()))));
+      computed.back().name = fmt::format("{}: {}", stands[k].name, computed.back().name);
+    }
+    return computed;
   };
-  const auto summary = [&] {
-    const std::string what = codes || options.mode == "angle" ? targets.text()
-                             : counts                         ? fmt::format("{} observers", stands.size())
-                                                              : "least visible heights";
-    return fmt::format("{}; {}", what, input.curvature_text());
-  };
-  run.write({kMethod,
-             metadata,
-             "viridis",
-             [&](const RowBand& rows, const Progress& progress) { return std::vector{band(rows, progress)}; },
-             summary,
-             {&targets.visible, &targets.hidden}});
+  const auto text = [&] { return fmt::format("{}; {}", maker.text(stands.size()), input.curvature_text()); };
+  MapRecipe recipe{kMethod, metadata, "viridis", compute, text};
+  if (options.each == "files") recipe.files = numbered_files(options, stands);
+  recipe.totals = maker.totals();
+  for (double* const total : summary.totals()) recipe.totals.push_back(total);
+  run.write(recipe);
+  if (!options.summary.empty()) write_summary(options, summary, table, status, stands);
 }
 
 }  // namespace
@@ -487,6 +604,22 @@ void add_viewshed(Program& program) {
                         .choices = {"visible", "count", "dem", "ground", "angle", "NORMAL", "ACCUM", "DEM", "GROUND"},
                         .closed = true,
                         .common = true});
+  command.add(&o.summary, {.names = "--summary",
+                           .value = "FILE",
+                           .help = "table of the area that each observer sees",
+                           .files = "csv",
+                           .fallback = "none",
+                           .common = true});
+  command.add(&o.each, {.names = "--per-observer",
+                        .value = "WHAT",
+                        .help = "a map for each observer, as bands of the output or as files",
+                        .choices = {"bands", "files"},
+                        .closed = true,
+                        .note = "files: OUT_N.tif for row N of the observers",
+                        .fallback = "one map of all",
+                        .common = true,
+                        .rules = {{"does not apply to --mode count (each map would count one observer)",
+                                   [&o] { return mode_of(o.mode) != "count"; }}}});
   add_sight_heights(command, o.heights);
   command.add(&o.max_distance, {.names = "--max-distance",
                                 .help = "maximum distance of targets",
@@ -536,7 +669,7 @@ void add_viewshed(Program& program) {
   add_map_command(command, o, [options, &command] { run(*options, command); });
   command.footer(kFooter);
   command.example("scarp viewshed dem.tif --observer 692000,5143000,2 -o seen.tif");
-  command.example("scarp viewshed dem.tif --observers towers.csv --mode count -o count.tif");
+  command.example("scarp viewshed dem.tif --observers towers.csv --mode count --summary seen.csv -o count.tif");
   command.example("scarp viewshed dem.tif --observers road.gpkg --observer-spacing 50 -o road_sees.tif");
   command.example("scarp viewshed -ox 692000 -oy 5143000 -md 20000 dem.tif seen.tif");
 }

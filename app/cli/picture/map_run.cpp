@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/picture/map_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "app/cli/memory/file_memory.h"
@@ -204,10 +207,19 @@ void MapRun::write(const MapRecipe& recipe) {
   std::optional<MapJournal> journal;
   const std::vector<ComputedBand> bands = compute(recipe, journal);
   for (const ComputedBand& band : bands) map.bands.push_back(view_of(band));
-  write_map(options_.raster_output, options_.output, map);
+  if (recipe.files.empty()) write_map(options_.raster_output, options_.output, map);
+  for (std::size_t k = 0; k < recipe.files.size(); ++k) {
+    keep_inputs(recipe.files[k], input_.files());
+    RasterMap one = map;
+    one.bands = {map.bands[k]};
+    write_map(options_.raster_output, recipe.files[k], one);
+  }
   if (journal) journal->remove();
   if (preview) preview->write(map, rows, recipe.ramp);
-  print_map_summary(input_, options_.raster_output, area_, options_.output, recipe.summary(), start_);
+  const std::string written = recipe.files.empty() ? options_.output
+                                                   : fmt::format("{} files, {} to {}", recipe.files.size(),
+                                                                 recipe.files.front(), recipe.files.back());
+  print_map_summary(input_, options_.raster_output, area_, written, recipe.summary(), start_);
 }
 
 }  // namespace scarp::cli

@@ -73,6 +73,8 @@ struct MapRecipe {
   /// Whether strips of rows take together about as long as all rows at once. If a map is beyond the limit of memory, it
   /// is then computed by strips, which use it place by place.
   bool has_cheap_strips = false;
+  /// A file for each band, in place of the output; empty: all bands are in the output.
+  std::vector<std::string> files{};
 };
 
 class MapRun {

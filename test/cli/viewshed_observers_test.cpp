@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// Viewsheds of several observers: the summary of each, and a map for each.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cli/csv_rows.h"
+#include "cli/maps_cli.h"
+
+namespace scarp::test {
+namespace {
+
+class ViewshedObservers : public MapsCli {
+ protected:
+  // Three observers: before the wall, outside, and above the wall.
+  std::string towers() const {
+    return scratch_.write("towers.csv",
+                          "Name,x,y,z\nnear,500105,5000105,2\nfar,600000,5000000,2\nhigh,500255,5000055,60\n");
+  }
+  Result viewshed(const Names& options) const { return run(on_dem("viewshed") + options); }
+  void write(const std::string& name, const Names& options) const {
+    const Result result = viewshed(options + Names{"-o", path(name)});
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  Pixels pixels(const std::string& name, int band = 1) const { return pixels_of(*open(path(name)), band); }
+
+  // Observers at these columns and rows, by the row of the table.
+  struct At {
+    int row, col, line;
+    const char* typed;
+  };
+  static std::vector<At> observers() { return {{9, 10, 1, "500105,5000105,2"}, {14, 25, 3, "500255,5000055,60"}}; }
+};
+
+TEST_F(ViewshedObservers, SummaryHasAreaShareAndFarthestOfEachObserver) {
+  // Pixels are 10 m wide on the map, whose scale at the central meridian is 0.9996.
+  constexpr double kSide = 10 / 0.9996;
+  for (const Names& mode : {Names{"--mode", "count"}, Names{"--mode", "ground"}, Names{"--per-observer", "bands"}}) {
+    write("all.tif",
+          mode + Names{"--observers", towers(), "--skip-bad", "--max-distance", "150", "--summary", path("seen.csv")});
+    const auto rows = rows_of(text_of(path("seen.csv")));
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[1].at("status"), "outside");
+    EXPECT_EQ(rows[1].at("area"), "");
+    for (const At& at : observers()) {
+      write("one.tif", {"--observer", at.typed, "--max-distance", "150"});
+      const Pixels one = pixels("one.tif");
+      double visible = 0, all = 0, farthest = 0;
+      for (int row = 0; row < one.rows; ++row) {
+        for (int col = 0; col < one.cols; ++col) {
+          all += one.at(col, row) != 255;
+          if (one.at(col, row) != 1) continue;
+          ++visible;
+          farthest = std::max(farthest, kSide * std::hypot(col - at.col, row - at.row));
+        }
+      }
+      const Row& row = rows[static_cast<std::size_t>(at.line - 1)];
+      EXPECT_EQ(row.at("status"), "ok");
+      EXPECT_EQ(row.at("observer"), fmt::format("{}", at.line));
+      EXPECT_EQ(row.at("Name"), at.line == 1 ? "near" : "high");
+      EXPECT_EQ(row.at("eye"), at.line == 1 ? "2" : "60");
+      // 100 m from the meridian the scale differs by 1e-10; the table has 10 digits.
+      EXPECT_NEAR(number(row, "area"), visible * kSide * kSide, 1e-4 * visible);
+      EXPECT_NEAR(number(row, "share"), visible / all, 1e-5);
+      EXPECT_NEAR(number(row, "farthest"), farthest, 1e-4);
+      EXPECT_LT(number(row, "share"), 1);
+    }
+  }
+}
+
+TEST_F(ViewshedObservers, EveryObserverHasABandOrAFile) {
+  for (const char* mode : {"visible", "angle"}) {
+    const Names options{"--observers", towers(), "--skip-bad", "--mode", mode, "--per-observer"};
+    write("bands.tif", options + Names{"bands"});
+    write("files.tif", options + Names{"files"});
+    ASSERT_EQ(open(path("bands.tif"))->GetRasterCount(), 2);
+    EXPECT_EQ(open(path("files.tif")), nullptr);
+    int band = 0;
+    for (const At& at : observers()) {
+      write("one.tif", {"--observer", at.typed, "--mode", mode});
+      const std::vector<float> one = pixels("one.tif").samples;
+      EXPECT_EQ(pixels("bands.tif", ++band).samples, one) << mode;
+      EXPECT_EQ(pixels(fmt::format("files_{}.tif", at.line)).samples, one) << mode;
+      const std::string name = open(path("bands.tif"))->GetRasterBand(band)->GetDescription();
+      EXPECT_TRUE(name.starts_with(at.line == 1 ? "near: " : "high: ")) << name;
+    }
+  }
+}
+
+TEST_F(ViewshedObservers, RejectsMapsAndTablesThatCannotBe) {
+  const auto refused = [&](const Names& options, const std::string& what) {
+    expect_refused(on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("a.tif")} + options, what);
+  };
+  refused({"--mode", "count", "--per-observer", "bands"}, "--per-observer does not apply to --mode count");
+  refused({"--summary", path("a.txt")}, "expected a name that ends in .csv");
+  refused({"--summary", path("no/a.csv")}, "no/a.csv");
+  const std::string kept = text_of(towers());
+  const Result result = viewshed({"--observers", towers(), "--summary", towers(), "-o", path("a.tif")});
+  EXPECT_NE(result.status, 0);
+  EXPECT_EQ(text_of(path("towers.csv")), kept);
+}
+
+}  // namespace
+}  // namespace scarp::test
