@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Viewsheds of several observers: the summary of each, and a map for each.
 #include <fmt/format.h>
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include <set>
 #include <string>
 #include <vector>
 
@@ -88,6 +93,52 @@ TEST_F(ViewshedObservers, EveryObserverHasABandOrAFile) {
       EXPECT_TRUE(name.starts_with(at.line == 1 ? "near: " : "high: ")) << name;
     }
   }
+}
+
+// A line, a square with a hole, a polygon smaller than the spacing, and one that leaves the raster.
+std::string shapes_file(const std::string& path) {
+  GDALAllRegister();
+  const GDALDatasetUniquePtr file(
+      GetGDALDriverManager()->GetDriverByName("GPKG")->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  OGRSpatialReference utm;
+  utm.importFromEPSG(32633);
+  OGRLayer* layer = file->CreateLayer("shapes", &utm, wkbUnknown, nullptr);
+  OGRFieldDefn name("name", OFTString);
+  EXPECT_EQ(layer->CreateField(&name), OGRERR_NONE);
+  const auto add = [&](const char* called, const char* wkt) {
+    OGRFeature feature(layer->GetLayerDefn());
+    OGRGeometry* geometry = nullptr;
+    OGRGeometryFactory::createFromWkt(wkt, &utm, &geometry);
+    feature.SetGeometryDirectly(geometry);
+    feature.SetField("name", called);
+    EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
+  };
+  add("road", "LINESTRING (500015 5000015, 500055 5000015)");
+  add("park",
+      "POLYGON ((500095 5000045, 500195 5000045, 500195 5000105, 500095 5000105, 500095 5000045),"
+      "(500135 5000065, 500155 5000065, 500155 5000085, 500135 5000085, 500135 5000065))");
+  add("hut", "MULTIPOLYGON (((500254 5000154, 500256 5000154, 500255 5000157, 500254 5000154)))");
+  add("far", "POLYGON ((500254 5000154, 500256 5000154, 600255 5000156, 500254 5000154))");
+  return path;
+}
+
+TEST_F(ViewshedObservers, ObserversStandAlongLinesAndOverPolygons) {
+  const std::string file = shapes_file(path("shapes.gpkg"));
+  write("seen.tif", {"--observers", file, "--observer-spacing", "20", "--skip-bad", "--summary", path("seen.csv")});
+  std::set<std::string> found, expected{"far,outside,,"};
+  for (const int x : {500015, 500035, 500055}) expected.insert(fmt::format("road,ok,{},5000015", x));
+  for (const int x : {500105, 500125, 500145, 500165, 500185})
+    for (const int y : {5000055, 5000075, 5000095})
+      if (x != 500145 || y != 5000075) expected.insert(fmt::format("park,ok,{},{}", x, y));
+  expected.insert("hut,ok,500255,5000155");
+  for (const Row& row : rows_of(text_of(path("seen.csv"))))
+    found.insert(fmt::format("{},{},{},{}", row.at("name"), row.at("status") == "ok" ? "ok" : "outside", row.at("x"),
+                             row.at("y")));
+  EXPECT_EQ(found, expected);
+  expect_refused(on_dem("viewshed") + Names{"--observers", file, "--observer-spacing", "20", "-o", path("a.tif")},
+                 "shapes.gpkg: feature 4: 16.27530715,45.14776062 is outside");
+  expect_refused(on_dem("viewshed") + Names{"--observers", file, "--observer-spacing", "0.01", "-o", path("a.tif")},
+                 "more than 1000000 observers");
 }
 
 TEST_F(ViewshedObservers, RejectsMapsAndTablesThatCannotBe) {

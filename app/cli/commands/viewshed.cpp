@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/viewshed_stations.h"
 #include "app/cli/commands/viewshed_summary.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_part.h"
@@ -68,7 +69,7 @@ Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a
 struct ViewshedOptions : MapCommand {
   std::vector<std::string> observers;
   PlaceFile observers_file;
-  std::optional<double> spacing;  // metres; the file holds lines
+  std::optional<double> spacing;  // metres; the file holds lines or polygons
   std::string mode = "visible", azimuth, pitch, summary, each;
   SightHeights heights;
   double min_distance = 0;
@@ -96,42 +97,12 @@ struct Observer {
 };
 
 PlaceTable observer_table(const ViewshedOptions& options) {
-  if (options.spacing) return read_paths(options.observers_file);
+  if (options.spacing) return read_paths(options.observers_file, PlaceKind::paths);
   if (!options.observers_file.path.empty()) return options.observers_file.read(PlaceKind::points);
   if (options.observers.empty()) throw Error("no observer: give --observer X,Y or --observers FILE");
   PlaceTable table;
   for (const std::string& text : options.observers)
     table.rows.push_back({typed_height_place(text, "--observer"), {}, 0});
-  return table;
-}
-
-// An observer at each station of the lines of a table, unless it stands on the sample of the one before. Lines that
-// leave the raster are bad rows if `skip`.
-PlaceTable along_lines(MapInput& input, const PlaceTable& lines, double spacing, bool skip) {
-  constexpr double kMostStations = 1e6;
-  PlaceTable table;
-  table.path = lines.path;
-  table.notes = lines.notes;
-  for (std::size_t i = 0; i < lines.rows.size(); ++i) {
-    const std::int64_t number = lines.rows[i].line;
-    try {
-      if (!lines.rows[i].bad.empty()) throw Error(lines.rows[i].bad);
-      Polyline line = polyline_of(input, lines, i);
-      const std::vector<double> lengths = measure(input, line);
-      dvec2 last(-1.0);
-      for (const Station& station : stations_of(line, lengths, spacing, "--observer-spacing", kMostStations)) {
-        const dvec2 at = station.vertex.at, sample{std::floor(at.x + 0.5), std::floor(at.y + 0.5)};
-        if (sample == std::exchange(last, sample)) continue;
-        const dvec2 place = input.place_of(at.x, at.y);
-        table.rows.push_back({{place.x, place.y, station.vertex.z}, {}, number});
-      }
-    } catch (const Interrupted&) {
-      throw;
-    } catch (const Error& error) {
-      if (!skip) throw;
-      table.rows.push_back({{}, {}, number, 0, error.what()});
-    }
-  }
   return table;
 }
 
@@ -534,7 +505,7 @@ void run(ViewshedOptions options, const Command& command) {
   if (!options.summary.empty()) keep_inputs(options.summary, input.files());
   const PlaceTable places = observer_table(options);
   const bool skips = options.observers_file.skip_bad;
-  const PlaceTable table = options.spacing ? along_lines(input, places, *options.spacing, skips) : places;
+  const PlaceTable table = options.spacing ? stations_on(input, places, *options.spacing, skips) : places;
   RowStatus status(table, skips);
   std::vector<Stand> stands = stands_of(input, options, table, status);
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
@@ -590,7 +561,7 @@ void add_viewshed(Program& program) {
                   .common = true,
                   .excludes = {"--observer"}});
   command.add(&o.spacing, {.names = "--observer-spacing",
-                           .help = "distance of observers along the lines of --observers",
+                           .help = "distance of observers along the lines, or over the polygons, of --observers",
                            .unit = "metres",
                            .range = kAboveZero,
                            .fallback = "none: --observers holds points",

@@ -36,16 +36,16 @@ void ViewshedSummary::add(std::size_t observer, const Viewpoint& view, std::span
   });
   Sum& sum = sums_[observer];
   const HeightFieldSettings& cell = ground.field().settings();
-  sum.visible += visible;
-  sum.hidden += hidden;
-  sum.area = static_cast<double>(sum.visible) * cell.cell_x * cell.cell_y;
+  sum.visible += static_cast<double>(visible);
+  sum.hidden += static_cast<double>(hidden);
+  sum.area = sum.visible * cell.cell_x * cell.cell_y;
   sum.farthest = std::max(sum.farthest, std::sqrt(farthest));
   sum.eye = view.eye();
 }
 
 double ViewshedSummary::share(std::size_t observer) const {
-  const auto all = static_cast<double>(sums_[observer].visible + sums_[observer].hidden);
-  return all > 0 ? static_cast<double>(sums_[observer].visible) / all : 0;
+  const double all = sums_[observer].visible + sums_[observer].hidden;
+  return all > 0 ? sums_[observer].visible / all : 0;
 }
 
 std::string summary_csv(const ViewshedSummary& summary, const PlaceTable& table, const RowStatus* status,

@@ -23,11 +23,10 @@ Vertex between(const Vertex& from, const Vertex& to, double along) {
 
 }  // namespace
 
-PlaceTable read_paths(const PlaceFile& file) {
+PlaceTable read_paths(const PlaceFile& file, PlaceKind kind) {
   const std::string extension = extension_of(file.path);
   const bool text = file.path == "-" || extension == ".csv" || extension == ".txt" || extension == ".tsv";
-  PlaceTable table =
-      read_places(file.path, text ? PlaceKind::points : PlaceKind::lines, {file.layer, true, file.skip_bad});
+  PlaceTable table = read_places(file.path, text ? PlaceKind::points : kind, {file.layer, true, file.skip_bad});
   if (!text) return table;
   const std::size_t all = table.rows.size();
   std::string first;  // why

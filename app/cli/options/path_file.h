@@ -12,9 +12,9 @@
 
 namespace scarp::cli {
 
-/// Returns the polylines of a vector file; the rows of a text table are the vertices of one. A note counts the vertices
-/// that were skipped. Throws Error naming the file.
-PlaceTable read_paths(const PlaceFile& file);
+/// Returns the polylines of a vector file, or with PlaceKind::paths also its polygons; the rows of a text table are the
+/// vertices of one polyline. A note counts the vertices that were skipped. Throws Error naming the file.
+PlaceTable read_paths(const PlaceFile& file, PlaceKind kind = PlaceKind::lines);
 
 struct Vertex {
   dvec2 at{0.0};            ///< columns and rows of the raster

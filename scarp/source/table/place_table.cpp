@@ -49,7 +49,7 @@ Header header_of(const std::vector<std::string_view>& fields, PlaceKind kind, Pl
     if (at != std::string_view::npos) throw Error(fmt::format("two columns '{}'", *name));
     at = i;
   }
-  const bool lines = kind == PlaceKind::lines;
+  const bool lines = kind != PlaceKind::points;
   const bool plain = header.has(x) && header.has(y) && (!lines || (header.has(tx) && header.has(ty)));
   table.lonlat = header.has(lon) && header.has(lat) && (!lines || (header.has(tlon) && header.has(tlat)));
   if (plain == table.lonlat)
@@ -81,40 +81,63 @@ TablePlace place_from(double x_at, double y_at, std::optional<double> height, OG
   return place;
 }
 
+std::string_view names_of(PlaceKind kind) {
+  return kind == PlaceKind::points  ? "points"
+         : kind == PlaceKind::lines ? "lines of two or more vertices"
+                                    : "lines of two or more vertices, or polygons";
+}
+
+bool accepts(PlaceKind kind, OGRwkbGeometryType type) {
+  if (type == wkbPoint) return kind == PlaceKind::points;
+  return (type == wkbLineString && kind != PlaceKind::points) || (type == wkbPolygon && kind == PlaceKind::paths);
+}
+
 // `vertices`: with those between the ends of lines.
 void add_feature(const OGRGeometry& geometry, PlaceKind kind, bool vertices, OGRCoordinateTransformation* transform,
                  std::int64_t feature, std::vector<PlaceRow>& rows) {
   const auto type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbMultiPoint || type == wkbMultiLineString || type == wkbGeometryCollection) {
+  if (type == wkbMultiPoint || type == wkbMultiLineString || type == wkbMultiPolygon || type == wkbGeometryCollection) {
     for (const OGRGeometry* part : *geometry.toGeometryCollection())
       add_feature(*part, kind, vertices, transform, feature, rows);
     return;
   }
   const auto height = [&](double z_at) { return geometry.Is3D() ? std::optional(z_at) : std::nullopt; };
-  if (kind == PlaceKind::points && type == wkbPoint) {
+  const auto vertices_of = [&](const OGRSimpleCurve& curve) {
+    std::vector<TablePlace> all;
+    for (int i = 0; i < curve.getNumPoints(); ++i)
+      all.push_back(place_from(curve.getX(i), curve.getY(i), height(curve.getZ(i)), transform, feature));
+    return all;
+  };
+  if (accepts(kind, type) && type == wkbPoint) {
     const OGRPoint& point = *geometry.toPoint();
     if (point.IsEmpty()) throw Error(fmt::format("feature {}: empty geometry", feature));
     rows.push_back({place_from(point.getX(), point.getY(), height(point.getZ()), transform, feature), {}, feature});
-  } else if (kind == PlaceKind::lines && type == wkbLineString && geometry.toLineString()->getNumPoints() >= 2) {
-    const OGRLineString& line = *geometry.toLineString();
-    const int last = line.getNumPoints() - 1;
-    const auto vertex = [&](int i) {
-      return place_from(line.getX(i), line.getY(i), height(line.getZ(i)), transform, feature);
-    };
-    PlaceRow row{vertex(0), vertex(last), feature};
-    for (int i = 1; vertices && i < last; ++i) row.between.push_back(vertex(i));
+  } else if (accepts(kind, type) && type == wkbLineString && geometry.toLineString()->getNumPoints() >= 2) {
+    const std::vector<TablePlace> all = vertices_of(*geometry.toLineString());
+    PlaceRow row{all.front(), all.back(), feature};
+    if (vertices) row.between.assign(all.begin() + 1, all.end() - 1);
+    rows.push_back(std::move(row));
+  } else if (accepts(kind, type) && type == wkbPolygon && !geometry.IsEmpty()) {
+    PlaceRow row{{}, {}, feature};
+    for (const OGRLinearRing* ring : *geometry.toPolygon()) row.rings.push_back(vertices_of(*ring));
+    row.from = row.to = row.rings.front().front();
     rows.push_back(std::move(row));
   } else {
-    throw Error(fmt::format("feature {}: is a {} (expected {})", feature, geometry.getGeometryName(),
-                            kind == PlaceKind::points ? "points" : "lines of two or more vertices"));
+    throw Error(fmt::format("feature {}: is a {} (expected {})", feature, geometry.getGeometryName(), names_of(kind)));
   }
+}
+
+OGRwkbGeometryType part_of(OGRwkbGeometryType type) {
+  return type == wkbMultiPoint        ? wkbPoint
+         : type == wkbMultiLineString ? wkbLineString
+         : type == wkbMultiPolygon    ? wkbPolygon
+                                      : type;
 }
 
 bool may_have(OGRLayer& layer, PlaceKind kind) {
   const auto type = wkbFlatten(layer.GetGeomType());
   if (type == wkbUnknown || type == wkbGeometryCollection) return true;
-  return kind == PlaceKind::points ? type == wkbPoint || type == wkbMultiPoint
-                                   : type == wkbLineString || type == wkbMultiLineString;
+  return accepts(kind, part_of(type));
 }
 
 // The layer of this name, or the first that may have geometries of the kind, with a note if there are others.
@@ -195,7 +218,7 @@ PlaceRow place_row(const CsvRows& rows, const Header& header, std::size_t width,
                                                                              : std::nullopt;
   };
   PlaceRow row{{number(degrees ? lon : x), number(degrees ? lat : y), height(z)}, {}, line};
-  if (kind == PlaceKind::lines) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
+  if (kind != PlaceKind::points) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
   return row;
 }
 
@@ -262,7 +285,10 @@ PlaceTable read_places(const std::string& path, PlaceKind kind, const PlaceReadi
     for (std::string& note : table.notes) note = fmt::format("{}: {}", path, note);
     for (PlaceRow& row : table.rows)
       if (!row.bad.empty()) row.bad = fmt::format("{}: {}", path, row.bad);
-    if (table.rows.empty()) throw Error(kind == PlaceKind::points ? "contains no points" : "contains no lines");
+    if (table.rows.empty())
+      throw Error(fmt::format("contains no {}", kind == PlaceKind::paths   ? "lines or polygons"
+                                                : kind == PlaceKind::lines ? "lines"
+                                                                           : "points"));
     return table;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));

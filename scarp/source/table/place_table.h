@@ -4,7 +4,8 @@
 //   .csv, .txt, -   a header and one row per place: x,y[,z]; for lines x,y[,z],tx,ty[,tz]. lon,lat (tlon,tlat) instead
 //                   of x,y (tx,ty), or longitude,latitude (tlongitude,tlatitude), are longitude and latitude. Names
 //                   are in any case. Other columns are kept as text. Dialect: ray_table.h
-//   other files     any vector format of GDAL (GeoJSON, GeoPackage, shapefile): points; first and last vertex of lines.
+//   other files     any vector format of GDAL (GeoJSON, GeoPackage, shapefile): points; first and last vertex of lines;
+//                   rings of polygons.
 //                   Fields are kept as text. Places become longitude and latitude, unless the file has no CRS.
 //                   Without the name of a layer, the first that may have geometries of the kind is read
 #pragma once
@@ -27,11 +28,12 @@ struct TablePlace {
 
 struct PlaceRow {
   TablePlace from;
-  TablePlace to{};                    ///< lines only
-  std::int64_t line = 0;              ///< line or feature in the file, from 1
-  std::int64_t to_line = 0;           ///< of the target, if it is from another line or feature
-  std::string bad{};                  ///< why the row has no places, with its line; empty: it has
-  std::vector<TablePlace> between{};  ///< vertices between the ends of a line, if read
+  TablePlace to{};                               ///< lines only
+  std::int64_t line = 0;                         ///< line or feature in the file, from 1
+  std::int64_t to_line = 0;                      ///< of the target, if it is from another line or feature
+  std::string bad{};                             ///< why the row has no places, with its line; empty: it has
+  std::vector<TablePlace> between{};             ///< vertices between the ends of a line, if read
+  std::vector<std::vector<TablePlace>> rings{};  ///< of a polygon: closed, of even-odd inside
 };
 
 struct PlaceTable {
@@ -45,7 +47,8 @@ struct PlaceTable {
   std::string where(std::size_t row, bool target = false) const;
 };
 
-enum class PlaceKind : std::uint8_t { points, lines };
+/// Geometries to read: points, lines, or lines and polygons. Tables of text have no polygons.
+enum class PlaceKind : std::uint8_t { points, lines, paths };
 
 /// Returns the lines between all pairs of the points, each pair once. The other columns are `from` and `to`, the
 /// numbers of the points, from 1, and the points' columns, with the suffixes _from and _to. Throws Error for fewer than
