@@ -73,4 +73,20 @@ class BlockMaxima;
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
                           const SightCurvature& curvature = {}, const BlockMaxima* maxima = nullptr);
 
+/// Returns the radius of the first Fresnel zone in metres, `from` and `to` metres from the ends of a path: there, a
+/// detour over the edge of the zone is half a wavelength longer (ITU-R P.526). All in metres, `from` + `to` > 0.
+double fresnel_radius(double wavelength, double from, double to);
+
+/// Result of fresnel_clearance().
+struct FresnelClearance {
+  /// Height of the line above the ground over the radius of the first Fresnel zone: 1 if all of the zone is clear, 0 if
+  /// the line grazes, negative if it is blocked. Infinity without crossings.
+  double share = std::numeric_limits<double>::infinity();
+  double along = 0;  ///< position of this share, 0..1 along the line
+};
+
+/// Returns the least share over all crossings. Heights are vertical and distances horizontal. `wavelength` in metres,
+/// > 0.
+FresnelClearance fresnel_clearance(const SightLine& line, double wavelength);
+
 }  // namespace scarp

@@ -9,8 +9,8 @@
 namespace scarp {
 
 void validate(const SightCurvature& curvature) {
-  require_setting("curvature", curvature.coefficient >= 0 && curvature.coefficient <= 1, "the coefficient",
-                  curvature.coefficient, "0..1");
+  require_setting("curvature", curvature.coefficient >= 0 && curvature.coefficient <= 10, "the coefficient",
+                  curvature.coefficient, "0..10");
   require_setting("curvature", curvature.diameter > 0 && std::isfinite(curvature.diameter), "the diameter",
                   curvature.diameter, "> 0");
 }

@@ -57,7 +57,9 @@ enum class HeightDatum : std::uint8_t { ground, sea };
 
 /// Curvature of the Earth and refraction of light.
 struct SightCurvature {
-  double coefficient = 6.0 / 7;    ///< 1 - refraction coefficient, 0..1; 0: flat Earth; 6/7: visible light
+  /// 1 - refraction coefficient, 0..10; 0: flat Earth; 6/7: visible light; 1/k for an effective Earth radius of k times
+  /// the true one
+  double coefficient = 6.0 / 7;
   double diameter = 2 * 6378137.;  ///< diameter of the body in metres, > 0
   /// Metres by which a point at this squared distance (m^2) appears lower.
   double per_square_metre() const { return coefficient / diameter; }

@@ -15,7 +15,8 @@ constexpr double kText = 13;      // pixels
 constexpr double kMargin = 0.06;  // fraction of the height range, above and below
 constexpr double kLeast = 1;      // metres: height range of flat profiles
 
-constexpr PlotColour kSeen{0.10, 0.55, 0.20}, kHidden{0.62, 0.20, 0.16}, kSight{0.10, 0.25, 0.65};
+constexpr PlotColour kSeen{0.10, 0.55, 0.20}, kHidden{0.62, 0.20, 0.16}, kSight{0.10, 0.25, 0.65},
+    kZone{0.68, 0.72, 0.85};
 
 class Drawing {
  public:
@@ -24,6 +25,7 @@ class Drawing {
     for (const ProfileFigurePoint& p : figure.points)
       for (const double z : {p.ground, p.sight})
         if (std::isfinite(z)) low = std::min(low, z), high = std::max(high, z);
+    for (const ProfileFigureZone& p : figure.zone) low = std::min(low, p.low), high = std::max(high, p.high);
     const double margin = std::max(kMargin * (high - low), kLeast / 2);
     const double line = pen_.line_height();
     plot_.box = {5 * kText, 2.6 * line, figure.width - 6.5 * kText, figure.height - 7.6 * line};
@@ -34,6 +36,7 @@ class Drawing {
   void draw() const {
     plot_.axes(pen_, true);
     ground();
+    if (!figure_.zone.empty()) zone();
     sight();
     pen_.frame(plot_.box, 1);
     pen_.write(plot_.box.x, pen_.line_height(), figure_.title);
@@ -75,6 +78,20 @@ class Drawing {
       cairo_line_to(cr_, x(b.distance), y(b.ground));
       cairo_stroke(cr_);
     }
+  }
+
+  // Draws the first Fresnel zone, over the ground that it touches.
+  void zone() const {
+    const auto& points = figure_.zone;
+    cairo_new_path(cr_);
+    for (const ProfileFigureZone& p : points) cairo_line_to(cr_, x(p.distance), y(p.high));
+    for (auto p = points.rbegin(); p != points.rend(); ++p) cairo_line_to(cr_, x(p->distance), y(p->low));
+    cairo_close_path(cr_);
+    colour({kSight.r, kSight.g, kSight.b, 0.18});
+    cairo_fill_preserve(cr_);
+    colour(kSight);
+    cairo_set_line_width(cr_, 0.8);
+    cairo_stroke(cr_);
   }
 
   void sight() const {
@@ -121,6 +138,7 @@ class Drawing {
     entry(kHidden, "ground out of view", false);
     entry(kSight, figure_.blocked ? "line of sight, blocked" : "line of sight", false);
     if (figure_.blocked) entry(kHidden, "first obstruction", true);
+    if (!figure_.zone.empty()) entry(kZone, "first Fresnel zone", false);
   }
 
   cairo_t* cr_;

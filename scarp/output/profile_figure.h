@@ -18,8 +18,15 @@ struct ProfileFigurePoint {
   bool after_hole = false;  ///< whether there is a hole between this point and the previous one
 };
 
+/// The first Fresnel zone at one point along the profile.
+struct ProfileFigureZone {
+  double distance = 0;       ///< metres
+  double low = 0, high = 0;  ///< metres above sea level
+};
+
 struct ProfileFigure {
   std::vector<ProfileFigurePoint> points;  ///< at least 2, in order of distance
+  std::vector<ProfileFigureZone> zone{};   ///< in order of distance; empty: none
   std::string title{};
   std::string remark{};  ///< below the title: method, curvature
   bool blocked = false;  ///< the line of sight is blocked at `block`

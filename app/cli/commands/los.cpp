@@ -41,6 +41,9 @@ constexpr const char* kOutput = R"(Output, one row or line per line of sight:
   block_x,y     position of the first blocking ground, in --coords
   block_height  height of that ground above sea, metres
   block_at      its distance from the observer
+  fresnel       with --frequency: least height of the line above the ground over the radius of the
+                first Fresnel zone: 1 if the zone is clear, 0.6 is enough for most links
+  fresnel_at    distance of that point from the observer
 GeoJSON has longitude and latitude. With --parts each blocked line is two
 features, `visible` up to the obstruction and `blocked` beyond it.)";
 
@@ -48,27 +51,29 @@ struct LosOptions : MapOptions {
   SightPlaces places;
   SightHeights heights;
   bool parts = false;
+  std::optional<double> frequency;  // megahertz
 };
 
 struct Answer {
   SightEnds ends;
   LineOfSight line;
+  FresnelClearance fresnel{};
 };
 
 std::string csv_of(const MapInput& input, const PlaceTable& table, const RowStatus* status,
-                   const std::vector<Answer>& answers) {
+                   const std::vector<Answer>& answers, bool fresnel) {
   std::string out;
   for (const std::string& name : table.carried.names) append_csv_text(out, name), out += ',';
   out +=
-      fmt::format("line,{}visible,distance,eye,target,clearance,clearance_at,block_x,block_y,block_height,block_at\n",
-                  status ? "status," : "");
+      fmt::format("line,{}visible,distance,eye,target,clearance,clearance_at,block_x,block_y,block_height,block_at{}\n",
+                  status ? "status," : "", fresnel ? ",fresnel,fresnel_at" : "");
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t k = 0; k < table.carried.names.size(); ++k)
       append_csv_text(out, table.carried.at(i, k)), out += ',';
     out += fmt::format("{},", i + 1);
     if (status) out += fmt::format("{},", status->of(i));
     if (status && !status->good(i)) {
-      out += ",,,,,,,,,\n";
+      out += fresnel ? ",,,,,,,,,,,\n" : ",,,,,,,,,\n";
       continue;
     }
     const LineOfSight& line = answers[i].line;
@@ -78,23 +83,27 @@ std::string csv_of(const MapInput& input, const PlaceTable& table, const RowStat
                : ",";
     if (const auto& block = line.obstruction) {
       const dvec2 point = point_along(answers[i].ends, block->along), at = input.place_of(point.x, point.y);
-      out += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g}\n", at.x, at.y, block->height, block->along * line.distance);
+      out += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g}", at.x, at.y, block->height, block->along * line.distance);
     } else {
-      out += ",,,,\n";
+      out += ",,,,";
     }
+    const FresnelClearance& zone = answers[i].fresnel;
+    if (fresnel)
+      out += std::isfinite(zone.share) ? fmt::format(",{:.10g},{:.10g}", zone.share, zone.along * line.distance) : ",,";
+    out += '\n';
   }
   return out;
 }
 
 std::string geojson_of(const MapInput& input, const PlaceTable& table, const RowStatus* status,
-                       const std::vector<Answer>& answers, bool parts) {
+                       const std::vector<Answer>& answers, bool parts, bool fresnel) {
   const auto point = [&](double col, double row, double height) {
     const dvec2 at = input.lonlat_of(col, row).value_or(input.place_of(col, row));
     return Json{at.x, at.y, height};
   };
   Json features = Json::array();
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const auto& [ends, line] = answers[i];
+    const auto& [ends, line, zone] = answers[i];
     Json properties;
     for (std::size_t k = 0; k < table.carried.names.size(); ++k)
       properties[table.carried.names[k]] = table.carried.at(i, k);
@@ -109,6 +118,7 @@ std::string geojson_of(const MapInput& input, const PlaceTable& table, const Row
     properties["eye"] = line.eye;
     properties["target"] = line.target;
     properties["clearance"] = std::isfinite(line.clearance) ? Json(line.clearance) : Json();
+    if (fresnel) properties["fresnel"] = std::isfinite(zone.share) ? Json(zone.share) : Json();
     const Json from = point(ends.from.col, ends.from.row, line.eye), to = point(ends.to.col, ends.to.row, line.target);
     const auto add = [&](const Json& a, const Json& b, const Json& all) {
       features.push_back(
@@ -146,9 +156,10 @@ bool is_json(const std::string& output) {
 // Tests lines over the part of the raster that was read.
 class Tester {
  public:
-  // `many`: whether the lines are so many that structures over the whole part pay off.
-  Tester(const MapInput& input, const PlaceTable& table, bool many)
-      : input_(input), table_(table), bilinear_(input.bilinear_ground(input.field())) {
+  // `many`: whether the lines are so many that structures over the whole part pay off. `frequency`: of the Fresnel zone,
+  // in megahertz.
+  Tester(const MapInput& input, const PlaceTable& table, bool many, std::optional<double> frequency)
+      : input_(input), table_(table), frequency_(frequency), bilinear_(input.bilinear_ground(input.field())) {
     if (many && !bilinear_) maxima_.emplace(input.field());
   }
 
@@ -167,6 +178,9 @@ class Tester {
     named(i, [&] {
       if (!bilinear_) {
         answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr);
+        if (frequency_)
+          answer.fresnel =
+              fresnel_clearance(SightLine(field, from, to, input_.curvature()), wavelength_of(*frequency_));
       } else {
         answer.line = BilinearGround(field, *bilinear_).line_of_sight(from, to);
       }
@@ -185,6 +199,7 @@ class Tester {
 
   const MapInput& input_;
   const PlaceTable& table_;
+  std::optional<double> frequency_;
   std::optional<BilinearGround> bilinear_;
   std::optional<BlockMaxima> maxima_;
 };
@@ -195,19 +210,21 @@ dvec2 cells_of(MapInput& input, const SightEnds& ends) {
 
 // Tests lines one after the other. `parts`: what each of them depends on.
 void test_one_by_one(MapInput& input, const PlaceTable& table, std::span<const std::size_t> lines, RowStatus& status,
-                     std::vector<Answer>& answers, std::span<const RasterWindow> parts) {
+                     std::vector<Answer>& answers, std::span<const RasterWindow> parts,
+                     std::optional<double> frequency) {
   const Progress progress = terminal_progress("los");
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const std::size_t i = lines[k];
     input.read(parts[k], {});
-    const Tester tester(input, table, false);
+    const Tester tester(input, table, false, frequency);
     status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
     status.attempt(i, RowStatus::kInvalid, [&] { tester.test(i, cells_of(input, answers[i].ends), answers[i]); });
     if (!progress(static_cast<double>(k + 1) / static_cast<double>(lines.size()))) throw Interrupted();
   }
 }
 
-void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std::vector<Answer>& answers) {
+void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std::vector<Answer>& answers,
+                std::optional<double> frequency) {
   std::vector<std::size_t> lines;
   std::vector<RasterWindow> parts;
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -216,8 +233,8 @@ void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std
     parts.push_back(part_of_line(input, answers[i].ends.from, answers[i].ends.to));
   }
   if (parts.empty()) return;
-  if (!read_together(input, parts)) return test_one_by_one(input, table, lines, status, answers, parts);
-  const Tester tester(input, table, true);
+  if (!read_together(input, parts)) return test_one_by_one(input, table, lines, status, answers, parts, frequency);
+  const Tester tester(input, table, true, frequency);
   std::vector<dvec2> cells(answers.size());
   for (const std::size_t i : lines) {
     status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
@@ -256,10 +273,11 @@ void run(LosOptions options, const Command& command) {
     status.attempt(i, RowStatus::kOutside, [&] { answers[i].ends = sight_ends(input, table, i, options.heights); });
   if (options.surface == "bilinear" && input.curvature().coefficient != 0)
     throw Error("--surface bilinear: its rays are straight (add --cc 0)");
-  test_lines(input, table, status, answers);
+  test_lines(input, table, status, answers, options.frequency);
   if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
-  const std::string text = is_json(options.output) ? geojson_of(input, table, shown, answers, options.parts)
-                                                   : csv_of(input, table, shown, answers);
+  const std::string text = is_json(options.output)
+                               ? geojson_of(input, table, shown, answers, options.parts, options.frequency.has_value())
+                               : csv_of(input, table, shown, answers, options.frequency.has_value());
   if (options.output.empty()) {
     fmt::print("{}", text);
   } else {
@@ -287,12 +305,14 @@ void add_los(Program& program) {
                          .rules = {needs("a .geojson output", [&o] { return is_json(o.output); })}});
   add_sight_heights(command, o.heights);
   add_surface_option(command, o.surface);
+  add_frequency_option(command, o.frequency, {needs("--surface crossings", [&o] { return o.surface == "crossings"; })});
   add_curvature_option(command, o.curvature);
   add_map_coordinates_option(command, o.coordinates);
   add_map_options(command, o);
   command.footer(kOutput);
   command.example("scarp los dem.tif --from 692000,5143000,2 --to 698500,5149000,10");
   command.example("scarp los dem.tif --lines links.csv --parts -o links.geojson");
+  command.example("scarp los dem.tif --lines links.csv --frequency 5800 --k-factor 4/3");
   command.example("scarp los dem.tif --lines towers.csv --pairs --observer-height 20 -o links.csv");
   command.runs([options, &command] {
     options->typed = command.typed_values();

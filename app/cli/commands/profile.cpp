@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,8 @@ constexpr const char* kColumns = R"(CSV, a row for each end and each crossing wi
   drop      metres by which the ground appears lower (curvature and refraction)
   sight     height of the line of sight above sea, metres
   visible   1 if the observer sees the ground there, else 0
+  zone      with --frequency: radius of the first Fresnel zone there, metres
+  fresnel   height of the line of sight above the ground over this radius; not at the ends
 With --path, a row for each station: path (from 1), distance, x, y, ground, and with --skip-bad
 status.)";
 
@@ -44,21 +48,53 @@ struct ProfileOptions : MapOptions {
   SightHeights heights;
   ProfileMarchOptions march;
   ProfilePath path;
+  std::optional<double> frequency;  // megahertz
 };
 
 constexpr int kWidth = 1200, kHeight = 480;  // of figures
 
-std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vector<ProfilePoint>& points) {
-  std::string out = "distance,x,y,ground,drop,sight,visible\n";
+// The radius of the first Fresnel zone; 0 without a frequency, and at the ends.
+double zone_at(const ProfilePoint& point, double length, std::optional<double> frequency) {
+  const bool within = point.distance > 0 && point.distance < length;
+  return frequency && within ? fresnel_radius(wavelength_of(*frequency), point.distance, length - point.distance) : 0;
+}
+
+std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vector<ProfilePoint>& points,
+                   std::optional<double> frequency) {
+  std::string out = fmt::format("distance,x,y,ground,drop,sight,visible{}\n", frequency ? ",zone,fresnel" : "");
   for (const ProfilePoint& p : points) {
     const dvec2 point = point_along(ends, p.along), at = input.place_of(point.x, point.y);
-    out += fmt::format("{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:d}\n", p.distance, at.x, at.y,
+    out += fmt::format("{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:d}", p.distance, at.x, at.y,
                        std::isfinite(p.ground) ? fmt::format("{:.10g}", p.ground) : "", p.drop, p.sight, p.visible);
+    if (const double radius = zone_at(p, points.back().distance, frequency); frequency)
+      out += fmt::format(
+          ",{:.10g},{}", radius,
+          radius > 0 && std::isfinite(p.ground) ? fmt::format("{:.10g}", (p.sight - p.ground) / radius) : "");
+    out += '\n';
   }
   return out;
 }
 
 #ifdef SCARP_CAIRO
+// The first Fresnel zone, with points so close that it looks round.
+std::vector<ProfileFigureZone> zone_of(const std::vector<ProfilePoint>& points, double wavelength) {
+  constexpr int kZonePoints = 400;
+  const double length = points.back().distance;
+  std::vector<ProfileFigureZone> zone;
+  std::size_t next = 1;
+  for (int i = 0; i <= kZonePoints; ++i) {
+    // Close together at the ends, where the radius changes fast.
+    const double distance = length * (1 - std::cos(std::numbers::pi * i / kZonePoints)) / 2;
+    while (next + 1 < points.size() && points[next].distance < distance) ++next;
+    const ProfilePoint &a = points[next - 1], &b = points[next];
+    const double apart = b.distance - a.distance;
+    const double sight = apart > 0 ? std::lerp(a.sight, b.sight, (distance - a.distance) / apart) : b.sight;
+    const double radius = fresnel_radius(wavelength, distance, length - distance);
+    zone.push_back({distance, sight - radius, sight + radius});
+  }
+  return zone;
+}
+
 void draw(const MapInput& input, const ProfileOptions& options, const SightEnds& ends,
           const std::vector<ProfilePoint>& points, const LineOfSight& sight) {
   ProfileFigure figure;
@@ -66,6 +102,7 @@ void draw(const MapInput& input, const ProfileOptions& options, const SightEnds&
   figure.width = width, figure.height = height;
   for (const ProfilePoint& p : points)
     figure.points.push_back({p.distance, p.ground, p.sight, p.visible, p.after_hole});
+  if (options.frequency) figure.zone = zone_of(points, wavelength_of(*options.frequency));
   const auto place = [&](double along) {
     const dvec2 point = point_along(ends, along);
     return input.place_of(point.x, point.y);
@@ -155,9 +192,9 @@ void run(ProfileOptions options, const Command& command) {
     draw(input, options, ends.ends, points, sight);
 #endif
   } else if (options.output.empty()) {
-    fmt::print("{}", csv_of(input, ends.ends, points));
+    fmt::print("{}", csv_of(input, ends.ends, points, options.frequency));
   } else {
-    write_whole_file(options.output, csv_of(input, ends.ends, points));
+    write_whole_file(options.output, csv_of(input, ends.ends, points, options.frequency));
   }
   print_notes(input.notes);
   if (!options.output.empty())
@@ -179,11 +216,15 @@ void add_profile(Program& program) {
   add_plot_size_option(command, o.size, "1200x480; marches: as high as their panels", needs_figure(o.output));
   add_profile_march_options(command, o.march, o.output);
   add_sight_heights(command, o.heights);
+  add_frequency_option(command, o.frequency, {}, {"--path", "--march", "--ray"});
   add_curvature_option(command, o.curvature);
   add_map_coordinates_option(command, o.coordinates);
   add_map_options(command, o);
   command.footer(kColumns);
   command.example("scarp profile dem.tif --from 692000,5143000,400 --to 692900,5143500 --march max-mip -o ray.svg");
+  command.example(
+      "scarp profile dem.tif --from 692000,5143000,20 --to 698500,5149000,10 --frequency 900 --k-factor 4/3 -o "
+      "link.svg");
   command.example("scarp profile dem.tif --path road.gpkg --spacing 25 -o road.csv");
   command.example("scarp profile dem.tif --from 692000,5143000 --to 698500,5149000,10 -o profile.svg");
   command.runs([options, &command] {

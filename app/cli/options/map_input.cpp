@@ -13,6 +13,7 @@
 #include "app/cli/options/raster_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/progress.h"
+#include "app/options/numbers.h"
 #include "scarp/base/ellipsoid.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_raster.h"
@@ -23,6 +24,15 @@ namespace {
 
 // Grid north is a difference over this length on the ground, as in source/raster/ground_scale.h.
 constexpr double kNorthStep_m = 1000;
+
+// A number or a fraction.
+double k_factor_from(const std::string& text) {
+  constexpr std::string_view kForm = "a number or a fraction of at least 0.1, for example 4/3";
+  const auto n = numbers_from(text, '/', 1, 2, "--k-factor", kForm);
+  const double factor = n.size() > 1 ? n[0] / n[1] : n[0];
+  if (!(factor >= 0.1 && std::isfinite(factor))) throw Error(fmt::format("--k-factor '{}': expected {}", text, kForm));
+  return factor;
+}
 
 }  // namespace
 
@@ -52,6 +62,14 @@ void add_curvature_option(Command& command, std::optional<double>& coefficient) 
                              .note = "0: flat; 1: curvature without refraction",
                              .fallback = "6/7 on Earth, 1 on other bodies",
                              .common = true});
+  command.add([&coefficient](const std::string& text) { coefficient = 1 / k_factor_from(text); },
+              {.names = "--k-factor",
+               .value = "K",
+               .help = "effective Earth radius over the true one: --cc is 1/K",
+               .note = "4/3: radio in a standard atmosphere",
+               .fallback = "that of --cc",
+               .common = true,
+               .excludes = {"--cc"}});
 }
 
 void add_surface_option(Command& command, std::string& surface) {

@@ -45,7 +45,7 @@ struct MapOptions {
 void add_map_options(Command& command, MapOptions& options);
 /// Declares --coords, for subcommands with places.
 void add_map_coordinates_option(Command& command, std::string& coordinates, std::vector<Rule> rules = {});
-/// Declares --cc.
+/// Declares --cc, and --k-factor, which sets it.
 void add_curvature_option(Command& command, std::optional<double>& coefficient);
 
 /// Declares --surface.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "app/options/numbers.h"
 #include "scarp/base/error.h"
 
@@ -29,6 +31,19 @@ void add_sight_heights(Command& command, SightHeights& heights) {
                                .choices = {"ground", "sea"},
                                .closed = true,
                                .common = true});
+}
+
+void add_frequency_option(Command& command, std::optional<double>& megahertz, std::vector<Rule> rules,
+                          std::vector<std::string> excludes) {
+  command.add(&megahertz, {.names = "--frequency",
+                           .value = "MHZ",
+                           .help = "radio frequency for the clearance of the first Fresnel zone",
+                           .unit = "megahertz",
+                           .range = {1, 1e6},
+                           .fallback = "none",
+                           .common = true,
+                           .rules = std::move(rules),
+                           .excludes = std::move(excludes)});
 }
 
 void add_sight_places(Command& command, SightPlaces& places) {

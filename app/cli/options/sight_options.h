@@ -21,6 +21,12 @@ struct SightHeights {
 /// Declares --observer-height, --target-height and --heights.
 void add_sight_heights(Command& command, SightHeights& heights);
 
+/// Declares --frequency, in megahertz.
+void add_frequency_option(Command& command, std::optional<double>& megahertz, std::vector<Rule> rules = {},
+                          std::vector<std::string> excludes = {});
+/// Wavelength in metres of a frequency in megahertz.
+inline double wavelength_of(double megahertz) { return 299.792458 / megahertz; }
+
 /// Parses X,Y or X,Y,HEIGHT. Throws Error "OPTION 'TEXT': expected ...".
 TablePlace typed_height_place(const std::string& text, std::string_view option);
 
