@@ -33,7 +33,7 @@ double height_of(const SightGround& heights, const SightEnd& end, std::string_vi
     throw Error(fmt::format("{}: column {:.10g}, row {:.10g} is on nodata (give its height above sea)", name, end.col,
                             end.row));
   const double height = end.datum == HeightDatum::sea ? end.height : *found + end.height;
-  if (found && height < *found)
+  if (found && height < *found && !end.under_surface)
     throw Error(fmt::format("{}: height {:.10g} m is below the ground at {:.10g} m", name, height, *found));
   return height;
 }

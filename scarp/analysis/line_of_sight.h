@@ -17,6 +17,7 @@ struct SightEnd {
   double col = 0, row = 0;                  ///< rounded to 1/kSubcells of a cell
   double height = 0;                        ///< metres; >= 0 above ground
   HeightDatum datum = HeightDatum::ground;  ///< reference of `height`
+  bool under_surface = false;               ///< may be below the field: under trees
 };
 
 /// Returns the column or row of an end as SightLine rounds it.
@@ -26,7 +27,7 @@ double rounded_end(double position);
 class SightLine {
  public:
   /// Throws Error for an end outside the field, an end on a hole whose height is above ground, a height that is below
-  /// the ground or not finite, and a curvature out of range.
+  /// the ground (unless `under_surface`) or not finite, and a curvature out of range.
   SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to, const SightCurvature& curvature);
 
   const SightGround& ground() const { return ground_; }

@@ -26,7 +26,7 @@
 // - The eye is at ground + observer height, or at a height above sea. The target is at lowered ground + target height.
 //   Heights above ground are >= 0.
 // - It is an error if an end is outside the field or on a hole (unless its height is above sea), or if the eye is below
-// the ground.
+//   the ground, unless it may be (`under_surface`): then the field is a surface above the ground on which ends stand.
 // - Distances are horizontal: sqrt(dx^2 + dy^2) of metres. Limits apply to targets only; ground at any distance blocks.
 #pragma once
 

@@ -49,7 +49,7 @@ Viewpoint::Viewpoint(const HeightField& field, Node observer, const ViewshedSett
     throw Error(fmt::format("viewshed: observer at column {}, row {} is on nodata (give its height above sea)",
                             observer.col, observer.row));
   eye_ = settings.observer_z ? *settings.observer_z : *height + settings.observer_height;
-  if (height && eye_ < *height)
+  if (height && eye_ < *height && !settings.under_surface)
     throw Error(fmt::format("viewshed: observer at {} m is below the ground at {} m", eye_, *height));
   limits_distance_ = settings.min_distance > 0 || std::isfinite(settings.max_distance);
   limits_azimuth_ = settings.first_azimuth > 0 || settings.last_azimuth < 2 * kPi;

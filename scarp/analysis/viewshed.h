@@ -35,6 +35,7 @@ struct ViewshedSettings {
   double last_azimuth = 2 * std::numbers::pi;                     ///< likewise; less than the first: through north
   double low_pitch = -std::numbers::pi / 2;                       ///< radians above horizontal, -pi/2..pi/2
   double high_pitch = std::numbers::pi / 2;                       ///< likewise, >= low_pitch
+  bool under_surface = false;                                     ///< the eye may be below the field: under trees
 };
 
 /// Throws Error if a setting is out of range.
@@ -44,7 +45,7 @@ void validate(const ViewshedSettings& settings);
 class Viewpoint {
  public:
   /// Throws Error for settings out of range, an observer outside the field or on a hole without `observer_z`, or an eye
-  /// below the ground.
+  /// below the ground, unless `under_surface`.
   Viewpoint(const HeightField& field, Node observer, const ViewshedSettings& settings);
 
   Node observer() const { return observer_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Clearance of the first Fresnel zone and k-factors, against crossings found one by one in long double.
 #include <fmt/format.h>
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -127,6 +128,30 @@ TEST_F(Fresnel, ProfilesHaveTheZoneAtEachPoint) {
   const Result figure = run(line + Names{"-o", scratch_.path("link.svg")});
   EXPECT_EQ(figure.status, 0) << figure.err;
 #endif
+}
+
+TEST_F(Fresnel, MapsHaveTheLargestShareOfAllObservers) {
+  const std::vector<Point> towers{{2, 3, 25}, {20, 17, 40}};
+  Names words{"viewshed", dem_, "--mode",          "fresnel", "--frequency", "5800",
+              "--cc",     "0",  "--target-height", "3",       "-o",          scratch_.path("share.tif")};
+  for (const Point& tower : towers) words = words + Names{"--observer", typed(tower)};
+  const Result result = run(words);
+  ASSERT_EQ(result.status, 0) << result.err;
+  GDALAllRegister();
+  const GDALDatasetUniquePtr raster(GDALDataset::Open(scratch_.path("share.tif").c_str(), GDAL_OF_RASTER));
+  ASSERT_TRUE(raster);
+  std::vector<float> pixels(kSide * kSide);
+  ASSERT_EQ(raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kSide, kSide, pixels.data(), kSide, kSide, GDT_Float32, 0,
+                                               0, nullptr),
+            CE_None);
+  for (int i = 0; i < kSide * kSide; ++i) {
+    Real expected = -std::numeric_limits<Real>::infinity();
+    for (const Point& tower : towers)
+      expected = std::max(expected, std::min(1.0L, least_share(tower, {i % kSide, i / kSide, 3}, 0, 5800)));
+    // Floats.
+    EXPECT_NEAR(pixels[static_cast<std::size_t>(i)], static_cast<double>(expected),
+                1e-6 * std::max(1.0, std::abs(static_cast<double>(expected))));
+  }
 }
 
 TEST_F(Fresnel, RejectsValuesOutOfRange) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/options/bare_ground.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/map_part.h"
@@ -52,6 +53,7 @@ struct LosOptions : MapOptions {
   SightHeights heights;
   bool parts = false;
   std::optional<double> frequency;  // megahertz
+  std::string bare_ground;
 };
 
 struct Answer {
@@ -157,15 +159,21 @@ bool is_json(const std::string& output) {
 class Tester {
  public:
   // `many`: whether the lines are so many that structures over the whole part pay off. `frequency`: of the Fresnel zone,
-  // in megahertz.
-  Tester(const MapInput& input, const PlaceTable& table, bool many, std::optional<double> frequency)
-      : input_(input), table_(table), frequency_(frequency), bilinear_(input.bilinear_ground(input.field())) {
+  // in megahertz. `bare`: nullptr if the raster itself is the ground.
+  Tester(const MapInput& input, const PlaceTable& table, bool many, std::optional<double> frequency,
+         const BareGround* bare)
+      : input_(input),
+        table_(table),
+        frequency_(frequency),
+        bare_(bare),
+        bilinear_(input.bilinear_ground(input.field())) {
     if (many && !bilinear_) maxima_.emplace(input.field());
   }
 
-  // Not thread-safe, because messages convert coordinates.
-  void require_ground_at(std::size_t i, const SightEnds& ends) const {
+  // Places the ends on the ground. Not thread-safe, because messages convert coordinates.
+  void stand(std::size_t i, SightEnds& ends) const {
     named(i, [&] {
+      if (bare_) ends = {bare_->stand_on(ends.from, "observer"), bare_->stand_on(ends.to, "target")};
       require_ground(input_, ends.from, "observer");
       require_ground(input_, ends.to, "target");
     });
@@ -200,6 +208,7 @@ class Tester {
   const MapInput& input_;
   const PlaceTable& table_;
   std::optional<double> frequency_;
+  const BareGround* bare_;
   std::optional<BilinearGround> bilinear_;
   std::optional<BlockMaxima> maxima_;
 };
@@ -210,21 +219,22 @@ dvec2 cells_of(MapInput& input, const SightEnds& ends) {
 
 // Tests lines one after the other. `parts`: what each of them depends on.
 void test_one_by_one(MapInput& input, const PlaceTable& table, std::span<const std::size_t> lines, RowStatus& status,
-                     std::vector<Answer>& answers, std::span<const RasterWindow> parts,
-                     std::optional<double> frequency) {
+                     std::vector<Answer>& answers, std::span<const RasterWindow> parts, std::optional<double> frequency,
+                     BareGround* bare) {
   const Progress progress = terminal_progress("los");
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const std::size_t i = lines[k];
     input.read(parts[k], {});
-    const Tester tester(input, table, false, frequency);
-    status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
+    if (bare) bare->follow(input);
+    const Tester tester(input, table, false, frequency, bare);
+    status.attempt(i, RowStatus::kNodata, [&] { tester.stand(i, answers[i].ends); });
     status.attempt(i, RowStatus::kInvalid, [&] { tester.test(i, cells_of(input, answers[i].ends), answers[i]); });
     if (!progress(static_cast<double>(k + 1) / static_cast<double>(lines.size()))) throw Interrupted();
   }
 }
 
 void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std::vector<Answer>& answers,
-                std::optional<double> frequency) {
+                std::optional<double> frequency, BareGround* bare) {
   std::vector<std::size_t> lines;
   std::vector<RasterWindow> parts;
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -233,11 +243,13 @@ void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std
     parts.push_back(part_of_line(input, answers[i].ends.from, answers[i].ends.to));
   }
   if (parts.empty()) return;
-  if (!read_together(input, parts)) return test_one_by_one(input, table, lines, status, answers, parts, frequency);
-  const Tester tester(input, table, true, frequency);
+  if (!read_together(input, parts)) 
+    return test_one_by_one(input, table, lines, status, answers, parts, frequency, bare);
+  if (bare) bare->follow(input);
+  const Tester tester(input, table, true, frequency, bare);
   std::vector<dvec2> cells(answers.size());
   for (const std::size_t i : lines) {
-    status.attempt(i, RowStatus::kNodata, [&] { tester.require_ground_at(i, answers[i].ends); });
+    status.attempt(i, RowStatus::kNodata, [&] { tester.stand(i, answers[i].ends); });
     status.attempt(i, RowStatus::kInvalid, [&] { cells[i] = cells_of(input, answers[i].ends); });
   }
   constexpr std::int64_t kGrain = 64;
@@ -263,6 +275,8 @@ void run(LosOptions options, const Command& command) {
   if (options.places.pairs) options.heights.target = options.heights.observer;
   MapInput input(options);
   keep_inputs(options.output, input.files());
+  std::optional<BareGround> bare;
+  if (!options.bare_ground.empty()) bare.emplace(options.bare_ground, options, input);
 
   input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());
   const bool skips = options.places.lines.skip_bad;
@@ -273,7 +287,7 @@ void run(LosOptions options, const Command& command) {
     status.attempt(i, RowStatus::kOutside, [&] { answers[i].ends = sight_ends(input, table, i, options.heights); });
   if (options.surface == "bilinear" && input.curvature().coefficient != 0)
     throw Error("--surface bilinear: its rays are straight (add --cc 0)");
-  test_lines(input, table, status, answers, options.frequency);
+  test_lines(input, table, status, answers, options.frequency, bare ? &*bare : nullptr);
   if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
   const std::string text = is_json(options.output)
                                ? geojson_of(input, table, shown, answers, options.parts, options.frequency.has_value())
@@ -283,6 +297,7 @@ void run(LosOptions options, const Command& command) {
   } else {
     write_whole_file(options.output, text);
   }
+  if (bare) bare->move_notes(input);
   print_notes(input.notes);
   std::size_t visible = 0;
   for (const Answer& one : answers) visible += one.line.visible;
@@ -304,6 +319,7 @@ void add_los(Program& program) {
                          .common = true,
                          .rules = {needs("a .geojson output", [&o] { return is_json(o.output); })}});
   add_sight_heights(command, o.heights);
+  add_bare_ground_option(command, o.bare_ground);
   add_surface_option(command, o.surface);
   add_frequency_option(command, o.frequency, {needs("--surface crossings", [&o] { return o.surface == "crossings"; })});
   add_curvature_option(command, o.curvature);

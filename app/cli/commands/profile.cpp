@@ -14,6 +14,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/commands/profile_march.h"
 #include "app/cli/commands/profile_path.h"
+#include "app/cli/options/bare_ground.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/map_part.h"
@@ -40,6 +41,7 @@ constexpr const char* kColumns = R"(CSV, a row for each end and each crossing wi
   visible   1 if the observer sees the ground there, else 0
   zone      with --frequency: radius of the first Fresnel zone there, metres
   fresnel   height of the line of sight above the ground over this radius; not at the ends
+  bare      with --ground: height of the bare ground above sea, metres
 With --path, a row for each station: path (from 1), distance, x, y, ground, and with --skip-bad
 status.)";
 
@@ -49,6 +51,7 @@ struct ProfileOptions : MapOptions {
   ProfileMarchOptions march;
   ProfilePath path;
   std::optional<double> frequency;  // megahertz
+  std::string bare_ground;
 };
 
 constexpr int kWidth = 1200, kHeight = 480;  // of figures
@@ -60,8 +63,9 @@ double zone_at(const ProfilePoint& point, double length, std::optional<double> f
 }
 
 std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vector<ProfilePoint>& points,
-                   std::optional<double> frequency) {
-  std::string out = fmt::format("distance,x,y,ground,drop,sight,visible{}\n", frequency ? ",zone,fresnel" : "");
+                   std::optional<double> frequency, BareGround* bare) {
+  std::string out = fmt::format("distance,x,y,ground,drop,sight,visible{}{}\n", frequency ? ",zone,fresnel" : "",
+                                bare ? ",bare" : "");
   for (const ProfilePoint& p : points) {
     const dvec2 point = point_along(ends, p.along), at = input.place_of(point.x, point.y);
     out += fmt::format("{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:d}", p.distance, at.x, at.y,
@@ -70,6 +74,10 @@ std::string csv_of(const MapInput& input, const SightEnds& ends, const std::vect
       out += fmt::format(
           ",{:.10g},{}", radius,
           radius > 0 && std::isfinite(p.ground) ? fmt::format("{:.10g}", (p.sight - p.ground) / radius) : "");
+    if (bare) {
+      const auto height = bare->height_at(point);
+      out += height ? fmt::format(",{:.10g}", *height) : ",";
+    }
     out += '\n';
   }
   return out;
@@ -128,11 +136,16 @@ struct ProfileLine {
 };
 
 // Reads the part of the raster that the line needs, or all of it: steps of marches depend on the whole pyramid.
-ProfileLine line_of(MapInput& input, const PlaceTable& table, const SightHeights& heights, bool all) {
-  const SightEnds ends = sight_ends(input, table, 0, heights);
+// `bare`: nullptr if the raster itself is the ground.
+ProfileLine line_of(MapInput& input, BareGround* bare, const PlaceTable& table, const SightHeights& heights, bool all) {
+  SightEnds ends = sight_ends(input, table, 0, heights);
   const auto& [from, to] = ends;
   input.read(all ? input.whole() : part_of_line(input, from, to), terminal_progress("read"));
   input.close();
+  if (bare) {
+    bare->follow(input);
+    ends = {bare->stand_on(from, "observer"), bare->stand_on(to, "target")};
+  }
   require_ground(input, from, "observer");
   require_ground(input, to, "target");
   return {ends,
@@ -146,7 +159,7 @@ void run_marches(const ProfileOptions& options, const PlaceTable& table) {
   keep_inputs(options.output, input.files());
   std::vector<std::string> lines;
   if (options.march.ray.empty()) {
-    const ProfileLine ends = line_of(input, table, options.heights, true);
+    const ProfileLine ends = line_of(input, nullptr, table, options.heights, true);
     const SightLine line(ends.field, ends.here.from, ends.here.to, {.coefficient = 0});
     const std::string title = fmt::format("ray from {} to {}: {:.6g} m to {:.6g} m above sea", options.from, options.to,
                                           line.eye(), line.target());
@@ -181,7 +194,9 @@ void run(ProfileOptions options, const Command& command) {
   if (!options.march.names.empty()) return run_marches(options, table);
   MapInput input(options);
   keep_inputs(options.output, input.files());
-  const ProfileLine ends = line_of(input, table, options.heights, false);
+  std::optional<BareGround> bare;
+  if (!options.bare_ground.empty()) bare.emplace(options.bare_ground, options, input);
+  const ProfileLine ends = line_of(input, bare ? &*bare : nullptr, table, options.heights, false);
   const HeightField& field = ends.field;
   const auto& [from, to] = ends.here;
   const SightLine line(field, from, to, input.curvature());
@@ -192,10 +207,11 @@ void run(ProfileOptions options, const Command& command) {
     draw(input, options, ends.ends, points, sight);
 #endif
   } else if (options.output.empty()) {
-    fmt::print("{}", csv_of(input, ends.ends, points, options.frequency));
+    fmt::print("{}", csv_of(input, ends.ends, points, options.frequency, bare ? &*bare : nullptr));
   } else {
-    write_whole_file(options.output, csv_of(input, ends.ends, points, options.frequency));
+    write_whole_file(options.output, csv_of(input, ends.ends, points, options.frequency, bare ? &*bare : nullptr));
   }
+  if (bare) bare->move_notes(input);
   print_notes(input.notes);
   if (!options.output.empty())
     fmt::print("{}: {} points over {:.6g} m, {}; {}\n", options.output, points.size(), line.distance(),
@@ -216,6 +232,7 @@ void add_profile(Program& program) {
   add_plot_size_option(command, o.size, "1200x480; marches: as high as their panels", needs_figure(o.output));
   add_profile_march_options(command, o.march, o.output);
   add_sight_heights(command, o.heights);
+  add_bare_ground_option(command, o.bare_ground, {"--path", "--march", "--ray"});
   add_frequency_option(command, o.frequency, {}, {"--path", "--march", "--ray"});
   add_curvature_option(command, o.curvature);
   add_map_coordinates_option(command, o.coordinates);

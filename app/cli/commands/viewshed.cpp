@@ -16,8 +16,10 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/commands/viewshed_bands.h"
 #include "app/cli/commands/viewshed_stations.h"
 #include "app/cli/commands/viewshed_summary.h"
+#include "app/cli/options/bare_ground.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_part.h"
 #include "app/cli/options/path_file.h"
@@ -38,7 +40,6 @@ namespace scarp::cli {
 namespace {
 
 constexpr int kNodata = 255;
-constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();  // pixels before nodata is written
 constexpr const char* kMethod =
     "exact lines of sight; ground linear at crossings of grid lines; grazing is visible (scarp viewshed)";
 
@@ -49,6 +50,9 @@ constexpr const char* kFooter = R"(Modes:
   ground   the same above ground: 0 where the ground itself is visible
   angle    degrees above the horizontal at which an observer sees the target, the largest of all
            observers that see it (r.viewshed of GRASS: add 90)
+  height   metres of a target of --target-height that are visible, summed over all observers
+  fresnel  share of the first Fresnel zone that is clear, at most 1, negative where the target is
+           hidden; the largest of all observers. One line per pixel: slow
 Pixels without a sample, or outside every observer's limits, are nodata; those of `angle` also where
 the target is hidden. Visible pixels must differ from all others; others may be equal.
 
@@ -72,6 +76,8 @@ struct ViewshedOptions : MapCommand {
   std::optional<double> spacing;  // metres; the file holds lines or polygons
   std::string mode = "visible", azimuth, pitch, summary, each;
   SightHeights heights;
+  std::string bare_ground;
+  std::optional<double> frequency;  // megahertz
   double min_distance = 0;
   std::optional<double> max_distance, nodata;
   int visible = 1, hidden = 0, out_of_range = -1;  // -1: nodata
@@ -87,13 +93,6 @@ struct Stand {
   std::string what;  // for messages
   std::size_t row;   // of the table of observers
   std::string name;  // "observer 3", or the name of the row
-};
-
-// An observer over the part of the raster that was read, with its own plane if the raster is in degrees.
-struct Observer {
-  Node node;
-  ViewshedSettings settings;
-  HeightField field;
 };
 
 PlaceTable observer_table(const ViewshedOptions& options) {
@@ -180,15 +179,20 @@ std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, co
   return stands;
 }
 
-std::vector<Observer> observers_of(MapInput& input, const std::vector<Stand>& stands) {
+// `bare`: nullptr if the raster itself is the ground.
+std::vector<Observer> observers_of(MapInput& input, BareGround* bare, const std::vector<Stand>& stands) {
   std::vector<Observer> observers;
+  const auto field = [](MapInput& from, const Stand& one) {
+    return from.field_at(one.node.col, one.node.row, one.reach);
+  };
+  if (bare) bare->follow(input);
   for (const Stand& one : stands)
-    observers.push_back(
-        {in_part(input, one.node), one.settings, input.field_at(one.node.col, one.node.row, one.reach)});
+    observers.push_back({in_part(input, one.node), one.settings, field(input, one),
+                         bare ? std::optional(field(bare->input(), one)) : std::nullopt});
   return observers;
 }
 
-// Removes stands without ground, or below it. The samples have been read.
+// Removes stands without ground, or below it. `input`: the model on which they stand; its samples have been read.
 void keep_usable(std::vector<Stand>& stands, MapInput& input, RowStatus& status) {
   const auto attempt = [&](const Stand& one, std::string_view bad, const auto& work) {
     return status.attempt(one.row, bad, [&] {
@@ -271,74 +275,9 @@ void set_area(MapRun& run, const ViewshedOptions& options, bool marks_range, con
   });
 }
 
-std::vector<Viewpoint> views_of(std::span<const Observer> observers) {
-  std::vector<Viewpoint> views;
-  for (const Observer& one : observers) views.emplace_back(one.field, one.node, one.settings);
-  return views;
-}
-
-// Numbers of targets within the limits.
-struct TargetCount {
-  double visible = 0, hidden = 0;
-
-  void add(std::span<const Seen> seen) {
-    visible += static_cast<double>(std::count(seen.begin(), seen.end(), Seen::visible));
-    hidden += static_cast<double>(std::count(seen.begin(), seen.end(), Seen::hidden));
-  }
-  std::string text() const {
-    const double all = visible + hidden;
-    return fmt::format("{:.3g} % visible", all > 0 ? 100 * visible / all : 0);
-  }
-};
-
-// The observers of a map, and of its summary.
-struct Watch {
-  std::span<const Observer> observers;
-  ViewshedSummary* summary;  // nullptr: none
-  std::size_t first;         // of the observers, in the summary
-
-  Watch one(std::size_t k) const { return {observers.subspan(k, 1), summary, first + k}; }
-};
-
-// The viewshed of the observer `k`, which the summary adds up.
-std::vector<Seen> codes_of(const Watch& watch, std::size_t k, const RowBand& rows, const Progress& progress) {
-  const Observer& one = watch.observers[k];
-  auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
-  if (watch.summary)
-    watch.summary->add(watch.first + k, Viewpoint(one.field, one.node, one.settings), codes, rows.first);
-  return codes;
-}
-
-// observer_count_rows(), one observer after the other if there is a summary.
-std::vector<std::uint16_t> counts_of(const Watch& watch, const RowBand& rows, const Progress& progress) {
-  if (!watch.summary) return observer_count_rows(views_of(watch.observers), rows, progress);
-  std::vector<std::uint16_t> counts;
-  const auto all = static_cast<double>(watch.observers.size());
-  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
-    const auto codes = codes_of(watch, k, rows, progress_part(progress, static_cast<double>(k), all));
-    if (counts.empty()) counts.assign(codes.size(), kCountOutOfRange);
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-      if (codes[i] == Seen::hole) counts[i] = kCountHole;
-      if (codes[i] != Seen::visible && codes[i] != Seen::hidden) continue;
-      if (counts[i] == kCountOutOfRange) counts[i] = 0;
-      counts[i] = static_cast<std::uint16_t>(counts[i] + (codes[i] == Seen::visible));
-    }
-  }
-  return counts;
-}
-
-// The best visibility of each node over all observers.
-std::vector<Seen> best_seen(const Watch& watch, const RowBand& rows, const Progress& progress) {
-  if (watch.observers.size() == 1) return codes_of(watch, 0, rows, progress);
-  const auto counts = counts_of(watch, rows, progress);
-  std::vector<Seen> best;
-  best.reserve(counts.size());
-  for (const std::uint16_t count : counts)
-    best.push_back(count == kCountHole         ? Seen::hole
-                   : count == kCountOutOfRange ? Seen::out_of_range
-                   : count > 0                 ? Seen::visible
-                                               : Seen::hidden);
-  return best;
+std::string share_text(const TargetCount& targets) {
+  const double all = targets.visible + targets.hidden;
+  return fmt::format("{:.3g} % visible", all > 0 ? 100 * targets.visible / all : 0);
 }
 
 ComputedBand visible_band(const Watch& watch, const PixelValues& values, const RowBand& rows, TargetCount& targets,
@@ -346,7 +285,7 @@ ComputedBand visible_band(const Watch& watch, const PixelValues& values, const R
   const int value_of[] = {values.hidden, values.visible, values.out_of_range, values.nodata};
   std::vector<std::uint8_t> pixels;
   if (rows.rows() > 0) {
-    const auto seen = best_seen(watch, rows, progress);
+    const auto seen = best_pixels(watch, rows, progress);
     pixels.reserve(seen.size());
     for (const Seen code : seen) pixels.push_back(static_cast<std::uint8_t>(value_of[static_cast<std::size_t>(code)]));
     targets.add(seen);
@@ -356,54 +295,9 @@ ComputedBand visible_band(const Watch& watch, const PixelValues& values, const R
 
 ComputedBand count_band(const Watch& watch, const RowBand& rows, const Progress& progress) {
   std::vector<std::uint16_t> counts;
-  if (rows.rows() > 0) counts = counts_of(watch, rows, progress);
+  if (rows.rows() > 0) counts = count_pixels(watch, rows, progress);
   std::replace(counts.begin(), counts.end(), kCountOutOfRange, kCountHole);
   return {"observers that see the pixel", "", std::move(counts), kCountHole};
-}
-
-// Returns NaN for pixels without a value.
-std::vector<float> least_pixels(std::span<const Observer> observers, HeightDatum datum, const RowBand& rows,
-                                const Progress& progress) {
-  std::vector<float> pixels;
-  if (rows.rows() == 0) return pixels;
-  const auto count = static_cast<double>(observers.size());
-  for (std::size_t k = 0; k < observers.size(); ++k) {
-    const Observer& one = observers[k];
-    const auto least = least_visible_rows(one.field, one.node, one.settings, rows,
-                                          progress_part(progress, static_cast<double>(k), count));
-    const Viewpoint view(one.field, one.node, one.settings);
-    if (pixels.empty()) pixels.assign(least.size(), kNothing);
-    const int cols = one.field.cols();
-    parallel_for(rows.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
-      for (auto i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
-        const Node node{static_cast<int>(i % cols), rows.first + static_cast<int>(i / cols)};
-        const float height = least_height(view.ground(), node, least[i], datum);
-        pixels[i] = std::fmin(pixels[i], height);  // replaces NaN
-      }
-    });
-  }
-  return pixels;
-}
-
-// The same for angles.
-std::vector<float> angle_pixels(const Watch& watch, const RowBand& rows, TargetCount& targets,
-                                const Progress& progress) {
-  std::vector<float> pixels;
-  std::vector<Seen> best;
-  if (rows.rows() == 0) return pixels;
-  const auto count = static_cast<double>(watch.observers.size());
-  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
-    const Observer& one = watch.observers[k];
-    const auto codes = codes_of(watch, k, rows, progress_part(progress, static_cast<double>(k), count));
-    const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
-    if (pixels.empty()) pixels.assign(angles.size(), kNothing), best.assign(codes.size(), Seen::out_of_range);
-    for (std::size_t i = 0; i < angles.size(); ++i) {
-      pixels[i] = std::fmax(pixels[i], angles[i]);  // replaces NaN
-      if (codes[i] == Seen::visible || best[i] == Seen::out_of_range) best[i] = codes[i];
-    }
-  }
-  targets.add(best);
-  return pixels;
 }
 
 // Throws Error if nodata is also a value of the map.
@@ -445,17 +339,23 @@ class BandMaker {
     if (options_.mode == "count") return count_band(watch, rows, progress);
     if (options_.mode == "angle")
       return checked_band("angle above horizontal", "degrees", angle_pixels(watch, rows, targets_, progress), nodata_);
-    // The sweep for heights finds no codes.
+    // The other modes find no viewsheds.
     for (std::size_t k = 0; watch.summary && rows.rows() > 0 && k < watch.observers.size(); ++k)
-      codes_of(watch, k, rows, {});
+      seen_pixels(watch, k, rows, {});
+    if (options_.mode == "height")
+      return checked_band("visible height of targets", "m", height_pixels(watch, rows, progress), nodata_);
+    if (options_.mode == "fresnel")
+      return checked_band("clear share of the first Fresnel zone", "",
+                          fresnel_pixels(watch, wavelength_of(*options_.frequency), rows, progress), nodata_);
     const bool dem = options_.mode == "dem";
     return checked_band(dem ? "least visible height above sea" : "least visible height above ground", "m",
-                        least_pixels(watch.observers, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress),
-                        nodata_);
+                        least_pixels(watch, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress), nodata_);
   }
 
   std::string text(std::size_t observers) const {
-    if (values_ || options_.mode == "angle") return targets_.text();
+    if (values_ || options_.mode == "angle") return share_text(targets_);
+    if (options_.mode == "height") return "visible heights of targets";
+    if (options_.mode == "fresnel") return "clear shares of Fresnel zones";
     return options_.mode == "count" ? fmt::format("{} observers", observers) : "least visible heights";
   }
   /// Numbers of text().
@@ -503,6 +403,8 @@ void run(ViewshedOptions options, const Command& command) {
   MapRun run(options, command, codes ? "Byte" : counts ? "UInt16" : "Float32");
   MapInput& input = run.input();
   if (!options.summary.empty()) keep_inputs(options.summary, input.files());
+  std::optional<BareGround> bare;
+  if (!options.bare_ground.empty()) bare.emplace(options.bare_ground, options, input);
   const PlaceTable places = observer_table(options);
   const bool skips = options.observers_file.skip_bad;
   const PlaceTable table = options.spacing ? stations_on(input, places, *options.spacing, skips) : places;
@@ -511,16 +413,22 @@ void run(ViewshedOptions options, const Command& command) {
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
   constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
   const double bands = options.each.empty() ? 1 : static_cast<double>(stands.size());
-  if (!run.begin(bands * (codes || counts ? 3 : 12), static_cast<double>(stands.size()) * kNode_s)) return;
-  keep_usable(stands, input, status);
+  constexpr double kCrossing_s = 6e-9;
+  const double node_s = options.mode == "fresnel" ? kCrossing_s * (input.cols() + input.rows()) : kNode_s;
+  if (!run.begin(bands * (codes || counts ? 3 : 12), static_cast<double>(stands.size()) * node_s)) return;
+  if (bare) bare->follow(input);
+  keep_usable(stands, bare ? bare->input() : input, status);
+  if (bare) bare->move_notes(input);
   Metadata metadata{{"MODE", options.mode},
                     {"OBSERVERS", places_text(stands)},
                     {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)}};
+  if (bare) metadata.emplace_back("GROUND", bare->path());
+  if (options.frequency) metadata.emplace_back("FREQUENCY", fmt::format("{:.10g} MHz", *options.frequency));
   for (auto& pair : input.curvature_metadata()) metadata.push_back(std::move(pair));
   BandMaker maker(options, values);
   ViewshedSummary summary(stands.size());
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
-    const std::vector<Observer> observers = observers_of(input, stands);
+    const std::vector<Observer> observers = observers_of(input, bare ? &*bare : nullptr, stands);
     const Watch all{observers, options.summary.empty() ? nullptr : &summary, 0};
     std::vector<ComputedBand> computed;
     if (options.each.empty()) return std::vector{maker.make(all, rows, progress)};
@@ -569,12 +477,18 @@ void add_viewshed(Program& program) {
                            .rules = {needs("--observers FILE", [&o] { return !o.observers_file.path.empty(); })}});
   add_output_option(command, o.output, "raster to write, or polygons of its codes (.gpkg, .geojson, .shp)",
                     "tif tiff img asc gpkg geojson shp");
-  command.add(&o.mode, {.names = "--mode",
-                        .value = "MODE",
-                        .help = "content of pixels",
-                        .choices = {"visible", "count", "dem", "ground", "angle", "NORMAL", "ACCUM", "DEM", "GROUND"},
-                        .closed = true,
-                        .common = true});
+  command.add(
+      &o.mode,
+      {.names = "--mode",
+       .value = "MODE",
+       .help = "content of pixels",
+       .choices = {"visible", "count", "dem", "ground", "angle", "height", "fresnel", "NORMAL", "ACCUM", "DEM",
+                   "GROUND"},
+       .closed = true,
+       .common = true,
+       .rules = {{"height needs targets with a height (--target-height M)",
+                  [&o] { return o.mode != "height" || o.heights.target > 0; }},
+                 {"fresnel needs --frequency MHZ", [&o] { return o.mode != "fresnel" || o.frequency.has_value(); }}}});
   command.add(&o.summary, {.names = "--summary",
                            .value = "FILE",
                            .help = "table of the area that each observer sees",
@@ -592,6 +506,8 @@ void add_viewshed(Program& program) {
                         .rules = {{"does not apply to --mode count (each map would count one observer)",
                                    [&o] { return mode_of(o.mode) != "count"; }}}});
   add_sight_heights(command, o.heights);
+  add_bare_ground_option(command, o.bare_ground);
+  add_frequency_option(command, o.frequency, {needs("--mode fresnel", [&o] { return o.mode == "fresnel"; })});
   command.add(&o.max_distance, {.names = "--max-distance",
                                 .help = "maximum distance of targets",
                                 .unit = "metres",
@@ -630,7 +546,7 @@ void add_viewshed(Program& program) {
                                 .range = {0, 255},
                                 .fallback = "nodata",
                                 .rules = {codes}});
-  const Rule marked = needs("--mode visible, dem, ground or angle", [&o] { return mode_of(o.mode) != "count"; });
+  const Rule marked = needs("a --mode other than count", [&o] { return mode_of(o.mode) != "count"; });
   command.add(&o.nodata, {.names = "--nodata-value",
                           .help = "pixel value without a sample",
                           .range = {-1e30, 1e30},
@@ -642,6 +558,7 @@ void add_viewshed(Program& program) {
   command.example("scarp viewshed dem.tif --observer 692000,5143000,2 -o seen.tif");
   command.example("scarp viewshed dem.tif --observers towers.csv --mode count --summary seen.csv -o count.tif");
   command.example("scarp viewshed dem.tif --observers road.gpkg --observer-spacing 50 -o road_sees.tif");
+  command.example("scarp viewshed dsm.tif --ground dtm.tif --observers towers.csv --observer-height 30 -o seen.tif");
   command.example("scarp viewshed -ox 692000 -oy 5143000 -md 20000 dem.tif seen.tif");
 }
 
