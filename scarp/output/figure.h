@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws the annotations of a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines,
-// strips.
+// points, lines and areas, strips.
 //
 //     +-----------------------------------------+     A title
 //     |               A title              N    |        84°W    83°W
@@ -77,6 +77,17 @@ struct FigureLabel {
   std::string text{};
 };
 
+enum class FigureShapeKind : std::uint8_t { point, line, area };
+
+/// A point, line or area drawn on the picture, with a label.
+struct FigureShape {
+  FigureShapeKind kind = FigureShapeKind::point;
+  /// A point: one part of one point. Lines. Rings of an area; what an odd number of them encloses is inside. Not empty.
+  std::vector<std::vector<FigurePoint>> parts{};
+  std::string text{};                    ///< UTF-8; empty: no label
+  std::array<std::uint8_t, 3> colour{};  ///< sRGB
+};
+
 /// A picture made of vertical strips of equal width: dividers between them, and a label at the top of each.
 struct FigureStrip {
   std::vector<std::string> lines{};  ///< of its label
@@ -98,6 +109,7 @@ struct Figure {
   /// In order of preference: labels that would touch anything drawn before, or repeat a text within twenty times its
   /// height, are omitted.
   std::vector<FigureLabel> labels{};
+  std::vector<FigureShape> shapes{};  ///< labels that would touch anything drawn before are omitted
   std::vector<FigureStrip> strips{};  ///< from left to right; their labels are on the picture in every layout
   FigureLayout layout = FigureLayout::on;
 };

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/output/figure_lines.h"
+#include "scarp/output/figure_shapes.h"
 
 namespace scarp {
 namespace {
@@ -174,6 +175,9 @@ void FigurePage::draw(cairo_t* cr, cairo_surface_t* picture) const {
   std::vector<FigureRect> taken;
   for (const Placed& placed : placed_) taken.push_back(placed.rect);
   draw_graticule(pen, figure_, frame_, taken);
+  const FigurePen small(cr, label_text_);
+  draw_shapes(small, figure_, frame_, taken);
+  draw_shape_labels(small, figure_, frame_, taken);
   draw_labels(FigurePen(cr, label_text_), figure_, frame_, taken);
   pen = FigurePen(cr, text_);  // restores the context's font, which the last pen has set
   draw_dividers(pen);

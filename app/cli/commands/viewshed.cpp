@@ -143,7 +143,7 @@ std::string name_of_row(const PlaceTable& table, std::size_t row) {
   const std::vector<std::string>& names = table.carried.names;
   for (std::size_t k = 0; k < names.size(); ++k)
     if (lower_case(names[k]) == "name" && !table.carried.at(row, k).empty()) return table.carried.at(row, k);
-  return fmt::format("observer {}", row + 1);
+  return table.rows.size() == 1 ? "observer" : fmt::format("observer {}", row + 1);
 }
 
 std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, const PlaceTable& table,
@@ -280,12 +280,12 @@ std::string share_text(const TargetCount& targets) {
   return fmt::format("{:.3g} % visible", all > 0 ? 100 * targets.visible / all : 0);
 }
 
-ComputedBand visible_band(const Watch& watch, const PixelValues& values, const RowBand& rows, TargetCount& targets,
-                          const Progress& progress) {
+ComputedBand visible_band(const ObserverGroup& group, const PixelValues& values, const RowBand& rows,
+                          TargetCount& targets, const Progress& progress) {
   const int value_of[] = {values.hidden, values.visible, values.out_of_range, values.nodata};
   std::vector<std::uint8_t> pixels;
   if (rows.rows() > 0) {
-    const auto seen = best_pixels(watch, rows, progress);
+    const auto seen = best_pixels(group, rows, progress);
     pixels.reserve(seen.size());
     for (const Seen code : seen) pixels.push_back(static_cast<std::uint8_t>(value_of[static_cast<std::size_t>(code)]));
     targets.add(seen);
@@ -293,9 +293,9 @@ ComputedBand visible_band(const Watch& watch, const PixelValues& values, const R
   return {"visible", "", std::move(pixels), static_cast<double>(values.nodata), values.classes()};
 }
 
-ComputedBand count_band(const Watch& watch, const RowBand& rows, const Progress& progress) {
+ComputedBand count_band(const ObserverGroup& group, const RowBand& rows, const Progress& progress) {
   std::vector<std::uint16_t> counts;
-  if (rows.rows() > 0) counts = count_pixels(watch, rows, progress);
+  if (rows.rows() > 0) counts = count_pixels(group, rows, progress);
   std::replace(counts.begin(), counts.end(), kCountOutOfRange, kCountHole);
   return {"observers that see the pixel", "", std::move(counts), kCountHole};
 }
@@ -334,22 +334,22 @@ class BandMaker {
   BandMaker(const ViewshedOptions& options, const std::optional<PixelValues>& values)
       : options_(options), values_(values), nodata_(options.nodata.value_or(kNoNumber)) {}
 
-  ComputedBand make(const Watch& watch, const RowBand& rows, const Progress& progress) {
-    if (values_) return visible_band(watch, *values_, rows, targets_, progress);
-    if (options_.mode == "count") return count_band(watch, rows, progress);
+  ComputedBand make(const ObserverGroup& group, const RowBand& rows, const Progress& progress) {
+    if (values_) return visible_band(group, *values_, rows, targets_, progress);
+    if (options_.mode == "count") return count_band(group, rows, progress);
     if (options_.mode == "angle")
-      return checked_band("angle above horizontal", "degrees", angle_pixels(watch, rows, targets_, progress), nodata_);
+      return checked_band("angle above horizontal", "degrees", angle_pixels(group, rows, targets_, progress), nodata_);
     // The other modes find no viewsheds.
-    for (std::size_t k = 0; watch.summary && rows.rows() > 0 && k < watch.observers.size(); ++k)
-      seen_pixels(watch, k, rows, {});
+    for (std::size_t k = 0; group.summary && rows.rows() > 0 && k < group.observers.size(); ++k)
+      seen_pixels(group, k, rows, {});
     if (options_.mode == "height")
-      return checked_band("visible height of targets", "m", height_pixels(watch, rows, progress), nodata_);
+      return checked_band("visible height of targets", "m", height_pixels(group, rows, progress), nodata_);
     if (options_.mode == "fresnel")
       return checked_band("clear share of the first Fresnel zone", "",
-                          fresnel_pixels(watch, wavelength_of(*options_.frequency), rows, progress), nodata_);
+                          fresnel_pixels(group, wavelength_of(*options_.frequency), rows, progress), nodata_);
     const bool dem = options_.mode == "dem";
     return checked_band(dem ? "least visible height above sea" : "least visible height above ground", "m",
-                        least_pixels(watch, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress), nodata_);
+                        least_pixels(group, dem ? HeightDatum::sea : HeightDatum::ground, rows, progress), nodata_);
   }
 
   std::string text(std::size_t observers) const {
@@ -429,7 +429,7 @@ void run(ViewshedOptions options, const Command& command) {
   ViewshedSummary summary(stands.size());
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     const std::vector<Observer> observers = observers_of(input, bare ? &*bare : nullptr, stands);
-    const Watch all{observers, options.summary.empty() ? nullptr : &summary, 0};
+    const ObserverGroup all{observers, options.summary.empty() ? nullptr : &summary, 0};
     std::vector<ComputedBand> computed;
     if (options.each.empty()) return std::vector{maker.make(all, rows, progress)};
     for (std::size_t k = 0; k < stands.size(); ++k) {
@@ -444,6 +444,9 @@ void run(ViewshedOptions options, const Command& command) {
   if (options.each == "files") recipe.files = numbered_files(options, stands);
   recipe.totals = maker.totals();
   for (double* const total : summary.totals()) recipe.totals.push_back(total);
+  constexpr std::size_t kMostNames = 100;
+  for (const Stand& one : stands)
+    recipe.marks.push_back({dvec2(one.node.col, one.node.row), stands.size() > kMostNames ? "" : one.name});
   run.write(recipe);
   if (!options.summary.empty()) write_summary(options, summary, table, status, stands);
 }

@@ -60,13 +60,13 @@ std::vector<double> least_of(const Observer& one, const Viewpoint& view, const R
 
 // Calls combine(pixel, height above `datum` of the least visible target) for all observers and pixels in range.
 template <class Combine>
-std::vector<float> combined_least(const Watch& watch, HeightDatum datum, const RowBand& rows, const Progress& progress,
-                                  const Combine& combine) {
+std::vector<float> combined_least(const ObserverGroup& group, HeightDatum datum, const RowBand& rows,
+                                  const Progress& progress, const Combine& combine) {
   std::vector<float> pixels;
   if (rows.rows() == 0) return pixels;
-  const auto count = static_cast<double>(watch.observers.size());
-  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
-    const Observer& one = watch.observers[k];
+  const auto count = static_cast<double>(group.observers.size());
+  for (std::size_t k = 0; k < group.observers.size(); ++k) {
+    const Observer& one = group.observers[k];
     const Viewpoint view = viewpoint_of(one);
     const auto least = least_of(one, view, rows, progress_part(progress, static_cast<double>(k), count));
     if (pixels.empty()) pixels.assign(least.size(), kNothing);
@@ -84,8 +84,9 @@ Viewpoint viewpoint_of(const Observer& observer) {
   return {observer.bare_ground ? *observer.bare_ground : observer.field, observer.node, observer.settings};
 }
 
-std::vector<Seen> seen_pixels(const Watch& watch, std::size_t k, const RowBand& rows, const Progress& progress) {
-  const Observer& one = watch.observers[k];
+std::vector<Seen> seen_pixels(const ObserverGroup& group, std::size_t k, const RowBand& rows,
+                              const Progress& progress) {
+  const Observer& one = group.observers[k];
   const Viewpoint view = viewpoint_of(one);
   std::vector<Seen> codes;
   if (one.bare_ground) {
@@ -99,22 +100,22 @@ std::vector<Seen> seen_pixels(const Watch& watch, std::size_t k, const RowBand& 
   } else {
     codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
   }
-  if (watch.summary) watch.summary->add(watch.first + k, view, codes, rows.first);
+  if (group.summary) group.summary->add(group.first + k, view, codes, rows.first);
   return codes;
 }
 
-std::vector<std::uint16_t> count_pixels(const Watch& watch, const RowBand& rows, const Progress& progress) {
-  if (!watch.summary && !watch.observers.front().bare_ground) {
+std::vector<std::uint16_t> count_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress) {
+  if (!group.summary && !group.observers.front().bare_ground) {
     std::vector<Viewpoint> views;
-    for (const Observer& one : watch.observers) views.push_back(viewpoint_of(one));
+    for (const Observer& one : group.observers) views.push_back(viewpoint_of(one));
     return observer_count_rows(views, rows, progress);
   }
-  if (watch.observers.size() > kMostObservers)
-    throw Error(fmt::format("viewshed: {} observers (1 to {} are possible)", watch.observers.size(), kMostObservers));
+  if (group.observers.size() > kMostObservers)
+    throw Error(fmt::format("viewshed: {} observers (1 to {} are possible)", group.observers.size(), kMostObservers));
   std::vector<std::uint16_t> counts;
-  const auto all = static_cast<double>(watch.observers.size());
-  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
-    const auto codes = seen_pixels(watch, k, rows, progress_part(progress, static_cast<double>(k), all));
+  const auto all = static_cast<double>(group.observers.size());
+  for (std::size_t k = 0; k < group.observers.size(); ++k) {
+    const auto codes = seen_pixels(group, k, rows, progress_part(progress, static_cast<double>(k), all));
     if (counts.empty()) counts.assign(codes.size(), kCountOutOfRange);
     for (std::size_t i = 0; i < codes.size(); ++i) {
       if (codes[i] == Seen::hole) counts[i] = kCountHole;
@@ -126,9 +127,9 @@ std::vector<std::uint16_t> count_pixels(const Watch& watch, const RowBand& rows,
   return counts;
 }
 
-std::vector<Seen> best_pixels(const Watch& watch, const RowBand& rows, const Progress& progress) {
-  if (watch.observers.size() == 1) return seen_pixels(watch, 0, rows, progress);
-  const auto counts = count_pixels(watch, rows, progress);
+std::vector<Seen> best_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress) {
+  if (group.observers.size() == 1) return seen_pixels(group, 0, rows, progress);
+  const auto counts = count_pixels(group, rows, progress);
   std::vector<Seen> best;
   best.reserve(counts.size());
   for (const std::uint16_t count : counts)
@@ -139,27 +140,28 @@ std::vector<Seen> best_pixels(const Watch& watch, const RowBand& rows, const Pro
   return best;
 }
 
-std::vector<float> least_pixels(const Watch& watch, HeightDatum datum, const RowBand& rows, const Progress& progress) {
-  return combined_least(watch, datum, rows, progress,
+std::vector<float> least_pixels(const ObserverGroup& group, HeightDatum datum, const RowBand& rows,
+                                const Progress& progress) {
+  return combined_least(group, datum, rows, progress,
                         [](float pixel, float height, const Observer&) { return std::fmin(pixel, height); });
 }
 
-std::vector<float> height_pixels(const Watch& watch, const RowBand& rows, const Progress& progress) {
-  return combined_least(watch, HeightDatum::ground, rows, progress, [](float pixel, float height, const Observer& one) {
+std::vector<float> height_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress) {
+  return combined_least(group, HeightDatum::ground, rows, progress, [](float pixel, float height, const Observer& one) {
     const double seen = std::max(0.0, one.settings.target_height - static_cast<double>(height));
     return static_cast<float>(seen) + (std::isnan(pixel) ? 0 : pixel);
   });
 }
 
-std::vector<float> angle_pixels(const Watch& watch, const RowBand& rows, TargetCount& targets,
+std::vector<float> angle_pixels(const ObserverGroup& group, const RowBand& rows, TargetCount& targets,
                                 const Progress& progress) {
   std::vector<float> pixels;
   std::vector<Seen> best;
   if (rows.rows() == 0) return pixels;
-  const auto count = static_cast<double>(watch.observers.size());
-  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
-    const Observer& one = watch.observers[k];
-    const auto codes = seen_pixels(watch, k, rows, progress_part(progress, static_cast<double>(k), count));
+  const auto count = static_cast<double>(group.observers.size());
+  for (std::size_t k = 0; k < group.observers.size(); ++k) {
+    const Observer& one = group.observers[k];
+    const auto codes = seen_pixels(group, k, rows, progress_part(progress, static_cast<double>(k), count));
     const auto angles = sight_angles(viewpoint_of(one), codes, rows.first);
     if (pixels.empty()) pixels.assign(angles.size(), kNothing), best.assign(codes.size(), Seen::out_of_range);
     for (std::size_t i = 0; i < angles.size(); ++i) {
@@ -171,12 +173,12 @@ std::vector<float> angle_pixels(const Watch& watch, const RowBand& rows, TargetC
   return pixels;
 }
 
-std::vector<float> fresnel_pixels(const Watch& watch, double wavelength, const RowBand& rows,
+std::vector<float> fresnel_pixels(const ObserverGroup& group, double wavelength, const RowBand& rows,
                                   const Progress& progress) {
   std::vector<float> pixels(
-      static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(watch.observers.front().field.cols()), kNothing);
-  for (std::size_t k = 0; k < watch.observers.size(); ++k) {
-    const Observer& one = watch.observers[k];
+      static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(group.observers.front().field.cols()), kNothing);
+  for (std::size_t k = 0; k < group.observers.size(); ++k) {
+    const Observer& one = group.observers[k];
     const Viewpoint view = viewpoint_of(one);
     const SightEnd eye{static_cast<double>(one.node.col), static_cast<double>(one.node.row), view.eye(),
                        HeightDatum::sea, true};
@@ -198,7 +200,7 @@ std::vector<float> fresnel_pixels(const Watch& watch, double wavelength, const R
             }
           }
         },
-        progress_part(progress, static_cast<double>(k), static_cast<double>(watch.observers.size())));
+        progress_part(progress, static_cast<double>(k), static_cast<double>(group.observers.size())));
   }
   return pixels;
 }

@@ -25,12 +25,12 @@ struct Observer {
 };
 
 /// The observers of a map, and of its summary.
-struct Watch {
+struct ObserverGroup {
   std::span<const Observer> observers;
   ViewshedSummary* summary = nullptr;  ///< nullptr: none
   std::size_t first = 0;               ///< of the observers, in the summary
 
-  Watch one(std::size_t k) const { return {observers.subspan(k, 1), summary, first + k}; }
+  ObserverGroup one(std::size_t k) const { return {observers.subspan(k, 1), summary, first + k}; }
 };
 
 /// Numbers of targets within the limits.
@@ -47,29 +47,31 @@ struct TargetCount {
 Viewpoint viewpoint_of(const Observer& observer);
 
 /// Returns the viewshed of the observer `k`, and adds it to the summary.
-std::vector<Seen> seen_pixels(const Watch& watch, std::size_t k, const RowBand& rows, const Progress& progress);
+std::vector<Seen> seen_pixels(const ObserverGroup& group, std::size_t k, const RowBand& rows, const Progress& progress);
 
 /// Returns the number of observers that see each pixel, kCountHole or kCountOutOfRange. Throws Error for too many.
-std::vector<std::uint16_t> count_pixels(const Watch& watch, const RowBand& rows, const Progress& progress);
+std::vector<std::uint16_t> count_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress);
 
 /// Returns the best visibility over all observers.
-std::vector<Seen> best_pixels(const Watch& watch, const RowBand& rows, const Progress& progress);
+std::vector<Seen> best_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress);
 
 /// The functions below return NaN for pixels without a value. Those that find no viewshed add none to the summary.
 
 /// Least height of a visible target over all observers: least_height().
-std::vector<float> least_pixels(const Watch& watch, HeightDatum datum, const RowBand& rows, const Progress& progress);
+std::vector<float> least_pixels(const ObserverGroup& group, HeightDatum datum, const RowBand& rows,
+                                const Progress& progress);
 
 /// Sum over all observers of the metres of a target, which stands on the ground and is as high as the target height,
 /// that the observer sees: those above least_height(). 0 where nothing is seen.
-std::vector<float> height_pixels(const Watch& watch, const RowBand& rows, const Progress& progress);
+std::vector<float> height_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress);
 
 /// Largest angle of a visible target in degrees above the horizontal. Counts the targets.
-std::vector<float> angle_pixels(const Watch& watch, const RowBand& rows, TargetCount& targets,
+std::vector<float> angle_pixels(const ObserverGroup& group, const RowBand& rows, TargetCount& targets,
                                 const Progress& progress);
 
 /// Largest share of the first Fresnel zone that is clear, over all observers: fresnel_clearance(), at most 1. One line
 /// of sight per pixel: slower than the others.
-std::vector<float> fresnel_pixels(const Watch& watch, double wavelength, const RowBand& rows, const Progress& progress);
+std::vector<float> fresnel_pixels(const ObserverGroup& group, double wavelength, const RowBand& rows,
+                                  const Progress& progress);
 
 }  // namespace scarp::cli

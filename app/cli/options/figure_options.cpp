@@ -28,7 +28,8 @@ std::string_view FigureOptions::any() const {
          : north_arrow    ? "--north-arrow"
          : contour_labels ? "--contour-labels"
          : !title.empty() ? "--title"
-                          : std::string_view(graticule ? "--graticule" : "");
+         : graticule      ? "--graticule"
+                          : std::string_view(draw.files.empty() ? "" : "--draw");
 }
 
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output) {
@@ -67,6 +68,7 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
        .inputs = {kTerrain, "only maps of rasters have them", "only maps of rasters have them"},
        .looks = {"shaded comanche", "the others have no contour lines"},
        .rules = {on_map, needs("--contours M", [&command] { return command.given("--contours"); })}});
+  add_draw_options(command, options.draw, Topic::figure, false, on_map);
   add(&options.layout, {.names = "--layout",
                         .value = "WHERE",
                         .help = "place of title, legend, scale bar, north arrow and labels of the graticule",
@@ -74,7 +76,8 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
                         .closed = true,
                         .note = "beside: on white margins around the picture",
                         .rules = {needs("--legend, --scale-bar, --title, --north-arrow or --graticule", [&options] {
-                          return !options.any().empty() && options.any() != "--contour-labels";
+                          return !options.any().empty() && options.any() != "--contour-labels" &&
+                                 options.any() != "--draw";
                         })}});
   add(&options.dots_per_inch,
       {.names = "--dpi",

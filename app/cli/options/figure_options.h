@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/cli/options/draw_options.h"
 #include "app/options/command.h"
 
 namespace scarp::cli {
@@ -20,6 +21,7 @@ struct FigureOptions {
   std::string title, layout = "on";
   std::optional<GraticuleSpacing> graticule;
   double dots_per_inch = 150;
+  DrawOptions draw;
 
   /// The first option that was given, for messages; empty if there is none.
   std::string_view any() const;

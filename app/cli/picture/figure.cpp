@@ -12,6 +12,7 @@
 
 #include "app/cli/options/vox_input.h"
 #include "app/cli/picture/contour_labels.h"
+#include "app/cli/picture/drawn_shapes.h"
 #include "app/cli/picture/graticule.h"
 #include "scarp/render/camera/compass.h"
 #include "scarp/render/surface/ramp.h"
@@ -187,6 +188,8 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
     labels.per_pixel = per_pixel;
     figure.labels = contour_labels_of(*field, camera, labels);
   }
+  if (!options.draw.files.empty())
+    figure.shapes = drawn_shapes(options.draw, {subject.georeference, subject.cols, subject.rows, camera, per_pixel});
   // Checked before the work: everything except the legend is known.
   require_room(figure, static_cast<int>(width), static_cast<int>(height));
   return figure;

@@ -88,12 +88,13 @@ std::pair<double, double> range_of(std::vector<Sample> numbers, bool whole_numbe
 
 template <class Sample>
 Paint paint_of_numbers(const MapBand& band, std::span<const Sample> samples, const std::string& ramp) {
-  const auto is_hole = [nodata = band.nodata](Sample sample) {
-    return nodata && static_cast<double>(sample) == *nodata;
+  // Nothing is to be seen where nothing is counted.
+  const bool whole_numbers = std::is_integral_v<Sample> && band.scale == 1, counts = whole_numbers && band.unit.empty();
+  const auto is_hole = [nodata = band.nodata, counts](Sample sample) {
+    return (nodata && static_cast<double>(sample) == *nodata) || (counts && sample == Sample{});
   };
   std::vector<Sample> numbers;
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(numbers), [&](Sample s) { return !is_hole(s); });
-  const bool whole_numbers = std::is_integral_v<Sample> && band.scale == 1;
   const auto [low, high] = range_of(std::move(numbers), whole_numbers);
   const double first = low * band.scale + band.offset, last = high * band.scale + band.offset;
   FigureLegend legend = legend_of(band.unit.empty() ? band.name : fmt::format("{}, {}", band.name, band.unit), first,
@@ -146,8 +147,9 @@ Drape drape_of(const Paint& paint, const MapInput& input, const RowBand& rows, i
   return drape;
 }
 
-FigureOptions figure_options() {
+FigureOptions figure_options(const DrawOptions& draw) {
   FigureOptions options;
+  options.draw = draw;
   options.scale_bar = options.north_arrow = true;
   options.layout = "beside";
   return options;
@@ -168,8 +170,9 @@ const PictureFormat& preview_format_of(const std::string& path) {
   return format;
 }
 
-MapPreview::MapPreview(std::string path, const MapInput& input)
+MapPreview::MapPreview(std::string path, const DrawOptions& draw, const MapInput& input)
     : path_(kept(std::move(path), input)),
+      draw_(draw),
       input_(input),
       file_(path_),
       scene_(scene_of(input)),
@@ -177,23 +180,28 @@ MapPreview::MapPreview(std::string path, const MapInput& input)
 
 #ifdef SCARP_CAIRO
 
-void MapPreview::write(const RasterMap& map, const RowBand& rows, const std::string& ramp) {
+void MapPreview::write(const RasterMap& map, const RowBand& rows, const std::string& ramp,
+                       std::vector<DrawnMark> marks) {
   Paint paint = paint_of(map.bands.front(), ramp);
   picture_.ground.drape = std::make_shared<Drape>(drape_of(paint, input_, rows, picture_.width));
   const Camera camera = Camera::top(picture_box(scene_), picture_.width, picture_.height);
   const std::optional<SolidRange> no_numbers;
   const Georeference geo = input_.georeference_of(input_.part());
   const FigureSubject subject{scene_, camera, true, no_numbers, geo, input_.field().cols(), input_.field().rows()};
-  std::optional<Figure> figure = figure_of(figure_options(), picture_, subject);
+  std::optional<Figure> figure = figure_of(figure_options(draw_), picture_, subject);
   figure->key = std::move(paint.key);
   figure->legend = std::move(paint.legend);
+  for (DrawnMark& mark : marks) mark.at -= dvec2(input_.part().col, input_.part().row);
+  for (FigureShape& shape :
+       drawn_marks(marks, {geo, subject.cols, subject.rows, camera, static_cast<double>(pixel_side(picture_))}))
+    figure->shapes.push_back(std::move(shape));
   const Picture picture = render_picture(scene_, camera, picture_, terminal_progress("preview"));
-  write_picture(file_, path_, picture_format_of(path_), picture.image, figure, {}, figure_options().dots_per_inch);
+  write_picture(file_, path_, picture_format_of(path_), picture.image, figure, {}, figure_options(draw_).dots_per_inch);
 }
 
 #else
 
-void MapPreview::write(const RasterMap&, const RowBand&, const std::string&) {}
+void MapPreview::write(const RasterMap&, const RowBand&, const std::string&, std::vector<DrawnMark>) {}
 
 #endif
 

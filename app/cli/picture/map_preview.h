@@ -5,9 +5,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/picture_format.h"
+#include "app/cli/picture/drawn_shapes.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/raster_map.h"
@@ -21,14 +23,15 @@ const PictureFormat& preview_format_of(const std::string& path);
 class MapPreview {
  public:
   /// Reserves the file. Throws Error for a model without ground, and if the file is one of the inputs.
-  MapPreview(std::string path, const MapInput& input);
+  MapPreview(std::string path, const DrawOptions& draw, const MapInput& input);
 
-  /// Draws the map of these rows. Bands without classes are coloured by one of ramp_names(). Throws Error naming the
-  /// file.
-  void write(const RasterMap& map, const RowBand& rows, const std::string& ramp);
+  /// Draws the map of these rows, with marks in columns and rows of the raster. Bands without classes are coloured by
+  /// one of ramp_names(); counts of 0 are clear. Throws Error naming the file.
+  void write(const RasterMap& map, const RowBand& rows, const std::string& ramp, std::vector<DrawnMark> marks);
 
  private:
   std::string path_;
+  const DrawOptions& draw_;
   const MapInput& input_;
   ReplaceFile file_;
   Scene scene_;

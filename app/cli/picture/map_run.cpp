@@ -202,7 +202,8 @@ std::vector<ComputedBand> MapRun::compute(const MapRecipe& recipe, std::optional
 void MapRun::write(const MapRecipe& recipe) {
   const RowBand rows = area_.rows();
   std::optional<MapPreview> preview;
-  if (!options_.raster_output.preview.empty()) preview.emplace(options_.raster_output.preview, input_);
+  if (!options_.raster_output.preview.empty())
+    preview.emplace(options_.raster_output.preview, options_.raster_output.draw, input_);
   RasterMap map = map_of(input_, options_.raster_output, area_, recipe.method, recipe.metadata);
   std::optional<MapJournal> journal;
   const std::vector<ComputedBand> bands = compute(recipe, journal);
@@ -215,7 +216,7 @@ void MapRun::write(const MapRecipe& recipe) {
     write_map(options_.raster_output, recipe.files[k], one);
   }
   if (journal) journal->remove();
-  if (preview) preview->write(map, rows, recipe.ramp);
+  if (preview) preview->write(map, rows, recipe.ramp, recipe.marks);
   const std::string written = recipe.files.empty() ? options_.output
                                                    : fmt::format("{} files, {} to {}", recipe.files.size(),
                                                                  recipe.files.front(), recipe.files.back());

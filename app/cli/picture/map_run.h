@@ -21,6 +21,7 @@
 
 #include "app/cli/options/map_input.h"
 #include "app/cli/options/memory_options.h"
+#include "app/cli/picture/drawn_shapes.h"
 #include "app/cli/picture/raster_output.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/base/parallel.h"
@@ -75,6 +76,7 @@ struct MapRecipe {
   bool has_cheap_strips = false;
   /// A file for each band, in place of the output; empty: all bands are in the output.
   std::vector<std::string> files{};
+  std::vector<DrawnMark> marks{};  ///< on the preview, in columns and rows of the raster
 };
 
 class MapRun {

@@ -58,6 +58,8 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                  .fallback = "none",
                                  .common = true,
                                  .excludes = excludes});
+  add_draw_options(command, options.draw, Topic::general, true,
+                   needs("--preview FILE", [&options] { return !options.preview.empty(); }), excludes);
   command.add(&options.dry_run, {.names = "--dry-run",
                                  .help = "print size, memory and time, and write nothing",
                                  .common = true,

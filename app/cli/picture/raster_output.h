@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/cli/options/draw_options.h"
 #include "app/cli/options/map_input.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/output/raster_map.h"
@@ -21,6 +22,7 @@ struct RasterOutput {
   std::vector<std::string> creation;  ///< NAME=VALUE
   std::string part;                   ///< I/N, or "auto" before settle_output(); empty: all
   std::string preview;                ///< picture; empty: none
+  DrawOptions draw;                   ///< on the preview
   bool dry_run = false, quiet = false, resume = false;
 };
 

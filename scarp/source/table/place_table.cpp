@@ -49,7 +49,7 @@ Header header_of(const std::vector<std::string_view>& fields, PlaceKind kind, Pl
     if (at != std::string_view::npos) throw Error(fmt::format("two columns '{}'", *name));
     at = i;
   }
-  const bool lines = kind != PlaceKind::points;
+  const bool lines = kind == PlaceKind::lines || kind == PlaceKind::paths;
   const bool plain = header.has(x) && header.has(y) && (!lines || (header.has(tx) && header.has(ty)));
   table.lonlat = header.has(lon) && header.has(lat) && (!lines || (header.has(tlon) && header.has(tlat)));
   if (plain == table.lonlat)
@@ -84,12 +84,14 @@ TablePlace place_from(double x_at, double y_at, std::optional<double> height, OG
 std::string_view names_of(PlaceKind kind) {
   return kind == PlaceKind::points  ? "points"
          : kind == PlaceKind::lines ? "lines of two or more vertices"
-                                    : "lines of two or more vertices, or polygons";
+         : kind == PlaceKind::paths ? "lines of two or more vertices, or polygons"
+                                    : "points, lines of two or more vertices, or polygons";
 }
 
 bool accepts(PlaceKind kind, OGRwkbGeometryType type) {
-  if (type == wkbPoint) return kind == PlaceKind::points;
-  return (type == wkbLineString && kind != PlaceKind::points) || (type == wkbPolygon && kind == PlaceKind::paths);
+  if (type == wkbPoint) return kind == PlaceKind::points || kind == PlaceKind::shapes;
+  if (type == wkbLineString) return kind != PlaceKind::points;
+  return type == wkbPolygon && (kind == PlaceKind::paths || kind == PlaceKind::shapes);
 }
 
 // `vertices`: with those between the ends of lines.
@@ -115,6 +117,7 @@ void add_feature(const OGRGeometry& geometry, PlaceKind kind, bool vertices, OGR
   } else if (accepts(kind, type) && type == wkbLineString && geometry.toLineString()->getNumPoints() >= 2) {
     const std::vector<TablePlace> all = vertices_of(*geometry.toLineString());
     PlaceRow row{all.front(), all.back(), feature};
+    row.is_line = true;
     if (vertices) row.between.assign(all.begin() + 1, all.end() - 1);
     rows.push_back(std::move(row));
   } else if (accepts(kind, type) && type == wkbPolygon && !geometry.IsEmpty()) {
@@ -218,7 +221,8 @@ PlaceRow place_row(const CsvRows& rows, const Header& header, std::size_t width,
                                                                              : std::nullopt;
   };
   PlaceRow row{{number(degrees ? lon : x), number(degrees ? lat : y), height(z)}, {}, line};
-  if (kind != PlaceKind::points) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
+  row.is_line = kind == PlaceKind::lines || kind == PlaceKind::paths;
+  if (row.is_line) row.to = {number(degrees ? tlon : tx), number(degrees ? tlat : ty), height(tz)};
   return row;
 }
 
@@ -286,9 +290,10 @@ PlaceTable read_places(const std::string& path, PlaceKind kind, const PlaceReadi
     for (PlaceRow& row : table.rows)
       if (!row.bad.empty()) row.bad = fmt::format("{}: {}", path, row.bad);
     if (table.rows.empty())
-      throw Error(fmt::format("contains no {}", kind == PlaceKind::paths   ? "lines or polygons"
+      throw Error(fmt::format("contains no {}", kind == PlaceKind::points  ? "points"
                                                 : kind == PlaceKind::lines ? "lines"
-                                                                           : "points"));
+                                                : kind == PlaceKind::paths ? "lines or polygons"
+                                                                           : "points, lines or polygons"));
     return table;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));

@@ -34,6 +34,7 @@ struct PlaceRow {
   std::string bad{};                             ///< why the row has no places, with its line; empty: it has
   std::vector<TablePlace> between{};             ///< vertices between the ends of a line, if read
   std::vector<std::vector<TablePlace>> rings{};  ///< of a polygon: closed, of even-odd inside
+  bool is_line = false;
 };
 
 struct PlaceTable {
@@ -47,8 +48,9 @@ struct PlaceTable {
   std::string where(std::size_t row, bool target = false) const;
 };
 
-/// Geometries to read: points, lines, or lines and polygons. Tables of text have no polygons.
-enum class PlaceKind : std::uint8_t { points, lines, paths };
+/// Geometries to read: points, lines, lines and polygons, or all of them. Tables of text have no polygons; as shapes
+/// they are points.
+enum class PlaceKind : std::uint8_t { points, lines, paths, shapes };
 
 /// Returns the lines between all pairs of the points, each pair once. The other columns are `from` and `to`, the
 /// numbers of the points, from 1, and the points' columns, with the suffixes _from and _to. Throws Error for fewer than
