@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -35,6 +36,8 @@ constexpr unsigned kPatience = 2;  // seconds
 // One tick per 2.5 %, a number every fourth, as GDALTermProgress does.
 constexpr int kTicks = 40;
 constexpr int kTicksPerNumber = 4;
+// Tasks that take less time have no line.
+constexpr std::chrono::seconds kUnnoticed{2};
 
 // Uses only functions that are safe in a signal handler.
 [[noreturn]] void end_now(int number) {
@@ -95,7 +98,9 @@ void stop_if_interrupted() {
 Progress terminal_progress(std::string_view what) {
   if (silences > 0 || ::isatty(STDERR_FILENO) == 0) return [](double) { return !stop_wanted(); };
   // std::function copies its target: the count is shared.
-  return [name = std::string(what), ticks = std::make_shared<int>(-1)](double share) {
+  return [name = std::string(what), ticks = std::make_shared<int>(-1),
+          begin = std::chrono::steady_clock::now()](double share) {
+    if (*ticks < 0 && std::chrono::steady_clock::now() - begin < kUnnoticed) return !stop_wanted();
     const int now = std::clamp(static_cast<int>(share * kTicks), 0, kTicks);
     if (*ticks < 0) {
       fmt::print(stderr, "{} ", name);

@@ -25,10 +25,11 @@ int caught_signal();
 /// Throws Interrupted if a signal was caught: for use between two long tasks.
 void stop_if_interrupted();
 
-/// Prints a line "what 0...10...20" to stderr if that is a terminal; requests a stop after a signal.
+/// Prints a line "what 0...10...20" to stderr if that is a terminal and the task takes more than two seconds; requests
+/// a stop after a signal.
 Progress terminal_progress(std::string_view what);
 
-/// While it exists, terminal_progress() prints nothing: for parts of a task that has its own line.
+/// While it exists, terminal_progress() prints nothing: for --quiet, and for parts of a task that has its own line.
 class SilentProgress {
  public:
   SilentProgress();

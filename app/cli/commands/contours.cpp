@@ -33,6 +33,7 @@ struct ContourOptions : MapOptions {
   std::optional<double> interval;
   double base = 0;
   std::string levels;
+  bool dry_run = false, quiet = false;
 };
 
 ContourLevels levels_of(const ContourOptions& options) {
@@ -61,6 +62,7 @@ std::vector<float> heights_of(const HeightField& field) {
 
 void run(const ContourOptions& options, const Command& command) {
   command.require_effect({});
+  const auto silence = options.quiet ? std::make_optional<SilentProgress>() : std::nullopt;
   const ContourLevels levels = levels_of(options);
   if (vector_driver_of(options.output).empty())
     throw Error(fmt::format("output '{}': expected .gpkg, .geojson, .shp or .fgb", options.output));
@@ -68,6 +70,15 @@ void run(const ContourOptions& options, const Command& command) {
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
   keep_inputs(options.output, input.files());
+  if (options.dry_run) {
+    // Samples, and the heights in metres.
+    const double bytes = (input.sample_type() == SampleType::float32 ? 4 : 2) + sizeof(float);
+    constexpr double kMebi = 1 << 20;
+    fmt::print("{}: contour lines of {} x {} samples; about {:.0f} MiB of memory; nothing written (--dry-run)\n",
+               options.output, input.cols(), input.rows(),
+               std::ceil(bytes * input.cols() * static_cast<double>(input.rows()) / kMebi));
+    return;
+  }
   input.read(input.whole(), terminal_progress("read"));
   input.close();
   const double relief = input.field().max_height() - input.field().min_height();
@@ -81,6 +92,7 @@ void run(const ContourOptions& options, const Command& command) {
   map.place = map_place(input.georeference());
   map.bands.push_back({"height", "m", std::span<const float>(heights), static_cast<double>(kHole), {}});
   write_contours(options.output, map, levels, terminal_progress("contours"));
+  if (options.quiet) return;
   print_notes(input.notes);
   fmt::print("{}: contour lines of {} x {} samples; {:.2f} s\n", options.output, map.cols, map.rows,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -112,6 +124,8 @@ void add_contours(Program& program) {
                           .fallback = "multiples of --interval",
                           .common = true,
                           .excludes = {"--interval"}});
+  command.add(&o.dry_run, {.names = "--dry-run", .help = "print size and memory, and write nothing", .common = true});
+  command.add(&o.quiet, {.names = "--quiet", .help = "no summary, notes and progress", .common = true});
   add_raster_options(command, o.raster);
   command.example("scarp contours dem.tif --interval 10 -o contours.gpkg");
   command.example("scarp contours dem.tif --levels 500,750 -o levels.geojson");

@@ -95,6 +95,7 @@ MapRun::MapRun(MapCommand& options, const Command& command, std::string_view sam
       command_(command),
       threads_(options.threads),
       memory_(limit_memory(options.memory, options.output)),
+      silence_(options.raster_output.quiet ? std::make_optional<SilentProgress>() : std::nullopt),
       start_(std::chrono::steady_clock::now()),
       input_(options) {
   keep_inputs(options.output, input_.files());
@@ -151,7 +152,9 @@ std::string MapRun::identity(int strips) const {
   std::string text =
       fmt::format("scarp {} {}\n", SCARP_VERSION,
                   command_.typed_words({"--threads", "--memory", "--scratch", "--resume", "--quiet", "--preview"}));
-  for (const std::string& file : input_.files()) {
+  std::vector<std::string> files = input_.files();
+  files.insert(files.end(), options_.typed.begin(), options_.typed.end());  // tables, models of the ground
+  for (const std::string& file : files) {
     std::error_code failed;
     const auto size = std::filesystem::file_size(file, failed);
     const auto time = std::filesystem::last_write_time(file, failed).time_since_epoch().count();

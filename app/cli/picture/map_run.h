@@ -23,6 +23,7 @@
 #include "app/cli/options/memory_options.h"
 #include "app/cli/picture/drawn_shapes.h"
 #include "app/cli/picture/raster_output.h"
+#include "app/cli/progress.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/progress.h"
@@ -115,6 +116,7 @@ class MapRun {
   const Command& command_;
   ThreadLimit threads_;
   std::unique_ptr<MemoryLimit> memory_;
+  std::optional<SilentProgress> silence_;  // with --quiet
   std::chrono::steady_clock::time_point start_;
   MapInput input_;
   MapArea area_;

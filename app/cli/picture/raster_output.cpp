@@ -64,7 +64,8 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                  .help = "print size, memory and time, and write nothing",
                                  .common = true,
                                  .excludes = excludes});
-  command.add(&options.quiet, {.names = "--quiet", .help = "no summary", .common = true, .excludes = excludes});
+  command.add(&options.quiet,
+              {.names = "--quiet", .help = "no summary, notes and progress", .common = true, .excludes = excludes});
 }
 
 void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type) {
@@ -161,8 +162,8 @@ void print_dry_run(const MapArea& area, const std::string& output, double memory
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
                        const std::string& output, const std::string& what,
                        std::chrono::steady_clock::time_point begin) {
-  print_notes(input.notes);
   if (options.quiet) return;
+  print_notes(input.notes);
   fmt::print("{}: {} x {} pixels, {}; {:.2f} s\n", output, area.output.cols, area.output.rows, what,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }

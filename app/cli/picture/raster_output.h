@@ -67,7 +67,7 @@ double memory_of(const MapInput& input, const MapArea& area, double bytes_per_no
 /// Prints the requirements of a run: size of the output, memory, of which `limit` bytes may be used, and seconds.
 void print_dry_run(const MapArea& area, const std::string& output, double memory, double limit, double seconds);
 
-/// Prints the notes, and unless quiet the last line: output, size, `what`, seconds.
+/// Unless quiet, prints the notes and the last line: output, size, `what`, seconds.
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
                        const std::string& output, const std::string& what, std::chrono::steady_clock::time_point begin);
 
