@@ -24,7 +24,10 @@ namespace {
 
 using test::azimuth;
 using test::HorizonShape;
+using test::is_drawn;
 using test::kAzimuths;
+using test::kFieldsPerKind;
+using test::kShapes;
 using test::shape;
 
 struct Swept {
@@ -53,9 +56,10 @@ Swept swept(const HorizonHeights& heights, const SweepTable& table, float eye, c
 TEST(HorizonSweep, EqualsLinesOneByOneToTheBit) {
   const std::vector<std::int64_t> sets = test::instruction_sets();
   int differences = 0;
-  for (int s = 0; s < 48; ++s) {
+  for (int s = 0; s < kShapes; ++s) {
     const HorizonShape made = shape(s);
     for (int a = 0; a < kAzimuths; ++a) {
+      if (!is_drawn(s, a)) continue;
       const test::InstructionSet set(sets[static_cast<std::size_t>(s + a) % sets.size()]);
       const HorizonCrossings crossings(made.field, azimuth(a), std::numeric_limits<double>::infinity(),
                                        made.settings.curvature);
@@ -79,7 +83,7 @@ TEST(HorizonSweep, EqualsLinesOneByOneToTheBit) {
 // away are never missed. Where that crossing has no ground, it is the slope to a line beside it.
 TEST(HorizonSweep, NamesACrossing) {
   int named = 0;
-  for (int s = 0; s < 48; ++s) {
+  for (int s = 0; s < kShapes; ++s) {
     HorizonShape made = shape(s);
     made.settings.max_distance = std::numeric_limits<double>::infinity();
     const HorizonGround ground(made.field, 1, made.eye);
@@ -87,6 +91,7 @@ TEST(HorizonSweep, NamesACrossing) {
     const std::ptrdiff_t cols = made.field.cols();
     const auto nodes = static_cast<std::size_t>(cols * made.field.rows());
     for (int a = 0; a < kAzimuths; ++a) {
+      if (!is_drawn(s, a)) continue;
       const HorizonCrossings crossings(made.field, azimuth(a), made.settings.max_distance, made.settings.curvature);
       const HorizonTable table(ground, crossings);
       std::vector<float> exact(nodes);
@@ -127,10 +132,12 @@ TEST(HorizonSweep, NamesACrossing) {
       }
     }
   }
-  EXPECT_GT(named, 1'000'000);
+  EXPECT_GT(named, 150'000 * kFieldsPerKind);
 }
 
-// The error that horizon.h promises, on ground of the kind that people have.
+#ifdef NDEBUG
+// The error that horizon.h promises, on ground of the kind that people have. Optimised builds only: others find the
+// same horizons, in minutes.
 TEST(HorizonSweep, ErrsByLittleOnGeneratedGround) {
   ProceduralDem dem;
   dem.cols = dem.rows = 512, dem.cell_m = 25, dem.kind = TerrainKind::ridged;
@@ -152,13 +159,14 @@ TEST(HorizonSweep, ErrsByLittleOnGeneratedGround) {
   EXPECT_LE(*p99, 0.5);
   const std::vector fraction{SkyMeasure::sky_fraction};
   settings.engine = HorizonEngine::exact;
-  const auto truth = SkyView(field, settings, 32, fraction).rows(0, field.rows());
+  const auto truth = SkyView(field, settings, 64, fraction).rows(0, field.rows());
   settings.engine = HorizonEngine::sweep;
-  const auto found = SkyView(field, settings, 32, fraction).rows(0, field.rows());
+  const auto found = SkyView(field, settings, 64, fraction).rows(0, field.rows());
   double sum = 0;
   for (std::size_t i = 0; i < truth[0].size(); ++i) sum += std::abs(static_cast<double>(truth[0][i] - found[0][i]));
   EXPECT_LE(sum / static_cast<double>(truth[0].size()), 2e-4);
 }
+#endif
 
 }  // namespace
 }  // namespace scarp
