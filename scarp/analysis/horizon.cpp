@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
@@ -24,30 +25,46 @@ void validate(const HorizonSettings& settings) {
 Horizons::Horizons(const HeightField& field, const HorizonSettings& settings, const Progress& progress) {
   validate(settings);
   const SightGround checked(field);  // throws for fields that this station refuses
-  state_ = std::make_shared<const State>(State{
-      field, settings, HorizonRelief(field, settings.engine, 1, static_cast<float>(settings.eye_height), progress)});
+  state_ = std::make_shared<const State>(
+      State{field,
+            settings,
+            {field.settings().cell_x, field.settings().cell_y},
+            std::make_shared<const HorizonRelief>(field, settings.engine, 1, static_cast<float>(settings.eye_height),
+                                                  progress)});
+}
+
+Horizons Horizons::with_cells(double cell_x, double cell_y) const {
+  for (const double length : {cell_x, cell_y})
+    require_setting("horizon", length > 0 && std::isfinite(length), "cell length", length, "finite, above 0");
+  State state = *state_;
+  state.cells = {cell_x, cell_y};
+  return Horizons(std::make_shared<const State>(std::move(state)));
 }
 
 HorizonRows Horizons::rows(double azimuth, int first, int last, bool distances, const Progress& progress) const {
+  return block(azimuth, {0, first, state_->field.cols(), last}, distances, progress);
+}
+
+HorizonRows Horizons::block(double azimuth, const NodeRect& nodes, bool distances, const Progress& progress) const {
   require_setting("horizon", std::isfinite(azimuth), "azimuth", azimuth, "finite");
-  const RowBand band{first, last};
-  require_band(state_->field, band);
-  const std::ptrdiff_t cols = state_->field.cols();
+  require_nodes(state_->field, nodes);
+  const std::ptrdiff_t cols = nodes.col_end - nodes.col_begin;
   HorizonRows found;
-  found.angle.resize(static_cast<std::size_t>(cols * band.rows()));
+  found.angle.resize(nodes.count());
   if (distances) found.distance.resize(found.angle.size());
   const auto keep = [&](const HorizonBlock& block) {
     const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
     const float* slopes = block.slopes;
     const std::int32_t* entries = block.entries;
     for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row, slopes += width, entries += width) {
-      const auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
+      const auto at =
+          static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
       find_angles(slopes, width, &found.angle[at]);
       for (std::size_t i = 0; distances && i < width; ++i)
         found.distance[at + i] = entries[i] < 0 ? std::numeric_limits<float>::quiet_NaN() : block.distances[entries[i]];
     }
   };
-  for_each_horizon(*state_, state_->relief, {&azimuth, 1}, band, keep, progress);
+  for_each_horizon(*state_, *state_->relief, {&azimuth, 1}, nodes, keep, progress);
   return found;
 }
 

@@ -9,10 +9,12 @@
 // are kept: a node on a summit sees down to them. The results depend on no thread, vector width or band of rows.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "scarp/analysis/sight.h"
@@ -35,6 +37,14 @@ struct HorizonSettings {
   HorizonEngine engine = HorizonEngine::exact;
 };
 
+/// Nodes [col_begin, col_end) x [row_begin, row_end).
+struct NodeRect {
+  int col_begin, row_begin, col_end, row_end;
+  std::size_t count() const {
+    return static_cast<std::size_t>(col_end - col_begin) * static_cast<std::size_t>(row_end - row_begin);
+  }
+};
+
 /// Horizons of nodes, rows from north to south.
 struct HorizonRows {
   /// Radians above the horizontal, -pi/2 to pi/2. NaN on a hole; -pi/2 where the line meets no ground within the field
@@ -55,10 +65,18 @@ class Horizons {
   /// for rows outside the field and for none; Interrupted.
   HorizonRows rows(double azimuth, int first, int last, bool distances = false, const Progress& progress = {}) const;
 
+  /// The same of a block of nodes, at least one. The engine sweep sweeps whole lines.
+  HorizonRows block(double azimuth, const NodeRect& nodes, bool distances = false, const Progress& progress = {}) const;
+
+  /// The same heights, shared, with cells of other lengths in metres: for nodes in a part of a field whose cells vary.
+  /// Throws Error for lengths that are not finite and above 0.
+  Horizons with_cells(double cell_x, double cell_y) const;
+
   struct State;  ///< private to scarp/analysis
 
  private:
   friend const State& state_of(const Horizons& horizons);
+  explicit Horizons(std::shared_ptr<const State> state) : state_(std::move(state)) {}
   std::shared_ptr<const State> state_;
 };
 

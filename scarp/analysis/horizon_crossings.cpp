@@ -7,9 +7,9 @@
 namespace scarp {
 
 HorizonCrossings::HorizonCrossings(const HeightField& field, double azimuth, double reach,
-                                   const SightCurvature& curvature)
+                                   const SightCurvature& curvature, const std::optional<dvec2>& cells)
     : curvature_(curvature.per_square_metre()) {
-  const double cell_x = field.settings().cell_x, cell_y = field.settings().cell_y;
+  const double cell_x = cells ? cells->x : field.settings().cell_x, cell_y = cells ? cells->y : field.settings().cell_y;
   const double cols = std::sin(azimuth) / cell_x, rows = -std::cos(azimuth) / cell_y;
   along_columns_ = std::abs(cols) >= std::abs(rows) * (1 - kNoDirection);
   col_sign_ = cols < 0 ? -1 : 1, row_sign_ = rows < 0 ? -1 : 1;

@@ -25,6 +25,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "scarp/analysis/sight.h"
@@ -49,8 +50,9 @@ class HorizonCrossings {
  public:
   /// `azimuth`: radians clockwise from grid north, finite. `reach`: horizontal metres up to which ground counts, > 0.
   /// Directions within kNoDirection of an axis or, in cells, of a diagonal are exactly that; crossings within rounding
-  /// of a node are the node.
-  HorizonCrossings(const HeightField& field, double azimuth, double reach, const SightCurvature& curvature);
+  /// of a node are the node. `cells`: lengths in metres, if not those of the field.
+  HorizonCrossings(const HeightField& field, double azimuth, double reach, const SightCurvature& curvature,
+                   const std::optional<dvec2>& cells = {});
 
   const std::vector<HorizonCrossing>& all() const { return all_; }
   /// Whether the major axis is that of the columns; else that of the rows.

@@ -23,15 +23,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "scarp/analysis/horizon.h"
 #include "scarp/analysis/horizon_crossings.h"
 #include "scarp/analysis/horizon_ground.h"
 
 namespace scarp {
-
-/// Nodes [col_begin, col_end) x [row_begin, row_end).
-struct NodeRect {
-  int col_begin, row_begin, col_end, row_end;
-};
 
 /// The crossings of an azimuth with offsets in the memory of a ground, and the segments of its levels.
 class HorizonTable {

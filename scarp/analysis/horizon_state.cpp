@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/analysis/horizon_state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "scarp/analysis/map_part.h"
+#include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/progress_part.h"
 
@@ -21,10 +25,10 @@ constexpr std::size_t kTablesAtOnce = 64;
 using Body = std::function<void(const HorizonBlock&)>;
 
 void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-          const RowBand& band, const Body& body, const Progress& progress) {
+          const NodeRect& nodes, const Body& body, const Progress& progress) {
   const HorizonGround& ground = *relief.ground;
-  const int cols = ground.cols();
-  const std::int64_t across = (cols + kStripCols - 1) / kStripCols, down = (band.rows() + kBlockRows - 1) / kBlockRows;
+  const std::int64_t across = (nodes.col_end - nodes.col_begin + kStripCols - 1) / kStripCols;
+  const std::int64_t down = (nodes.row_end - nodes.row_begin + kBlockRows - 1) / kBlockRows;
   const double parts = std::ceil(static_cast<double>(azimuths.size()) / kTablesAtOnce);
   for (std::size_t begin = 0; begin < azimuths.size(); begin += kTablesAtOnce) {
     const std::size_t end = std::min(begin + kTablesAtOnce, azimuths.size());
@@ -32,16 +36,16 @@ void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<c
     for (std::size_t i = begin; i < end; ++i) tables.emplace_back(ground, state.crossings(azimuths[i]));
     const auto blocks = [&](std::int64_t first, std::int64_t last) {
       for (std::int64_t block = first; block < last; ++block) {
-        const int col = static_cast<int>(block % across) * kStripCols;
-        const int row = band.first + static_cast<int>(block / across) * kBlockRows;
-        const NodeRect nodes{col, row, std::min(col + kStripCols, cols), std::min(row + kBlockRows, band.last)};
-        const int width = nodes.col_end - nodes.col_begin;
-        const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(nodes.row_end - nodes.row_begin);
-        std::vector<float> slopes(count);
-        std::vector<std::int32_t> entries(count);
+        const int col = nodes.col_begin + static_cast<int>(block % across) * kStripCols;
+        const int row = nodes.row_begin + static_cast<int>(block / across) * kBlockRows;
+        const NodeRect here{col, row, std::min(col + kStripCols, nodes.col_end),
+                            std::min(row + kBlockRows, nodes.row_end)};
+        std::vector<float> slopes(here.count());
+        std::vector<std::int32_t> entries(here.count());
         for (std::size_t i = begin; i < end; ++i) {
-          scan_horizon(ground, tables[i - begin], relief.eye, nodes, slopes.data(), entries.data(), width);
-          body({nodes, i, slopes.data(), entries.data(), tables[i - begin].distances().data()});
+          scan_horizon(ground, tables[i - begin], relief.eye, here, slopes.data(), entries.data(),
+                       here.col_end - here.col_begin);
+          body({here, i, slopes.data(), entries.data(), tables[i - begin].distances().data()});
         }
       }
     };
@@ -99,30 +103,31 @@ class CollectedColumns {
 };
 
 void sweep(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-           const RowBand& band, const Body& body, const Progress& progress) {
+           const NodeRect& nodes, const Body& body, const Progress& progress) {
   for (std::size_t i = 0; i < azimuths.size(); ++i) {
     const HorizonCrossings crossings = state.crossings(azimuths[i]);
     const bool transposed = crossings.along_columns();
     const HorizonHeights& heights = transposed ? *relief.transposed : *relief.heights;
     const SweepTable table(heights, crossings);
-    // Rows nearer than the band hide nothing in it.
-    int visits = heights.rows();
-    if (!transposed) visits = table.row_sign() > 0 ? heights.rows() - band.first : band.last;
+    // In the rows and columns of the heights.
+    const NodeRect inner =
+        transposed ? NodeRect{nodes.row_begin, nodes.col_begin, nodes.row_end, nodes.col_end} : nodes;
+    // Rows nearer than the nodes hide nothing in them.
+    const int visits = table.row_sign() > 0 ? heights.rows() - inner.row_begin : inner.row_end;
     const int drift = swept_place(table, visits - 1).nearest;
-    const int first = (transposed ? band.first : 0) - std::max(drift, 0);
-    const int last = (transposed ? band.last : heights.cols()) - std::min(drift, 0);
+    const int first = inner.col_begin - std::max(drift, 0), last = inner.col_end - std::min(drift, 0);
     const auto strips = [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t strip = begin; strip < end; ++strip) {
         CollectedColumns columns(i, table.row_sign() < 0, table.distances().data(), body);
         const SweepSink sink = [&](int col, int row, int count, const float* slopes, const std::int32_t* entries) {
-          if (!transposed) {
-            if (row >= band.first && row < band.last)
-              body({{col, row, col + count, row + 1}, i, slopes, entries, table.distances().data()});
-            return;
+          const int before = std::max(inner.col_begin - col, 0), behind = std::max(col + count - inner.col_end, 0);
+          if (row < inner.row_begin || row >= inner.row_end || before + behind >= count) return;
+          const int to = col + before, kept = count - before - behind;
+          if (transposed) {
+            columns.add(row, to, kept, slopes + before, entries + before);
+          } else {
+            body({{to, row, to + kept, row + 1}, i, slopes + before, entries + before, table.distances().data()});
           }
-          const int above = std::max(band.first - col, 0), below = std::max(col + count - band.last, 0);
-          if (above + below < count)
-            columns.add(row, col + above, count - above - below, slopes + above, entries + above);
         };
         sweep_horizons(heights, table, relief.eye, first + static_cast<int>(strip) * kSweptLines, visits, sink);
         columns.pass_on();
@@ -145,10 +150,17 @@ HorizonRelief::HorizonRelief(const HeightField& field, HorizonEngine engine, int
   }
 }
 
+void require_nodes(const HeightField& field, const NodeRect& nodes) {
+  require_band(field, {nodes.row_begin, nodes.row_end});
+  if (nodes.col_begin < 0 || nodes.col_end > field.cols() || nodes.col_begin >= nodes.col_end)
+    throw Error(
+        fmt::format("map: columns {} to {} of a field of {} columns", nodes.col_begin, nodes.col_end, field.cols()));
+}
+
 void for_each_horizon(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-                      const RowBand& band, const Body& body, const Progress& progress) {
-  require_band(state.field, band);
-  (relief.ground ? scan : sweep)(state, relief, azimuths, band, body, progress);
+                      const NodeRect& nodes, const Body& body, const Progress& progress) {
+  require_nodes(state.field, nodes);
+  (relief.ground ? scan : sweep)(state, relief, azimuths, nodes, body, progress);
 }
 
 }  // namespace scarp

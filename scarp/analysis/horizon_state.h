@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -11,7 +12,6 @@
 #include "scarp/analysis/horizon_ground.h"
 #include "scarp/analysis/horizon_scan.h"
 #include "scarp/analysis/horizon_sweep.h"
-#include "scarp/analysis/map_part.h"
 
 namespace scarp {
 
@@ -31,10 +31,11 @@ struct HorizonRelief {
 struct Horizons::State {
   HeightField field;
   HorizonSettings settings;
-  HorizonRelief relief;
+  dvec2 cells;  ///< lengths in metres, which may differ from those of the field
+  std::shared_ptr<const HorizonRelief> relief;
 
   HorizonCrossings crossings(double azimuth) const {
-    return HorizonCrossings(field, azimuth, settings.max_distance, settings.curvature);
+    return HorizonCrossings(field, azimuth, settings.max_distance, settings.curvature, cells);
   }
 };
 
@@ -49,12 +50,14 @@ struct HorizonBlock {
   const float* distances;       ///< of entries; horizontal metres
 };
 
-/// Finds the horizons of a band of rows for each azimuth (radians from grid north), on all threads: body(block) for
+/// Throws Error for a rectangle without nodes and one that is not inside the field.
+void require_nodes(const HeightField& field, const NodeRect& nodes);
+
+/// Finds the horizons of a block of nodes for each azimuth (radians from grid north), on all threads: body(block) for
 /// blocks that cover all nodes for each azimuth; those of a node come in the order of the azimuths, one at a time.
-/// `relief` is that of the state, or the same upside down. Throws Error for an empty band and one beside the field;
-/// Interrupted.
+/// `relief` is that of the state, or the same upside down. Throws as require_nodes() does; Interrupted.
 void for_each_horizon(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-                      const RowBand& band, const std::function<void(const HorizonBlock&)>& body,
+                      const NodeRect& nodes, const std::function<void(const HorizonBlock&)>& body,
                       const Progress& progress);
 
 }  // namespace scarp

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "scarp/analysis/horizon_measures.h"
@@ -27,7 +26,7 @@ struct SkyView::State {
   Horizons horizons;
   std::vector<double> azimuths;
   std::vector<SkyMeasure> measures;
-  std::optional<HorizonRelief> inverted;
+  std::shared_ptr<const HorizonRelief> inverted;
 };
 
 SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int azimuths,
@@ -38,24 +37,36 @@ SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int 
   auto state = std::make_unique<State>(
       State{Horizons(field, settings, progress_part(progress, 0, parts)), {}, std::move(measures), {}});
   for (int i = 0; i < azimuths; ++i) state->azimuths.push_back(2 * std::numbers::pi * i / azimuths);
-  if (inverted) state->inverted.emplace(field, settings.engine, -1, 0.0f, progress_part(progress, 1, parts));
+  if (inverted)
+    state->inverted =
+        std::make_shared<const HorizonRelief>(field, settings.engine, -1, 0.0f, progress_part(progress, 1, parts));
   state_ = std::move(state);
 }
 
 SkyView::~SkyView() = default;
 SkyView::SkyView(SkyView&&) noexcept = default;
+SkyView::SkyView(std::unique_ptr<const State> state) : state_(std::move(state)) {}
+
+SkyView SkyView::with_cells(double cell_x, double cell_y) const {
+  auto state = std::make_unique<State>(*state_);
+  state->horizons = state->horizons.with_cells(cell_x, cell_y);
+  return SkyView(std::move(state));
+}
 
 std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progress& progress) const {
+  return block({0, first, state_of(state_->horizons).field.cols(), last}, progress);
+}
+
+std::vector<std::vector<float>> SkyView::block(const NodeRect& nodes, const Progress& progress) const {
   const auto& state = state_of(state_->horizons);
-  const RowBand band{first, last};
-  require_band(state.field, band);
-  const std::ptrdiff_t cols = state.field.cols();
+  require_nodes(state.field, nodes);
+  const std::ptrdiff_t cols = nodes.col_end - nodes.col_begin;
   std::vector<std::vector<float>> maps(state_->measures.size());
-  for (auto& map : maps) map.assign(static_cast<std::size_t>(cols * band.rows()), 0.0f);
+  for (auto& map : maps) map.assign(nodes.count(), 0.0f);
   TangentPlanes planes;
   if (std::find(state_->measures.begin(), state_->measures.end(), SkyMeasure::sky_view_factor) !=
       state_->measures.end())
-    planes = TangentPlanes(state.field, band);
+    planes = TangentPlanes(state.field, nodes, state.cells);
   const auto add = [&](const HorizonRelief& relief, bool inverted, const Progress& of_pass) {
     const auto add_block = [&](const HorizonBlock& block) {
       const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
@@ -63,7 +74,8 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
       const auto east = static_cast<float>(std::sin(azimuth)), north = static_cast<float>(std::cos(azimuth));
       const float* slopes = block.slopes;
       for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row, slopes += width) {
-        const auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
+        const auto at =
+            static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
         for (std::size_t m = 0; m < maps.size(); ++m) {
           if (is_inverted(state_->measures[m]) != inverted) continue;
           float* sums = maps[m].data() + at;
@@ -78,11 +90,11 @@ std::vector<std::vector<float>> SkyView::rows(int first, int last, const Progres
         }
       }
     };
-    for_each_horizon(state, relief, state_->azimuths, band, add_block, of_pass);
+    for_each_horizon(state, relief, state_->azimuths, nodes, add_block, of_pass);
   };
   const bool upright = !std::all_of(state_->measures.begin(), state_->measures.end(), is_inverted);
   const double passes = upright && state_->inverted ? 2 : 1;
-  if (upright) add(state.relief, false, progress_part(progress, 0, passes));
+  if (upright) add(*state.relief, false, progress_part(progress, 0, passes));
   if (state_->inverted) add(*state_->inverted, true, progress_part(progress, passes - 1, passes));
   const float share = 1 / static_cast<float>(state_->azimuths.size());
   for (auto& map : maps) {

@@ -42,8 +42,13 @@ class SkyView {
   /// Horizons::rows() does.
   std::vector<std::vector<float>> rows(int first, int last, const Progress& progress = {}) const;
 
+  /// As Horizons has them.
+  std::vector<std::vector<float>> block(const NodeRect& nodes, const Progress& progress = {}) const;
+  SkyView with_cells(double cell_x, double cell_y) const;
+
  private:
   struct State;
+  explicit SkyView(std::unique_ptr<const State> state);
   std::unique_ptr<const State> state_;
 };
 

@@ -46,12 +46,14 @@ class BeamByHeight {
   std::vector<float> beam_;
 };
 
-// The energy of a band of rows.
+// The energy of a block of nodes.
 class EnergySums {
  public:
-  EnergySums(const HeightField& field, const RowBand& band, std::span<const SunMoment> moments,
-             const ClearSkyGround& ground, const HorizonHeights& heights)
-      : planes_(field, band), ground_(ground) {
+  EnergySums(const Horizons::State& state, const NodeRect& nodes, std::span<const SunMoment> moments,
+             const ClearSkyGround& ground)
+      : planes_(state.field, nodes, state.cells), ground_(ground) {
+    const HeightField& field = state.field;
+    const HorizonHeights& heights = state.relief->of_nodes();
     for (const SunMoment& moment : moments) {
       beams_.emplace_back(field, moment, ground.linke);
       const SunDirection& sun = moment.sun;
@@ -61,8 +63,8 @@ class EnergySums {
       const double diffuse = clear_sky(sun.altitude, 0, moment.day_of_year, ground.linke).diffuse;
       diffuse_ += moment.hours * diffuse / 1000;
     }
-    for (int row = band.first; row < band.last; ++row) {
-      for (int col = 0; col < field.cols(); ++col) {
+    for (int row = nodes.row_begin; row < nodes.row_end; ++row) {
+      for (int col = nodes.col_begin; col < nodes.col_end; ++col) {
         const float height = *heights.height(col, row);
         const bool hole = std::isnan(height) || moments.empty();
         places_.push_back(hole ? 0 : beams_.front().place(static_cast<double>(height)));
@@ -121,6 +123,11 @@ void validate(const ClearSkyGround& ground, std::size_t nodes) {
 
 SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, int first, int last,
                    const ClearSkyGround* ground, const Progress& progress) {
+  return sun_hours(horizons, moments, {0, first, state_of(horizons).field.cols(), last}, ground, progress);
+}
+
+SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, const NodeRect& nodes,
+                   const ClearSkyGround* ground, const Progress& progress) {
   for (const SunMoment& moment : moments) {
     require_setting("sun hours", std::isfinite(moment.sun.azimuth), "sun azimuth", moment.sun.azimuth, "finite");
     require_setting("sun hours", moment.sun.altitude > 0 && moment.sun.altitude <= std::numbers::pi / 2, "sun altitude",
@@ -128,19 +135,18 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
     require_setting("sun hours", std::isfinite(moment.hours), "length of a moment", moment.hours, "finite");
   }
   const auto& state = state_of(horizons);
-  const RowBand band{first, last};
-  require_band(state.field, band);
-  const std::ptrdiff_t cols = state.field.cols();
+  require_nodes(state.field, nodes);
+  const std::ptrdiff_t cols = nodes.col_end - nodes.col_begin;
   std::vector<double> sums;  // hours; NaN on holes
-  for (int row = first; row < last; ++row) {
-    const float* heights = state.relief.of_nodes().height(0, row);
+  for (int row = nodes.row_begin; row < nodes.row_end; ++row) {
+    const float* heights = state.relief->of_nodes().height(nodes.col_begin, row);
     for (std::ptrdiff_t col = 0; col < cols; ++col)
       sums.push_back(std::isnan(heights[col]) ? std::numeric_limits<double>::quiet_NaN() : 0);
   }
   std::optional<EnergySums> energy;
   if (ground) {
     validate(*ground, sums.size());
-    energy.emplace(state.field, band, moments, *ground, state.relief.of_nodes());
+    energy.emplace(state, nodes, moments, *ground);
   }
   SunHours found;
   found.hours.resize(sums.size());
@@ -152,7 +158,7 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
     const auto sun = static_cast<float>(std::tan(moment.sun.altitude));
     const float* slope = block.slopes;
     for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row) {
-      auto at = static_cast<std::size_t>((row - first) * cols + block.nodes.col_begin);
+      auto at = static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
       for (int col = block.nodes.col_begin; col < block.nodes.col_end; ++col, ++at, ++slope) {
         if (!(*slope <= sun)) continue;  // holes, too
         sums[at] += moment.hours;
@@ -162,7 +168,7 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
       }
     }
   };
-  for_each_horizon(state, state.relief, azimuths, band, add, progress);
+  for_each_horizon(state, *state.relief, azimuths, nodes, add, progress);
   for (std::size_t i = 0; i < sums.size(); ++i) found.hours[i] = static_cast<float>(sums[i]);
   if (energy) found.energy = energy->total(moments, sums);
   return found;

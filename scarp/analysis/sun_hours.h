@@ -49,4 +49,8 @@ struct SunHours {
 SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, int first, int last,
                    const ClearSkyGround* ground = nullptr, const Progress& progress = {});
 
+/// The same of a block of nodes, at least one.
+SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, const NodeRect& nodes,
+                   const ClearSkyGround* ground = nullptr, const Progress& progress = {});
+
 }  // namespace scarp

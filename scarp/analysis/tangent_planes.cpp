@@ -18,21 +18,21 @@ double slope_of(std::optional<double> before, double here, std::optional<double>
 
 }  // namespace
 
-TangentPlanes::TangentPlanes(const HeightField& field, const RowBand& band) {
-  const std::ptrdiff_t cols = field.cols();
-  for (auto* numbers : {&east, &north, &level}) numbers->resize(static_cast<std::size_t>(cols * band.rows()));
+TangentPlanes::TangentPlanes(const HeightField& field, const NodeRect& nodes, const dvec2& cells) {
+  const std::ptrdiff_t cols = nodes.col_end - nodes.col_begin;
+  for (auto* numbers : {&east, &north, &level}) numbers->resize(nodes.count());
   const SightGround ground(field);
   const auto height = [&](int col, int row) -> std::optional<double> {
     if (col < 0 || row < 0 || col >= field.cols() || row >= field.rows()) return std::nullopt;
     return ground.height({col, row});
   };
-  parallel_for(band.rows(), 1, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(nodes.row_end - nodes.row_begin, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::ptrdiff_t i = begin * cols; i < end * cols; ++i) {
-      const int col = static_cast<int>(i % cols), row = band.first + static_cast<int>(i / cols);
+      const int col = nodes.col_begin + static_cast<int>(i % cols), row = nodes.row_begin + static_cast<int>(i / cols);
       const auto here = height(col, row);
       if (!here) continue;
-      const double x = slope_of(height(col - 1, row), *here, height(col + 1, row), field.settings().cell_x);
-      const double y = slope_of(height(col, row + 1), *here, height(col, row - 1), field.settings().cell_y);
+      const double x = slope_of(height(col - 1, row), *here, height(col + 1, row), cells.x);
+      const double y = slope_of(height(col, row + 1), *here, height(col, row - 1), cells.y);
       const double length = 1 / std::sqrt(1 + x * x + y * y);
       const auto at = static_cast<std::size_t>(i);
       east[at] = static_cast<float>(-x * length), north[at] = static_cast<float>(-y * length);

@@ -5,19 +5,19 @@
 
 #include <vector>
 
-#include "scarp/analysis/map_part.h"
+#include "scarp/analysis/horizon.h"
 #include "scarp/analysis/sight.h"
 #include "scarp/base/vec.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
 
-/// The upward normals of a band of rows, of length 1; 0 on holes.
+/// The upward normals of a block of nodes, of length 1; 0 on holes. `cells`: lengths in metres.
 struct TangentPlanes {
   std::vector<float> east, north, level;
 
   TangentPlanes() = default;
-  TangentPlanes(const HeightField& field, const RowBand& band);
+  TangentPlanes(const HeightField& field, const NodeRect& nodes, const dvec2& cells);
 };
 
 /// The upward normal at a place in columns and rows, east, north and up, of length 1, from bilinear heights one cell

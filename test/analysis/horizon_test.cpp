@@ -201,6 +201,56 @@ TEST(Horizons, DependOnNoBandAndNoThread) {
   }
 }
 
+// Blocks of a field, over cells of any lengths, are those of a field with such cells.
+TEST(Horizons, BlocksHaveTheirOwnCells) {
+  const std::vector measures{SkyMeasure::sky_view_factor, SkyMeasure::negative_openness};
+  for (const HorizonEngine engine : {HorizonEngine::exact, HorizonEngine::sweep}) {
+    HorizonShape made = shape(7);
+    made.settings.engine = engine;
+    HeightFieldSettings other = made.field.settings();
+    other.cell_x *= 0.7, other.cell_y *= 1.1;
+    std::vector<float> heights;
+    for (int row = 0; row < made.field.rows(); ++row)
+      for (int col = 0; col < made.field.cols(); ++col)
+        heights.push_back(static_cast<float>(SightGround(made.field).height({col, row}).value_or(kHole)));
+    const HeightField field = HeightField::own(std::move(heights), made.field.cols(), made.field.rows(), other);
+    ASSERT_GT(field.cols(), 40);
+    ASSERT_GT(field.rows(), 10);
+    const NodeRect nodes{11, 5, 37, 9};
+    const auto clipped = [&](const std::vector<float>& whole) {
+      std::vector<float> part;
+      for (int row = nodes.row_begin; row < nodes.row_end; ++row)
+        for (int col = nodes.col_begin; col < nodes.col_end; ++col)
+          part.push_back(whole[static_cast<std::size_t>(row * field.cols() + col)]);
+      return bits(part);
+    };
+    const Horizons whole(field, made.settings),
+        blocks = Horizons(made.field, made.settings).with_cells(other.cell_x, other.cell_y);
+    for (const double azimuth : {1.2345, 0.2345, 3.0, 4.5, kPi, 1.5 * kPi}) {
+      const HorizonRows expected = whole.rows(azimuth, 0, field.rows(), true);
+      const HorizonRows found = blocks.block(azimuth, nodes, true);
+      EXPECT_EQ(bits(found.angle), clipped(expected.angle));
+      EXPECT_EQ(bits(found.distance), clipped(expected.distance));
+    }
+    const auto sky = SkyView(field, made.settings, 8, measures).rows(0, field.rows());
+    const auto part = SkyView(made.field, made.settings, 8, measures).with_cells(other.cell_x, other.cell_y);
+    const auto found = part.block(nodes);
+    for (std::size_t m = 0; m < measures.size(); ++m) EXPECT_EQ(bits(found[m]), clipped(sky[m]));
+    const SunMoment moments[] = {{{1, 0.3}, 1.5, 80}, {{4, 0.6}, 0.5, 80}};
+    const auto clear = [&](std::span<const float> factor) { return ClearSkyGround{3, 0.2, factor}; };
+    const std::vector<float> all(static_cast<std::size_t>(field.cols() * field.rows()), 0.9f), few(nodes.count(), 0.9f);
+    const ClearSkyGround of_all = clear(all), of_few = clear(few);
+    const SunHours hours = sun_hours(whole, moments, 0, field.rows(), &of_all);
+    const SunHours of_block = sun_hours(blocks, moments, nodes, &of_few);
+    EXPECT_EQ(bits(of_block.hours), clipped(hours.hours));
+    EXPECT_EQ(bits(of_block.energy.beam), clipped(hours.energy.beam));
+    EXPECT_EQ(bits(of_block.energy.reflected), clipped(hours.energy.reflected));
+    for (const NodeRect& bad : {NodeRect{5, 5, 5, 6}, {-1, 0, 1, 1}, {0, 0, field.cols() + 1, 1}, {0, 0, 1, 0}})
+      EXPECT_THROW(blocks.block(0, bad), Error);
+    EXPECT_THROW(blocks.with_cells(0, 1), Error);
+  }
+}
+
 TEST(Horizons, AzimuthsOfAFullTurnAreEqual) {
   const HorizonShape made = shape(16);
   const Horizons horizons(made.field, made.settings);
