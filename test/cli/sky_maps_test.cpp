@@ -14,7 +14,16 @@ namespace {
 
 class SkyMaps : public MapsCli {};
 
-// The wall is 50 m high and 100 m on the map, 100.04 m on the ground, east of column 10.
+// The wall is 50 m high and 100 m on the map east of column 10. On the ground that is 100 m / 0.9996: the model is on
+// the meridian of its zone.
+constexpr double kWall = 100 / 0.9996;
+// ground_scale.h promises lengths to 1e-6. Slopes of 1/2 and angles are floats, each rounded to half of 2^-24; an arc
+// tangent is off by 2^-22 at most (horizon_measures.h).
+constexpr double kDegrees = 57.29577951308232;
+const double kWallAngle = kDegrees * std::atan(50 / kWall);
+constexpr double kAngleError = kDegrees * (0.5e-6 + 0x1p-22 + 2 * 0x1p-25) + 0x1p-20;
+constexpr double kWallError = kWall * 1e-6 + 0x1p-18;
+
 TEST_F(SkyMaps, HorizonsAreMeasuredFromEveryPixel) {
   const Names flat = on_dem("horizon") + Names{"--cc", "0"};
   const auto result = run(flat + Names{"--azimuths", "4", "--distance", "-o", path("h.tif")});
@@ -23,8 +32,8 @@ TEST_F(SkyMaps, HorizonsAreMeasuredFromEveryPixel) {
   const auto map = open(path("h.tif"));
   ASSERT_EQ(map->GetRasterCount(), 8);
   EXPECT_STREQ(map->GetRasterBand(2)->GetDescription(), "horizon 90");
-  EXPECT_NEAR(pixels_of(*map, 2).at(10, 9), 26.5559f, 1e-3f);  // atan(50 / 100.04)
-  EXPECT_NEAR(pixels_of(*map, 6).at(10, 9), 100.04f, 1e-3f);
+  EXPECT_NEAR(static_cast<double>(pixels_of(*map, 2).at(10, 9)), kWallAngle, kAngleError);
+  EXPECT_NEAR(static_cast<double>(pixels_of(*map, 6).at(10, 9)), kWall, kWallError);
   EXPECT_FLOAT_EQ(pixels_of(*map, 4).at(10, 9), 0);     // west: flat
   EXPECT_FLOAT_EQ(pixels_of(*map, 4).at(0, 9), -90);    // the border
   EXPECT_FLOAT_EQ(pixels_of(*map, 2).at(0, 0), -9999);  // the hole
@@ -59,8 +68,10 @@ TEST_F(SkyMaps, FarthestHorizonIsTheLargestDistance) {
     }
   }
   // In row 9, 95 m and 9 rows from the border in the north, 100 m from the wall and 100 m from the border in the west:
-  // at 60 degrees the wall is 100 m / sin 60 away.
-  EXPECT_NEAR(bands[24].at(10, 9), 100.04 / std::sin(std::acos(-1) / 3), 0.01);
+  // at 60 degrees the wall is 100 m / sin 60 away. The middle of the raster is 150 m east of the zone's meridian,
+  // at 45.15 degrees: north is turned by that.
+  const double north = 150 / 6.389e6 * std::tan(45.15 / kDegrees);
+  EXPECT_NEAR(static_cast<double>(bands[24].at(10, 9)), kWall / std::sin(60 / kDegrees - north), 2 * kWallError);
   EXPECT_EQ(bands[25].at(10, 9), 60);
   EXPECT_EQ(bands[24].at(0, 0), -9999);  // the hole
   // Without the bands of distances, the same.
@@ -229,7 +240,7 @@ TEST_F(SkyMaps, SweepsStateTheirError) {
   ASSERT_EQ(
       run(on_dem("horizon") + Names{"--cc", "0", "--azimuths", "4", "--engine", "sweep", "-o", path("h.tif")}).status,
       0);
-  EXPECT_NEAR(pixels_of(*open(path("h.tif")), 2).at(10, 9), 26.5559f, 1e-3f);  // atan(50 / 100.04)
+  EXPECT_NEAR(static_cast<double>(pixels_of(*open(path("h.tif")), 2).at(10, 9)), kWallAngle, kAngleError);
   expect_refused(on_dem("horizon") + Names{"--at", "500105,5000105", "--engine", "sweep"},
                  "--engine cannot be combined with --at");
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <string>
 
 #include "cli/csv_rows.h"
@@ -136,16 +137,71 @@ TEST_F(SunPoint, DaysAreRowsAndMayHaveNoSun) {
   EXPECT_NE(text_of(path("d.csv")).find("2026-06-21,00:00:00,24:00:00,24.0000\n"), std::string::npos);
 }
 
+// Each point has the rows that --at has there; months are the sums of their days.
+TEST_F(SunPoint, PointsHaveTheRowsOfSinglePlaces) {
+  const std::string table =
+      scratch_.write("sites.csv", "name,x,y,z\n\"mast, north\",500105,5000105,25\nfar,1,1,0\nhut,500155,5000055,0\n");
+  const Names sun =
+      on_dem("sunhours") + Names{"--date", "2026-03-30", "--to", "2026-04-01", "--step", "30", "--energy"};
+  const Names points = sun + Names{"--points", table};
+  const auto result = run(points + Names{"--skip-bad", "-o", path("p.csv")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("3 points, 3 days"), std::string::npos) << result.out;
+  const std::string energy = ",energy,beam,diffuse,reflected";
+  std::string expected = "name,point,date,first_sun,last_sun,hours" + energy + ",status\n";
+  std::string months = "name,point,period,hours" + energy + ",status\n";
+  const auto add = [&](const std::string& before, const std::string& place) {
+    const auto one = run(sun + Names{"--at", place});
+    EXPECT_EQ(one.status, 0) << one.err;
+    std::string header, line;
+    std::istringstream days(one.out);
+    std::getline(days, header);
+    while (std::getline(days, line)) expected += before + line + ",ok\n";
+    const auto sums = run(sun + Names{"--at", place, "--sum", "month"});
+    std::istringstream of_months(sums.out);
+    std::getline(of_months, header);
+    while (std::getline(of_months, line)) months += before + line + ",ok\n";
+  };
+  add("\"mast, north\",1,", "500105,5000105,25");
+  expected += "far,2,,,,,,,,,outside\n", months += "far,2,,,,,,,outside\n";
+  add("hut,3,", "500155,5000055,0");
+  EXPECT_EQ(text_of(path("p.csv")), expected);
+  ASSERT_EQ(run(points + Names{"--skip-bad", "--sum", "month", "-o", path("p.csv")}).status, 0);
+  EXPECT_EQ(text_of(path("p.csv")), months);
+  // March has two of the days.
+  double hours[3] = {}, march = 0, beam[3] = {}, of_march = 0;
+  const Names at = sun + Names{"--at", "500155,5000055"};
+  const std::string days = run(at).out, sums = run(at + Names{"--sum", "month"}).out;
+  const auto line = [](const std::string& text, int number) {
+    std::size_t begin = 0;
+    for (int i = 0; i < number; ++i) begin = text.find('\n', begin) + 1;
+    return text.substr(begin, text.find('\n', begin) - begin);
+  };
+  for (int i = 0; i < 3; ++i)
+    ASSERT_EQ(std::sscanf(line(days, i + 1).c_str(), "%*[^,],%*[^,],%*[^,],%lf,%*f,%lf", &hours[i], &beam[i]), 2)
+        << days;
+  ASSERT_EQ(std::sscanf(line(sums, 1).c_str(), "2026-03,%lf,%*f,%lf", &march, &of_march), 2) << sums;
+  // Rounded to 4 and 5 decimals.
+  EXPECT_NEAR(march, hours[0] + hours[1], 1.5e-4);
+  EXPECT_NEAR(of_march, beam[0] + beam[1], 1.5e-5);
+  expect_refused(points + Names{"-o", path("x.csv")}, "sites.csv: line 3: 1,1 is outside");
+  expect_refused(on_dem("sunhours") + Names{"--date", "2026-03-30", "--points", table, "-o", path("x.svg")},
+                 "a figure shows one point, not 3");
+}
+
 TEST_F(SunPoint, ReportsBadInputInOneLineWithoutOutput) {
   const Names point = on_dem("sunhours") + Names{"--date", "2026-06-21", "--at", "500105,5000105"};
   expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21"}, "-o FILE is required");
   expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--coords", "map", "-o", path("x.tif")},
-                 "--coords has no effect without --at X,Y");
+                 "--coords has no effect without --at or --points");
   expect_refused(point + Names{"-o", path("x.tif")}, "expected .csv, .svg, .pdf or .png with --at");
-  for (const Names& option : {Names{"--sum", "day"}, {"--first-last"}, {"--part", "1/2"}, {"--engine", "exact"}})
+  for (const Names& option : {Names{"--first-last"}, {"--part", "1/2"}, {"--engine", "exact"}})
     expect_refused(point + option, option[0] + " cannot be combined with --at");
   expect_refused(point + Names{"--to", "2026-06-22", "-o", path("x.svg")},
                  "--to has no effect without a map or a table");
+  expect_refused(point + Names{"--sum", "day", "-o", path("x.svg")}, "--sum has no effect without a map or a table");
+  expect_refused(point + Names{"--points", path("x.csv")}, "--points cannot be combined with --at");
+  expect_refused(point + Names{"--skip-bad"}, "--skip-bad");
   expect_refused(point + Names{"--energy", "-o", path("x.svg")}, "--energy has no effect without a map or a table");
   expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--at", "500005,5000195"}, "over a hole");
   expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--at", "nan,1"}, "--at");

@@ -17,6 +17,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/commands/horizon_points.h"
+#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/plot_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/progress.h"
@@ -68,31 +69,46 @@ class FarthestHorizon {
   std::vector<float> distance_, azimuth_;
 };
 
+// The rows of all blocks. `azimuth`: radians clockwise from true north.
+HorizonRows rows_of(const Horizons& horizons, const std::vector<HorizonFrame>& blocks, double azimuth,
+                    const RowBand& rows, int cols, bool distances, const Progress& progress) {
+  HorizonRows all;
+  const auto pixels = static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(cols);
+  all.angle.resize(pixels), all.distance.resize(distances ? pixels : 0);
+  const auto add = [&](const HorizonFrame& block, const Progress& of_block) {
+    const HorizonRows found = horizons.with_cells(block.cells.x, block.cells.y)
+                                  .block(azimuth - block.grid_north, block.nodes, distances, of_block);
+    paste(found.angle, block, rows, cols, all.angle);
+    if (distances) paste(found.distance, block, rows, cols, all.distance);
+  };
+  for_each_frame(blocks, add, progress);
+  return all;
+}
+
 void run(HorizonOptions options, const Command& command) {
   if (options.at_points()) return write_point_horizons(options);
   if (options.output.empty()) throw WrongUsage("-o FILE is required (see 'scarp horizon --help')");
   MapRun run(options, command, options.pack ? "UInt16" : "Float32");
   const std::vector<double> azimuths = options.all_azimuths();
   const auto count = static_cast<double>(azimuths.size());
+  const HorizonFrames frames(run.input(), options.horizon, options.plane_error, FrameUse::north);
   run.set_reach(options.horizon.reach());
   const double bytes = (options.pack ? 2 : 4) * count * (options.distance ? 2 : 1) + (options.farthest ? 8 : 0);
   if (!run.begin(13 + bytes, count * options.horizon.node_azimuth_s())) return;
   MapInput& input = run.input();
   double highest = -90;
-  std::optional<HorizonPlane> plane;
   std::optional<Horizons> horizons;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
-    if (!horizons) {
-      plane = horizon_plane(input);
-      horizons.emplace(plane->field, horizon_settings(options.horizon, input), terminal_progress("heights"));
-    }
+    if (!horizons)
+      horizons.emplace(input.field(), horizon_settings(options.horizon, input), terminal_progress("heights"));
+    const std::vector<HorizonFrame> blocks = frames.of(input, rows);
     std::vector<ComputedBand> bands, distances;
     FarthestHorizon farthest;
     for (std::size_t i = 0; i < azimuths.size(); ++i) {
       const double azimuth = azimuths[i];
       HorizonRows found =
-          horizons->rows(azimuth / kDegreesPerRadian - plane->grid_north, rows.first, rows.last,
-                         options.distance || options.farthest, progress_part(progress, static_cast<double>(i), count));
+          rows_of(*horizons, blocks, azimuth / kDegreesPerRadian, rows, input.part().cols,
+                  options.distance || options.farthest, progress_part(progress, static_cast<double>(i), count));
       for (float& angle : found.angle) {
         angle = options.clamp && angle < 0 ? 0 : static_cast<float>(static_cast<double>(angle) * kDegreesPerRadian);
         highest = std::fmax(highest, static_cast<double>(angle));
@@ -110,12 +126,13 @@ void run(HorizonOptions options, const Command& command) {
   };
   const auto summary = [&] {
     std::vector<double> directions;
-    for (const double azimuth : azimuths) directions.push_back(azimuth / kDegreesPerRadian - plane->grid_north);
-    const std::string errors = horizon_errors_text(options.horizon, input, plane->field, directions, run.rows());
+    for (const double azimuth : azimuths) directions.push_back(azimuth / kDegreesPerRadian);
+    const std::string errors = horizon_errors_text(options.horizon, input, directions, run.rows());
     return fmt::format("{} azimuths, highest {:.4g} degrees; {}{}", azimuths.size(), highest, input.curvature_text(),
                        errors);
   };
   Metadata metadata = horizon_metadata(options.horizon, input);
+  for (auto& pair : frames.metadata()) metadata.push_back(std::move(pair));
   metadata.emplace_back("CLAMP", options.clamp ? "0 instead of angles below the horizontal" : "none");
   run.write({horizon_method(options.horizon) + kHorizonMethod,
              metadata,

@@ -2,10 +2,13 @@
 // Points whose horizons are computed one by one, direction by direction.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "app/cli/options/horizon_options.h"
+#include "app/cli/options/place_file.h"
 #include "scarp/source/raster/opened_raster.h"
 #include "scarp/source/table/place_table.h"
 
@@ -25,6 +28,16 @@ dvec2 horizon_position(MapInput& input, const PlaceTable& table, std::size_t row
 /// row, or --at, for a negative height.
 HorizonPlace horizon_place(MapInput& input, const PlaceTable& table, std::size_t row, const dvec2& at,
                            const HorizonSettings& settings);
+
+/// Calls use(row, place, progress) for the good rows of a table, in order, when the samples have been read that the
+/// horizon of the place depends on. Throws Error, from `use` too, unless `status` skips bad rows; Interrupted.
+void visit_places(MapInput& input, const PlaceTable& table, const HorizonSettings& settings, RowStatus& status,
+                  const Progress& progress,
+                  const std::function<void(std::size_t row, const HorizonPlace& place, const Progress& progress)>& use);
+
+/// The names of the table's other columns, and their texts in a row, as CSV with a comma at the end; empty without.
+std::string carried_names(const PlaceTable& table);
+std::string carried_texts(const PlaceTable& table, std::size_t row);
 
 /// The horizons of a place, over the part that was read, for azimuths in degrees clockwise from true north. Runs on all
 /// threads. Throws Error if the place is over a hole; Interrupted.

@@ -10,14 +10,11 @@
 #include "app/cli/commands/horizon_place.h"
 #include "app/cli/commands/skyline.h"
 #include "app/cli/options/kept_inputs.h"
-#include "app/cli/options/map_part.h"
 #include "app/cli/options/plot_options.h"
 #include "app/cli/options/sight_options.h"
 #include "app/cli/progress.h"
-#include "scarp/base/csv_text.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/base/progress_part.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/source/table/place_table.h"
 #include "scarp/source/whole_file.h"
@@ -36,44 +33,24 @@ std::string table_of(const HorizonOptions& options, MapInput& input, const Place
   const bool skips = options.points.skip_bad;
   RowStatus status(table, skips);
   const HorizonSettings settings = horizon_settings(options.horizon, input);
-  std::vector<HorizonPlace> points;
-  std::vector<RasterWindow> parts;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    dvec2 at(0.0);
-    status.attempt(i, RowStatus::kOutside, [&] { at = horizon_position(input, table, i); });
-    status.attempt(i, RowStatus::kInvalid, [&] {
-      points.push_back(horizon_place(input, table, i, at, settings));
-      parts.push_back(points.back().part);
-    });
-  }
-  status.require_good();
-  const bool together = read_together(input, parts);
   const std::vector<double> azimuths = options.all_azimuths();
-  const Progress progress = terminal_progress("horizon");
-  std::string text, carried;
-  for (const std::string& name : table.carried.names) append_csv_text(text, name), text += ',';
+  std::vector<std::string> lines(table.rows.size());
+  visit_places(input, table, settings, status, terminal_progress("horizon"),
+               [&](std::size_t row, const HorizonPlace& place, const Progress& progress) {
+                 const auto views = horizons_at(input, place, azimuths, settings, progress);
+                 const std::string carried = carried_texts(table, row);
+                 for (std::size_t k = 0; k < views.size(); ++k) {
+                   const double angle = options.clamp ? std::max(views[k].angle, 0.0) : views[k].angle;
+                   lines[row] += fmt::format(
+                       "{}{},{:.10g},{:.6f},{}{}\n", carried, row + 1, azimuths[k], angle * kDegreesPerRadian,
+                       views[k].distance ? fmt::format("{:.10g}", *views[k].distance) : "", skips ? ",ok" : "");
+                 }
+               });
+  std::string text = carried_names(table);
   text += fmt::format("point,horizon_azimuth,horizon_elevation,distance{}\n", skips ? ",status" : "");
-  std::size_t next = 0;  // of `points`
-  for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    std::vector<HorizonView> views;
-    if (status.good(row)) {
-      if (!together) input.read(parts[next], {});
-      const Progress of_point = progress_part(progress, static_cast<double>(next), static_cast<double>(points.size()));
-      status.attempt(row, RowStatus::kNodata,
-                     [&] { views = horizons_at(input, points[next], azimuths, settings, of_point); });
-      ++next;
-    }
-    carried.clear();
-    for (std::size_t k = 0; k < table.carried.names.size(); ++k)
-      append_csv_text(carried, table.carried.at(row, k)), carried += ',';
-    if (!status.good(row)) text += fmt::format("{}{},,,,{}\n", carried, row + 1, status.of(row));
-    for (std::size_t k = 0; k < views.size(); ++k) {
-      const double angle = options.clamp ? std::max(views[k].angle, 0.0) : views[k].angle;
-      text += fmt::format("{}{},{:.10g},{:.6f},{}{}\n", carried, row + 1, azimuths[k], angle * kDegreesPerRadian,
-                          views[k].distance ? fmt::format("{:.10g}", *views[k].distance) : "", skips ? ",ok" : "");
-    }
-  }
-  if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
+  for (std::size_t row = 0; row < table.rows.size(); ++row)
+    text +=
+        status.good(row) ? lines[row] : fmt::format("{}{},,,,{}\n", carried_texts(table, row), row + 1, status.of(row));
   return text;
 }
 

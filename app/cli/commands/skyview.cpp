@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
-#include "app/cli/options/horizon_options.h"
+#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_run.h"
 #include "app/cli/progress.h"
@@ -73,6 +73,8 @@ const MeasureText& measure_of(const std::string& name) {
 void run(SkyviewOptions options, const Command& command) {
   if (options.measures.empty()) options.measures.emplace_back(kMeasures[0].name);
   MapRun run(options, command, "Float32");
+  // All azimuths count alike, from whatever north.
+  const HorizonFrames frames(run.input(), options.horizon, options.plane_error, FrameUse::lengths);
   run.set_reach(options.horizon.reach());
   if (!run.begin(13 + 8 * static_cast<double>(options.measures.size()),
                  options.azimuths * options.horizon.node_azimuth_s()))
@@ -80,21 +82,26 @@ void run(SkyviewOptions options, const Command& command) {
   MapInput& input = run.input();
   std::vector<SkyMeasure> measures;
   Metadata metadata = horizon_metadata(options.horizon, input);
+  for (auto& pair : frames.metadata()) metadata.push_back(std::move(pair));
   metadata.emplace_back("AZIMUTHS", fmt::format("{}", options.azimuths));
   for (const std::string& name : options.measures) {
     measures.push_back(measure_of(name).measure);
     metadata.emplace_back("FORMULA " + name, measure_of(name).formula);
   }
   std::vector<Mean> means(measures.size());
-  std::optional<HorizonPlane> plane;
   std::optional<SkyView> sky;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
-    if (!sky) {
-      plane = horizon_plane(input);
-      sky.emplace(plane->field, horizon_settings(options.horizon, input), options.azimuths, measures,
+    if (!sky)
+      sky.emplace(input.field(), horizon_settings(options.horizon, input), options.azimuths, measures,
                   terminal_progress("heights"));
-    }
-    auto values = sky->rows(rows.first, rows.last, progress);
+    std::vector<std::vector<float>> values(measures.size());
+    const int cols = input.part().cols;
+    for (auto& pixels : values) pixels.resize(static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(cols));
+    const auto add = [&](const HorizonFrame& block, const Progress& of_block) {
+      const auto found = sky->with_cells(block.cells.x, block.cells.y).block(block.nodes, of_block);
+      for (std::size_t m = 0; m < values.size(); ++m) paste(found[m], block, rows, cols, values[m]);
+    };
+    for_each_frame(frames.of(input, rows), add, progress);
     std::vector<ComputedBand> bands;
     for (std::size_t m = 0; m < values.size(); ++m) {
       const MeasureText& text = measure_of(options.measures[m]);
@@ -111,7 +118,7 @@ void run(SkyviewOptions options, const Command& command) {
       text += fmt::format("{}mean {} {:.4g}", m == 0 ? "" : ", ", options.measures[m], means[m].value());
     std::vector<double> azimuths;
     for (int i = 0; i < options.azimuths; ++i) azimuths.push_back(2 * std::numbers::pi * i / options.azimuths);
-    const std::string errors = horizon_errors_text(options.horizon, input, plane->field, azimuths, run.rows());
+    const std::string errors = horizon_errors_text(options.horizon, input, azimuths, run.rows());
     return fmt::format("{}; {}{}", text, input.curvature_text(), errors);
   };
   std::vector<double*> totals;

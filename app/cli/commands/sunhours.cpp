@@ -14,7 +14,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/commands/sunhours_point.h"
-#include "app/cli/options/horizon_options.h"
+#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/plot_options.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sun_dates.h"
@@ -39,26 +39,10 @@ constexpr const char* kSunHoursFooter =
 time of day, in hours, of the middle of the first and the last step with sun (nodata: none).
 With --energy, four more bands per period, kWh per square metre of the sloping ground under a clear
 sky (ESRA model, Rigollier 2000): the sum, and its parts: beam, diffuse and reflected by the ground.
-The sun of each step is that in its middle, at the centre of the raster.
-With --at the output is CSV: date, first_sun, last_sun (local time, to the second), hours, and with
---energy energy, beam, diffuse, reflected; or a picture of the sun's path over the skyline.)";
-
-// Days that are summed in one band.
-struct Period {
-  std::string name;
-  chrono::sys_days first, last;
-};
-
-std::vector<Period> periods_of(const SunHoursOptions& options, chrono::sys_days from, chrono::sys_days to) {
-  if (options.sum == "range") return {{dates_text(from, to), from, to}};
-  std::vector<Period> periods;
-  for (chrono::sys_days day = from; day <= to; day += chrono::days(1)) {
-    const std::string name = options.sum == "day" ? date_text(day) : date_text(day).substr(0, 7);
-    if (periods.empty() || periods.back().name != name) periods.push_back({name, day, day});
-    periods.back().last = day;
-  }
-  return periods;
-}
+The sun of each step is that in its middle, at the centre of the raster or, with --sun-per-cell, of
+each block. With --at or --points the output is CSV: date, first_sun, last_sun (local time, to the
+second), hours, and with --energy energy, beam, diffuse, reflected; with --sum month or range period
+instead of the first three. Or, of one point, a picture of the sun's path over the skyline.)";
 
 // The moments of a period when the sun is up, and the time of day in the middle of each, in hours.
 struct Moments {
@@ -66,26 +50,68 @@ struct Moments {
   std::vector<float> time;
 };
 
-Moments moments_of(const Period& period, const SunHoursOptions& options, const EarthPlace& place, int offset,
-                   double grid_north) {
-  Moments up;
+// The steps of a period, with the sun for all places.
+struct Step {
+  SunAtTime sun;
+  double hours, day_of_year;
+  float time;  // of day, in its middle, in hours
+};
+
+std::vector<Step> steps_of(const SunPeriod& period, const SunHoursOptions& options, int offset) {
+  std::vector<Step> steps;
   for (chrono::sys_days day = period.first; day <= period.last; day += chrono::days(1)) {
     const UtcTime midnight = midnight_of(day, 0);
-    const int step = options.minutes();
-    for (int minute = 0; minute < kMinutesPerDay; minute += step) {
-      const double length = std::min(step, kMinutesPerDay - minute), middle = minute + 0.5 * length;
-      const UtcTime time{midnight.day, (middle - offset) / kMinutesPerDay};
-      const SunPosition sun = sun_position(time, place, options.refraction);
-      if (!(sun.altitude > 0)) continue;
-      up.moments.push_back({{sun.azimuth - grid_north, sun.altitude}, length / 60, day_of_year(day)});
-      up.time.push_back(static_cast<float>(middle / 60));
+    for (int minute = 0; minute < kMinutesPerDay; minute += options.minutes()) {
+      const double length = std::min(options.minutes(), kMinutesPerDay - minute), middle = minute + 0.5 * length;
+      steps.push_back({SunAtTime({midnight.day, (middle - offset) / kMinutesPerDay}), length / 60, day_of_year(day),
+                       static_cast<float>(middle / 60)});
     }
+  }
+  return steps;
+}
+
+Moments moments_of(const std::vector<Step>& steps, const EarthPlace& place, bool refraction, double grid_north) {
+  Moments up;
+  for (const Step& step : steps) {
+    const SunPosition sun = step.sun.at(place, refraction);
+    if (!(sun.altitude > 0)) continue;
+    up.moments.push_back({{sun.azimuth - grid_north, sun.altitude}, step.hours, step.day_of_year});
+    up.time.push_back(step.time);
   }
   return up;
 }
 
+// The pixels of a period. Times are in hours; NaN without sun.
+struct PeriodPixels {
+  std::vector<float> hours, first, last;
+  SunEnergy energy;
+};
+
+PeriodPixels pixels_of(SunHours found, const Moments& up, bool first_last) {
+  PeriodPixels pixels{std::move(found.hours), {}, {}, std::move(found.energy)};
+  const auto time_of = [&](std::int32_t moment) {
+    return moment < 0 ? std::numeric_limits<float>::quiet_NaN() : up.time[static_cast<std::size_t>(moment)];
+  };
+  for (const auto& [moments, times] : {std::pair(&found.first, &pixels.first), std::pair(&found.last, &pixels.last)}) {
+    if (!first_last) continue;
+    times->resize(moments->size());
+    std::transform(moments->begin(), moments->end(), times->begin(), time_of);
+  }
+  return pixels;
+}
+
+void paste_pixels(const PeriodPixels& of_block, const HorizonFrame& block, const RowBand& rows, int cols,
+                  PeriodPixels& to) {
+  const auto add = [&](const std::vector<float>& from, std::vector<float>& all) {
+    if (!from.empty()) paste(from, block, rows, cols, all);
+  };
+  add(of_block.hours, to.hours), add(of_block.first, to.first), add(of_block.last, to.last);
+  add(of_block.energy.beam, to.energy.beam), add(of_block.energy.diffuse, to.energy.diffuse);
+  add(of_block.energy.reflected, to.energy.reflected);
+}
+
 // The bands of a period.
-void add_bands(std::vector<ComputedBand>& bands, const std::string& name, SunHours found, const Moments& up,
+void add_bands(std::vector<ComputedBand>& bands, const std::string& name, PeriodPixels found,
                const SunHoursOptions& options) {
   bands.push_back(number_band("hours of sun " + name, "h", std::move(found.hours)));
   if (options.energy) {
@@ -99,39 +125,55 @@ void add_bands(std::vector<ComputedBand>& bands, const std::string& name, SunHou
     add("diffuse ", std::move(parts.diffuse)), add("reflected ", std::move(parts.reflected));
   }
   if (!options.first_last) return;
-  const auto time_of = [&](std::int32_t moment) {
-    return moment < 0 ? std::numeric_limits<float>::quiet_NaN() : up.time[static_cast<std::size_t>(moment)];
-  };
-  for (const auto& [what, moments] : {std::pair("first sun ", &found.first), std::pair("last sun ", &found.last)}) {
-    std::vector<float> times(moments->size());
-    std::transform(moments->begin(), moments->end(), times.begin(), time_of);
-    bands.push_back(number_band(what + name, "h", std::move(times)));
-  }
+  bands.push_back(number_band("first sun " + name, "h", std::move(found.first)));
+  bands.push_back(number_band("last sun " + name, "h", std::move(found.last)));
+}
+
+EarthPlace place_of_sun(const MapInput& input, const dvec2& at, double height) {
+  const auto lonlat = input.lonlat_of(at.x, at.y);
+  if (!lonlat) throw Error(fmt::format("{}: the sun's position needs a raster with a CRS (give --crs)", input.path()));
+  return {lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian, height};
+}
+
+// Between the corners of a raster and its centre, the zenith turns by their distance.
+void note_one_sun(MapInput& input, const SunHoursOptions& options) {
+  constexpr double kWorthANote = 0.05;  // degrees
+  const Georeference& geo = input.georeference();
+  const double across = std::hypot(geo.cell_x_m * input.cols(), geo.cell_y_m * input.rows());
+  const double off = across / input.curvature().diameter * kDegreesPerRadian;
+  if (options.per_cell || off <= kWorthANote) return;
+  input.notes.push_back(
+      fmt::format("one sun for the whole raster, that at its centre; it is up to {:.2g} degrees off in the corners{}",
+                  off, options.horizon.swept() ? "" : " (--sun-per-cell)"));
 }
 
 void run(SunHoursOptions options, const Command& command) {
-  if (!options.at.empty()) return write_point_sun(options);
+  if (options.at_points()) return write_point_sun(options);
   if (options.output.empty()) throw WrongUsage("-o FILE is required (see 'scarp sunhours --help')");
-  const auto [from, to] = days_of(options.from, options.to);
-  const std::vector<Period> periods = periods_of(options, from, to);
+  const std::vector<SunPeriod> periods = periods_of(options);
+  const chrono::sys_days from = periods.front().first, to = periods.back().last;
   const auto count = static_cast<double>(periods.size()), days = static_cast<double>((to - from).count() + 1);
   const std::optional<int> typed_offset = offset_of(options.offset);
   MapRun run(options, command, "Float32");
   MapInput& input = run.input();
-  const auto lonlat = input.lonlat_of(input.centre().x, input.centre().y);
-  if (!lonlat) throw Error(fmt::format("{}: the sun's position needs a raster with a CRS (give --crs)", input.path()));
-  const int offset = typed_offset.value_or(offset_by_longitude(lonlat->x));
+  const double longitude = place_of_sun(input, input.centre(), 0).longitude * kDegreesPerRadian;
+  const HorizonFrames frames(input, options.horizon, options.plane_error,
+                             options.per_cell ? FrameUse::suns : FrameUse::lengths);
+  const int offset = typed_offset.value_or(offset_by_longitude(longitude));
   if (!typed_offset)
     input.notes.push_back(
         fmt::format("days start at midnight UTC{}, chosen from the longitude (--utc-offset)", offset_text(offset)));
+  note_one_sun(input, options);
   run.set_reach(options.horizon.reach());
   // Not from the samples of a part: all parts have the same sun.
   const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
   const int bands_per_period = 1 + (options.energy ? 4 : 0) + (options.first_last ? 2 : 0);
   const double suns = days * kMinutesPerDay / options.minutes() / 2 + (options.energy ? kSkyAzimuths : 0);
   if (!run.begin(29 + 4 * count * bands_per_period, suns * options.horizon.node_azimuth_s())) return;
-  const EarthPlace place{lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian, height};
+  const EarthPlace place = place_of_sun(input, input.centre(), height);
   Metadata metadata = horizon_metadata(options.horizon, input);
+  for (auto& pair : frames.metadata()) metadata.push_back(std::move(pair));
+  metadata.emplace_back("SUN", options.per_cell ? "at the middle of each block" : "at the centre of the raster");
   metadata.emplace_back("STEP", fmt::format("{} minutes", options.minutes()));
   metadata.emplace_back("UTC_OFFSET", offset_text(offset));
   metadata.emplace_back("DATES", dates_text(from, to));
@@ -142,35 +184,53 @@ void run(SunHoursOptions options, const Command& command) {
     metadata.emplace_back("ALBEDO", fmt::format("{:.10g}", options.albedo));
   }
   double longest = 0;
-  std::optional<HorizonPlane> plane;
   std::optional<Horizons> horizons;
   std::optional<SkyView> sky;
   std::vector<double> azimuths;
   const auto compute = [&](const RowBand& rows, const Progress& progress) {
     if (!horizons) {
-      plane = horizon_plane(input);
       const HorizonSettings settings = horizon_settings(options.horizon, input);
-      horizons.emplace(plane->field, settings, terminal_progress("heights"));
-      if (options.energy) sky.emplace(plane->field, settings, kSkyAzimuths, std::vector{SkyMeasure::sky_view_factor});
+      horizons.emplace(input.field(), settings, terminal_progress("heights"));
+      if (options.energy) sky.emplace(input.field(), settings, kSkyAzimuths, std::vector{SkyMeasure::sky_view_factor});
     }
-    std::vector<float> seen;
-    if (sky) seen = std::move(sky->rows(rows.first, rows.last, terminal_progress("sky view"))[0]);
-    const ClearSkyGround ground{options.linke, options.albedo, seen};
+    const std::vector<HorizonFrame> blocks = frames.of(input, rows);
+    const auto number_of = [&](const HorizonFrame& block) { return static_cast<std::size_t>(&block - blocks.data()); };
+    std::vector<EarthPlace> places;  // of the suns
+    for (const HorizonFrame& block : blocks)
+      places.push_back(options.per_cell ? place_of_sun(input, block.middle, height) : place);
+    std::vector<std::vector<float>> seen(blocks.size());
+    const auto see = [&](const HorizonFrame& block, const Progress& of_block) {
+      seen[number_of(block)] = std::move(sky->with_cells(block.cells.x, block.cells.y).block(block.nodes, of_block)[0]);
+    };
+    if (sky) for_each_frame(blocks, see, terminal_progress("sky view"));
+    const int cols = input.part().cols;
+    const std::vector<float> nothing(static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(cols));
     azimuths.clear();
     std::vector<ComputedBand> bands;
     for (std::size_t i = 0; i < periods.size(); ++i) {
-      const Period& period = periods[i];
-      const Moments up = moments_of(period, options, place, offset, plane->grid_north);
-      for (const SunMoment& moment : up.moments) azimuths.push_back(moment.sun.azimuth);
-      SunHours found = sun_hours(*horizons, up.moments, rows.first, rows.last, options.energy ? &ground : nullptr,
-                                 progress_part(progress, static_cast<double>(i), count));
-      for (const float hours : found.hours) longest = std::fmax(longest, static_cast<double>(hours));
-      add_bands(bands, period.name, std::move(found), up, options);
+      const std::vector<Step> steps = steps_of(periods[i], options, offset);
+      PeriodPixels pixels{nothing, {}, {}, {}};
+      if (options.first_last) pixels.first = pixels.last = nothing;
+      if (options.energy) pixels.energy = {nothing, nothing, nothing};
+      const auto add = [&](const HorizonFrame& block, const Progress& of_block) {
+        const std::size_t number = number_of(block);
+        const ClearSkyGround ground{options.linke, options.albedo, seen[number]};
+        const Moments up = moments_of(steps, places[number], options.refraction, block.grid_north);
+        SunHours found = sun_hours(horizons->with_cells(block.cells.x, block.cells.y), up.moments, block.nodes,
+                                   options.energy ? &ground : nullptr, of_block);
+        paste_pixels(pixels_of(std::move(found), up, options.first_last), block, rows, cols, pixels);
+      };
+      for_each_frame(blocks, add, progress_part(progress, static_cast<double>(i), count));
+      if (options.horizon.swept())
+        for (const SunMoment& moment : moments_of(steps, place, options.refraction, 0).moments)
+          azimuths.push_back(moment.sun.azimuth);
+      for (const float hours : pixels.hours) longest = std::fmax(longest, static_cast<double>(hours));
+      add_bands(bands, periods[i].name, std::move(pixels), options);
     }
     return bands;
   };
   const auto summary = [&] {
-    const std::string errors = horizon_errors_text(options.horizon, input, plane->field, azimuths, run.rows());
+    const std::string errors = horizon_errors_text(options.horizon, input, azimuths, run.rows());
     return fmt::format("{} {}, at most {:.4g} hours of sun; {}{}", periods.size(),
                        periods.size() == 1 ? "period" : "periods", longest, input.curvature_text(), errors);
   };
@@ -194,43 +254,53 @@ void add_sunhours(Program& program) {
                         .help = "day, or first day of a range, for example 2026-06-21",
                         .common = true,
                         .required = true});
-  const std::vector<std::string> of_maps{"--at"};
+  const std::vector<std::string> of_maps{"--at", "--points"};
   const Rule of_pictures =
-      needs("--at X,Y and a .svg, .pdf or .png output", [&o] { return !o.at.empty() && is_figure(o.output); });
+      needs("--at X,Y and a .svg, .pdf or .png output", [&o] { return o.at_points() && is_figure(o.output); });
+  const Rule table_or_map = needs("a map or a table", [&o] { return !o.at_points() || !is_figure(o.output); });
   command.add(&o.to, {.names = "--to",
                       .value = "DATE",
                       .help = "last day",
                       .fallback = "that of --date",
                       .common = true,
-                      .rules = {needs("a map or a table", [&o] { return o.at.empty() || !is_figure(o.output); })}});
+                      .rules = {table_or_map}});
   command.add(&o.at, {.names = "--at",
                       .value = "X,Y[,H]",
                       .help = "point instead of a map, with the height of the eye above the ground",
                       .fallback = "none",
                       .common = true});
+  add_place_file(command, o.points,
+                 {.names = "--points",
+                  .value = "FILE",
+                  .help = "points: CSV (x,y[,z]) or a vector file of points",
+                  .files = "csv geojson gpkg shp",
+                  .note = "-: CSV from standard input",
+                  .common = true,
+                  .excludes = {"--at"}});
   command.add(&o.step, {.names = "--step",
                         .value = "MIN",
                         .help = "minutes between positions of the sun",
                         .range = {1, kMinutesPerDay},
-                        .fallback = "30; at a point 1",
+                        .fallback = "30; at points 1",
                         .common = true});
   command.add(&o.sum, {.names = "--sum",
                        .value = "PERIOD",
-                       .help = "period of a band",
+                       .help = "period of a band, or of a row of a table",
                        .choices = {"day", "month", "range"},
                        .closed = true,
+                       .fallback = "range; at points day",
                        .common = true,
-                       .excludes = of_maps});
+                       .rules = {table_or_map}});
   command.add(&o.first_last, {.names = "--first-last",
                               .help = "additional bands: local time of first and last sun",
                               .common = true,
                               .rules = {needs("--sum day, or a single day",
-                                              [&o] { return o.sum == "day" || o.to.empty() || o.to == o.from; })},
+                                              [&o] { return o.period() == "day" || o.to.empty() || o.to == o.from; })},
                               .excludes = of_maps});
   command.add(&o.energy, {.names = "--energy",
                           .help = "additional bands or columns: energy under a clear sky",
                           .common = true,
-                          .rules = {needs("a map or a table", [&o] { return o.at.empty() || !is_figure(o.output); })}});
+                          .rules = {table_or_map}});
   const Rule with_energy = needs("--energy", [&o] { return o.energy; });
   command.add(&o.linke, {.names = "--linke",
                          .value = "T",
@@ -249,20 +319,27 @@ void add_sunhours(Program& program) {
                           .help = "UTC offset of local time",
                           .fallback = "whole hours, from the longitude",
                           .common = true});
+  command.add(&o.per_cell, {.names = "--sun-per-cell",
+                            .help = "the sun and north of each block of pixels instead of those at the centre",
+                            .note = "blocks in which neither turns by more than 0.05 degrees, at least 128 x 128",
+                            .common = true,
+                            .rules = {needs("--engine exact", [&o] { return !o.horizon.swept(); })},
+                            .excludes = of_maps});
   command.add(
       &o.refraction,
       {.names = "--refraction", .help = "raise the sun by the refraction of a standard atmosphere", .common = true});
   add_output_option(command, o.output,
-                    "map, or with --at a .csv table or a .svg, .pdf or .png picture of the sun's path",
-                    "tif tiff img asc csv svg pdf png", "point: standard output");
+                    "map, or at points a .csv table or a .svg, .pdf or .png picture of the sun's path",
+                    "tif tiff img asc csv svg pdf png", "points: standard output");
   add_plot_size_option(command, o.size, "1200x560", of_pictures);
   add_horizon_options(command, o.horizon, o.curvature, of_maps);
-  add_map_coordinates_option(command, o.coordinates, {needs("--at X,Y", [&o] { return !o.at.empty(); })});
+  add_map_coordinates_option(command, o.coordinates, {needs("--at or --points", [&o] { return o.at_points(); })});
   add_map_command(
       command, o, [options, &command] { run(*options, command); }, of_maps);
   command.footer(kSunHoursFooter);
   command.example("scarp sunhours dem.tif --date 2026-06-21 -o hours.tif");
   command.example("scarp sunhours dem.tif --at 692000,5143000 --date 2026-12-21 -o sun.svg");
+  command.example("scarp sunhours dem.tif --points roofs.csv --date 2026-01-01 --to 2026-12-31 --sum month");
   command.example("scarp sunhours dem.tif --date 2026-01-01 --to 2026-12-31 --sum month --step 60 -o months.tif");
 }
 

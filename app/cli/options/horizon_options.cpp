@@ -48,16 +48,19 @@ std::string horizon_method(const HorizonInput& horizon) {
   return horizon.swept() ? "horizons swept along lines, approximate beyond 8 pixels" : "exact horizons";
 }
 
-std::string horizon_errors_text(const HorizonInput& horizon, const MapInput& input, const HeightField& field,
-                                std::span<const double> azimuths, const RowBand& rows) {
+std::string horizon_errors_text(const HorizonInput& horizon, MapInput& input, std::span<const double> azimuths,
+                                const RowBand& rows) {
   if (!horizon.swept()) return "";
-  const HorizonErrors errors = sampled_horizon_errors(field, horizon_settings(horizon, input), azimuths, rows);
+  const dvec2 at = input.centre();
+  const HeightField field = input.field_at(at.x, at.y, HUGE_VAL);
+  const double grid_north = input.grid_north_at(at.x, at.y, HUGE_VAL);
+  std::vector<double> directions;
+  for (const double azimuth : azimuths) directions.push_back(azimuth - grid_north);
+  const HorizonErrors errors = sampled_horizon_errors(field, horizon_settings(horizon, input), directions, rows);
   if (errors.count == 0) return "";
   return fmt::format("; {} angles compared with exact ones: 99 % within {:.2g} degrees, largest difference {:.2g}",
                      errors.count, errors.p99 * kDegreesPerRadian, errors.largest * kDegreesPerRadian);
 }
-
-HorizonPlane horizon_plane(MapInput& input) { return {input.whole_field(HUGE_VAL), input.whole_grid_north()}; }
 
 Metadata horizon_metadata(const HorizonInput& horizon, const MapInput& input) {
   Metadata metadata{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What subcommands about horizons share: the eye, how far ground counts, and the plane of the whole raster.
+// What subcommands about horizons share: the eye, how far ground counts, and the engine.
 #pragma once
 
 #include <limits>
@@ -33,21 +33,13 @@ void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<
 
 HorizonSettings horizon_settings(const HorizonInput& horizon, const MapInput& input);
 
-/// The field on the plane of its centre, and the azimuth of grid north there in radians. Throws Error if the plane
-/// displaces samples by more than --plane-error.
-struct HorizonPlane {
-  HeightField field;
-  double grid_north;
-};
-HorizonPlane horizon_plane(MapInput& input);
-
 /// "exact horizons", or what else the engine finds.
 std::string horizon_method(const HorizonInput& horizon);
 
 /// How far a swept map is off on a sample of its nodes, "; angles off by ..."; empty for the engine exact. `azimuths`
-/// in radians from grid north.
-std::string horizon_errors_text(const HorizonInput& horizon, const MapInput& input, const HeightField& field,
-                                std::span<const double> azimuths, const RowBand& rows);
+/// in radians from true north.
+std::string horizon_errors_text(const HorizonInput& horizon, MapInput& input, std::span<const double> azimuths,
+                                const RowBand& rows);
 
 /// OBSERVER_HEIGHT, MAX_DISTANCE, ENGINE, CURVATURE_COEFFICIENT and DIAMETER.
 Metadata horizon_metadata(const HorizonInput& horizon, const MapInput& input);

@@ -8,6 +8,7 @@
 
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
+#include "scarp/source/raster/ground_scale.h"
 
 namespace scarp::cli {
 namespace {
@@ -17,6 +18,15 @@ RasterWindow clipped(const MapInput& input, double first_col, double first_row, 
   const auto clamp = [](double at, int side) { return static_cast<int>(std::clamp(at, 0.0, side - 1.0)); };
   const int col = clamp(first_col, input.cols()), row = clamp(first_row, input.rows());
   return {col, row, clamp(last_col, input.cols()) - col + 1, clamp(last_row, input.rows()) - row + 1};
+}
+
+// In degrees, steps along a meridian are shortest where it comes closest to the equator.
+double shortest_row_step(const MapInput& input) {
+  const Georeference& geo = input.georeference();
+  if (!is_geographic(geo)) return geo.cell_y_m;
+  const auto& m = geo.map_from_node;
+  const double row = std::clamp(-m[3] / m[5], 0.0, input.rows() - 1.0);
+  return -m[5] * ground_scale_at(geo.crs_wkt, m[0] + input.centre().x * m[1], m[3] + row * m[5]).metres_per_y;
 }
 
 double area(const RasterWindow& part) { return static_cast<double>(part.cols) * part.rows; }
@@ -65,7 +75,7 @@ bool read_together(MapInput& input, std::span<const RasterWindow> parts) {
 
 RasterWindow rows_around(MapInput& input, const RasterWindow& rows, double distance) {
   if (!std::isfinite(distance)) return input.whole();
-  const double beside = std::floor(distance / input.whole_cells().y) + 2;
+  const double beside = std::floor(distance / shortest_row_step(input)) + 2;
   return clipped(input, 0, rows.row - beside, input.cols() - 1, rows.row + rows.rows - 1 + beside);
 }
 

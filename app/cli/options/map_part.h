@@ -34,8 +34,8 @@ bool are_scattered(std::span<const RasterWindow> parts);
 /// nothing and returns false: the caller reads one after the other.
 bool read_together(MapInput& input, std::span<const RasterWindow> parts);
 
-/// Returns the rows that the horizons of nodes in `rows` depend on, on the plane of the whole raster. `distance`, in
-/// metres, may be infinite.
+/// Returns the rows that the horizons of nodes in `rows` depend on, on whatever plane. `distance`, in metres, may be
+/// infinite.
 RasterWindow rows_around(MapInput& input, const RasterWindow& rows, double distance);
 
 /// Throws Error "observer: X,Y is on nodata ..." if the height of an end counts from ground that does not exist. The
