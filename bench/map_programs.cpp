@@ -12,14 +12,12 @@
 #include <numbers>
 #include <optional>
 
+#include "bench/map_task.h"
 #include "bench/map_truth.h"
 #include "bench/program_run.h"
-#include "bench/protocol.h"
 #include "scarp/analysis/sight_rays.h"
 #include "scarp/base/error.h"
-#include "scarp/output/raster_map.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/source/raster/procedural_dem.h"
 #include "scarp/source/raster/read_raster.h"
 
 namespace scarp::bench {
@@ -29,17 +27,6 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr double kDegree = std::numbers::pi / 180;
-// A plane in metres: the scale is 1 and north is up at the origin, which is the centre of the DEM.
-constexpr const char* kCrs =
-    R"(PROJCS["plane",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],)"
-    R"(UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
-    R"(PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],)"
-    R"(PARAMETER["false_northing",0],UNIT["metre",1]])";
-constexpr const char* kDem = "dem.tif";
-// The same output for all programs that write GeoTIFF. SAGA writes its own format, which is not compressed either.
-constexpr const char* kTiled = "TILED=YES";
-constexpr const char* kPlain = "COMPRESS=NONE";
-
 // The parameters of the task, as on the command lines.
 struct Question {
   double x, y;  // the observer
@@ -66,18 +53,8 @@ std::vector<MapProgram> map_programs(const std::string& scarp, const Question& a
   const std::string x = text(ask.x), y = text(ask.y), height = text(ask.height), azimuth = text(ask.azimuth),
                     altitude = text(ask.altitude);
   const auto grass = [&](const std::string& name, const std::string& map, const std::string& command, auto positive) {
-    // -o: the location is made from this file, so their projections agree.
-    return MapProgram{name,
-                      map,
-                      "grass",
-                      "grass-core",
-                      {"grass", "--tmp-location", kDem, "--exec", "bash", "job.sh"},
-                      fmt::format("set -e\nr.in.gdal -o --quiet input={} output=dem\ng.region raster=dem\n{}\n"
-                                  "r.out.gdal --quiet -f --o input=map output=grass.tif format=GTiff type=Byte "
-                                  "nodata=255 createopt={},{}\n",
-                                  kDem, command, kTiled, kPlain),
-                      "grass.tif",
-                      positive};
+    return MapProgram{name,        map,     "grass", "grass-core", grass_words(), grass_script(command, "Byte", 255),
+                      "grass.tif", positive};
   };
   return {
       {"scarp",
@@ -128,20 +105,6 @@ std::vector<MapProgram> map_programs(const std::string& scarp, const Question& a
   };
 }
 
-// Writes the DEM and returns the surface of the file, which all programs read.
-Raster make_dem(const std::string& path, const MapsOptions& options, int size) {
-  const ProceduralDem dem{.cols = size, .rows = size, .seed = options.seed, .kind = *terrain_kind(options.kind)};
-  const std::vector<float> heights = generate_dem(dem);
-  RasterMap map;
-  map.cols = map.rows = size;
-  map.bands.push_back({"height", "m", std::span<const float>(heights)});
-  const double half = dem.cell_m * size / 2;
-  map.place = MapPlace{{-half, dem.cell_m, 0, half, 0, -dem.cell_m}, kCrs};
-  map.creation_options = {kTiled, kPlain};
-  write_raster_map(path, map);
-  return read_raster(path, {});
-}
-
 std::int64_t wrong_in(const std::string& path, const MapProgram& program, const MapTruth& truth) {
   // A band with a colour table is read as heights only if the band is given explicitly.
   RasterOptions first_band;
@@ -171,30 +134,6 @@ std::int64_t wrong_counts(const std::string& path, const std::vector<Viewpoint>&
   });
 }
 
-// Runs in turn; slow programs run once.
-std::vector<std::vector<ProgramRun>> runs_of(const std::vector<MapProgram>& programs, const std::string& folder,
-                                             const MapsOptions& options) {
-  constexpr double kLong_s = 15;
-  std::vector<std::vector<ProgramRun>> runs(programs.size());
-  for (int repeat = 0; repeat < options.repeats; ++repeat) {
-    for (std::size_t i = 0; i < programs.size(); ++i) {
-      if (repeat > 0 && (runs[i].empty() || runs[i].back().wall_s > kLong_s)) continue;
-      const MapProgram& program = programs[i];
-      if (!program.script.empty()) std::ofstream(fs::path(folder) / "job.sh") << program.script;
-      fs::remove(fs::path(folder) / program.result);
-      if (const auto run = run_program(program.words, folder, options.program_limit_s)) runs[i].push_back(*run);
-    }
-  }
-  return runs;
-}
-
-template <class Value>
-double median_of(const std::vector<ProgramRun>& runs, const Value& value) {
-  std::vector<double> values;
-  for (const ProgramRun& run : runs) values.push_back(value(run));
-  return median(values);
-}
-
 }  // namespace
 
 MapPrograms::MapPrograms(const MapsOptions& options) : options_(options) {
@@ -212,7 +151,7 @@ MapPrograms::MapPrograms(const MapsOptions& options) : options_(options) {
 std::vector<Json> MapPrograms::measure(int size) {
   if (names_.empty()) return {};
   const ScratchFolder folder;
-  Raster raster = make_dem((fs::path(folder.path()) / kDem).string(), options_, size);
+  Raster raster = make_dem((fs::path(folder.path()) / kDem).string(), options_.kind, options_.seed, size);
   const Georeference place = raster.georeference;
   const HeightField field = height_field_from(std::move(raster));
   const scarp::Node observer{size / 2, size / 2};
@@ -223,7 +162,7 @@ std::vector<Json> MapPrograms::measure(int size) {
   std::erase_if(programs, [&](const MapProgram& program) {
     return late_.contains(program.name) || !names_.contains(program.name);
   });
-  const auto runs = runs_of(programs, folder.path(), options_);
+  const auto runs = runs_of(programs, folder.path(), options_.repeats, options_.program_limit_s);
 
   const Viewpoint view(field, observer, {.observer_height = static_cast<double>(options_.observer_height)});
   const SunDirection sun{options_.azimuth_deg * kDegree - place.grid_north_azimuth, options_.altitude_deg * kDegree};
@@ -256,7 +195,7 @@ std::vector<Json> MapPrograms::measure_cumulative(int size) {
   if (options_.observers == 0 || !names_.contains("scarp")) return {};
   const ScratchFolder folder;
   const auto file = [&](const char* name) { return (fs::path(folder.path()) / name).string(); };
-  Raster raster = make_dem(file(kDem), options_, size);
+  Raster raster = make_dem(file(kDem), options_.kind, options_.seed, size);
   const auto map = raster.georeference.map_from_node;
   const HeightField field = height_field_from(std::move(raster));
   std::vector<Viewpoint> views;

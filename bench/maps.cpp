@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <numbers>
 #include <string>
 #include <thread>
@@ -21,6 +20,7 @@
 #include "bench/trace_options.h"
 #ifdef SCARP_BENCH_GDAL
 #include "bench/map_programs.h"
+#include "bench/map_task.h"
 #include "bench/protocol.h"
 #include "bench/report.h"
 #endif
@@ -257,23 +257,13 @@ void add_maps(cli::Program& program) {
   command.add(&o.lines,
               {.names = "--lines", .help = "lines of sight, of 500 cells each", .range = {0, 1e8}, .note = "0: none"});
 #ifdef SCARP_BENCH_GDAL
-  o.scarp = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scarp").string();
   std::vector<std::string> known = o.programs;
   known.emplace_back("none");
   command.add(cli::List<std::string>{&o.programs}, {.names = "--programs",
                                                     .help = "programs to measure as whole processes, if installed",
                                                     .choices = std::move(known),
                                                     .closed = true});
-  command.add(
-      [&path = o.scarp](const std::string& text) {
-        if (!std::filesystem::exists(text)) throw cli::WrongUsage(fmt::format("--scarp '{}': no such file", text));
-        path = text;
-      },
-      {.names = "--scarp",
-       .value = "FILE",
-       .help = "path of scarp, one of the programs",
-       .files = "*",
-       .fallback = "beside scarp-bench"});
+  add_scarp_option(command, o.scarp);
   command.add(
       &o.observers,
       {.names = "--observers", .help = "observers of a cumulative viewshed", .range = {0, 65533}, .note = "0: none"});

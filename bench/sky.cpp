@@ -24,6 +24,10 @@
 #include "bench/protocol.h"
 #include "bench/random.h"
 #include "bench/report.h"
+#ifdef SCARP_BENCH_GDAL
+#include "bench/map_task.h"
+#include "bench/sky_programs.h"
+#endif
 #include "bench/trace_options.h"
 #include "scarp/analysis/horizon.h"
 #include "scarp/analysis/sky_view.h"
@@ -39,6 +43,8 @@ struct SkyOptions {
   int nodes = 4000;   // of Embree
   int repeats = 3;
   bool maps = false;
+  bool programs = false;
+  std::string scarp;
 };
 
 using Json = nlohmann::ordered_json;
@@ -272,7 +278,31 @@ void measure_sky_fraction(const HeightField& field, int threads, std::vector<std
   }
 }
 
+#ifdef SCARP_BENCH_GDAL
+void run_programs(const SkyOptions& options, const ReportOptions& report) {
+  std::vector<std::vector<std::string>> lines{
+      {"samples", "map", "program", "s", "CPU s", "MB", "x scarp exact", "error mean", "p99"}};
+  Json rows = Json::array();
+  for (const int size : options.sizes) {
+    SkyProgramOptions asked;
+    asked.scarp = options.scarp, asked.size = size, asked.repeats = options.repeats;
+    for (Json& row : measure_sky_programs(asked)) {
+      std::vector<std::string> line{fmt::format("{0} x {0}", size), row["map"], row["program"]};
+      for (const char* name : {"seconds", "cpu_s", "peak_mb", "scarp_ratio", "error_mean", "error_p99"})
+        line.push_back(short_number(row[name]));
+      lines.push_back(std::move(line));
+      rows.push_back(std::move(row));
+    }
+  }
+  print_table(lines, 3);
+  write_json(report, rows);
+}
+#endif
+
 void run_sky(const SkyOptions& options, const ReportOptions& report) {
+#ifdef SCARP_BENCH_GDAL
+  if (options.programs) return run_programs(options, report);
+#endif
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"samples", "threads", "engine", "sky fraction s", "mean error"}};
   if (!options.maps)
@@ -318,6 +348,11 @@ void add_sky(cli::Program& program) {
   add_repeats_option(command, o.repeats, "timed passes of each");
   command.add(&o.maps,
               {.names = "--maps", .help = "instead: whole maps of the sky fraction, 64 azimuths, by each engine"});
+#ifdef SCARP_BENCH_GDAL
+  command.add(&o.programs, {.names = "--programs",
+                            .help = "instead: scarp, r.horizon, r.sun and SAGA as whole processes, if installed"});
+  add_scarp_option(command, o.scarp);
+#endif
 }
 
 }  // namespace scarp::bench
