@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "scarp/analysis/horizon_sweep.h"
+#include "scarp/base/prefetch.h"
 
 // Compiled once per instruction set.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -49,10 +50,11 @@ class HorizonSweep {
   }
 
   void run(const SweepSink& sink) {
-    constexpr int kLag = SweepTable::kNearSteps;
+    constexpr int kLag = SweepTable::kNearSteps, kAhead = 6;
     for (int visit = 0; visit < visits_; ++visit) {
       const int first = line_ + swept_place(table_, visit).nearest;
       const SweptPlace sample = swept_place(table_, visit - kLag);
+      prefetch(visit + kAhead);
       for (int at = 0; at < kSweptLines; at += N) {
         if (visit >= kLag) push(visit - kLag, sample, at);
         if (const int col = first + at; col > -N && col < heights_.cols()) look(visit, at, col);
@@ -63,6 +65,16 @@ class HorizonSweep {
   }
 
  private:
+  // Loads the heights of a visit's nodes into the cache. They come from a new page with each row, which processors do
+  // not foresee.
+  void prefetch(int visit) const {
+    if (visit >= visits_) return;
+    constexpr int kLine = 64 / sizeof(float);
+    const int first = line_ + swept_place(table_, visit).nearest;
+    const int begin = std::max(first, 0), end = std::min(first + kSweptLines, heights_.cols());
+    for (int col = begin; col < end; col += kLine) scarp::prefetch(heights_.height(col, row_of(visit)));
+  }
+
   // Points of hulls, one per lane.
   struct Points {
     VF height, visit;
