@@ -455,6 +455,17 @@ TEST(ScarpBench, SkyComparesHorizonsWithEmbree) {
   ASSERT_EQ(maps["rows"].size(), 2u);
   EXPECT_EQ(maps["rows"][0]["mean_error"], 0);
   EXPECT_LT(maps["rows"][1]["mean_error"], 0.001);
+#ifdef SCARP_BENCH_SCARP
+  const json programs = output_of("sky --sizes 65 --repeats 1 --programs scarp --scarp " SCARP_BENCH_SCARP);
+  expect_documented(programs, "sky");
+  ASSERT_EQ(programs["rows"].size(), 8u);
+  // Angles and shares are floats; hours are sums of half-hours.
+  for (const json& row : programs["rows"]) {
+    if (row["program"] == "scarp, exact") {
+      EXPECT_LT(row["error_p99"], row["map"] == "hours of sun" ? 1.0 : 1e-6) << row;
+    }
+  }
+#endif
 }
 
 TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {

@@ -43,7 +43,7 @@ struct SkyOptions {
   int nodes = 4000;   // of Embree
   int repeats = 3;
   bool maps = false;
-  bool programs = false;
+  std::vector<std::string> programs;
   std::string scarp;
 };
 
@@ -285,7 +285,7 @@ void run_programs(const SkyOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   for (const int size : options.sizes) {
     SkyProgramOptions asked;
-    asked.scarp = options.scarp, asked.size = size, asked.repeats = options.repeats;
+    asked.scarp = options.scarp, asked.size = size, asked.repeats = options.repeats, asked.programs = options.programs;
     for (Json& row : measure_sky_programs(asked)) {
       std::vector<std::string> line{fmt::format("{0} x {0}", size), row["map"], row["program"]};
       for (const char* name : {"seconds", "cpu_s", "peak_mb", "scarp_ratio", "error_mean", "error_p99"})
@@ -301,7 +301,7 @@ void run_programs(const SkyOptions& options, const ReportOptions& report) {
 
 void run_sky(const SkyOptions& options, const ReportOptions& report) {
 #ifdef SCARP_BENCH_GDAL
-  if (options.programs) return run_programs(options, report);
+  if (!options.programs.empty()) return run_programs(options, report);
 #endif
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"samples", "threads", "engine", "sky fraction s", "mean error"}};
@@ -349,8 +349,12 @@ void add_sky(cli::Program& program) {
   command.add(&o.maps,
               {.names = "--maps", .help = "instead: whole maps of the sky fraction, 64 azimuths, by each engine"});
 #ifdef SCARP_BENCH_GDAL
-  command.add(&o.programs, {.names = "--programs",
-                            .help = "instead: scarp, r.horizon, r.sun and SAGA as whole processes, if installed"});
+  command.add(cli::List<std::string>{&o.programs},
+              {.names = "--programs",
+               .help = "instead: programs to measure as whole processes, if installed",
+               .choices = {"scarp", "r.horizon", "r.sun", "saga"},
+               .closed = true,
+               .fallback = "none"});
   add_scarp_option(command, o.scarp);
 #endif
 }

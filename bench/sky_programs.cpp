@@ -168,7 +168,9 @@ Errors errors_of(const std::string& path, double unit, const HeightField& field,
 
 std::vector<Json> measure_sky_programs(const SkyProgramOptions& options) {
   std::vector<SkyProgram> programs = sky_programs(options.scarp);
-  std::erase_if(programs, [](const SkyProgram& program) {
+  std::erase_if(programs, [&](const SkyProgram& program) {
+    const std::string name = program.name.substr(0, program.name.find(','));
+    if (std::find(options.programs.begin(), options.programs.end(), name) == options.programs.end()) return true;
     if (is_installed(program.program)) return false;
     fmt::print(stderr, "note: {} is not measured: {} is not installed\n", program.name, program.package);
     return true;

@@ -11,7 +11,8 @@
 namespace scarp::bench {
 
 struct SkyProgramOptions {
-  std::string scarp;  ///< path of the program
+  std::vector<std::string> programs;  ///< "scarp", "r.horizon", "r.sun", "saga"
+  std::string scarp;                  ///< path of the program
   std::string kind = "ridged";
   std::uint64_t seed = 1;
   int size = 512, repeats = 3;
@@ -19,7 +20,7 @@ struct SkyProgramOptions {
   double program_limit_s = 300;  ///< programs that take longer are stopped
 };
 
-/// Returns a row for each map and program that is installed; prints to stderr which are not.
+/// Returns a row for each map and program that is asked for and installed; prints to stderr which are not.
 std::vector<nlohmann::ordered_json> measure_sky_programs(const SkyProgramOptions& options);
 
 }  // namespace scarp::bench

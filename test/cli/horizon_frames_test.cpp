@@ -70,7 +70,8 @@ TEST_F(HorizonFramesCli, AzimuthsAreFromTheNorthOfEachBlock) {
   const auto result = run(words + Names{"-o", path("h.tif")});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto map = open(path("h.tif"));
-  const std::string blocks = map->GetMetadataItem("BLOCKS");
+  const char* const stated = map->GetMetadataItem("BLOCKS");
+  const std::string blocks = stated ? stated : "";
   EXPECT_TRUE(blocks.starts_with("128 x 6 pixels")) << blocks;
   const Pixels pixels = pixels_of(*map);
   const auto north = [&](double col) {
