@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/map_part.h"
 #include "scarp/base/csv_text.h"
 #include "scarp/base/error.h"
@@ -90,7 +89,7 @@ std::vector<HorizonView> horizons_at(MapInput& input, const HorizonPlace& place,
                                      HorizonSettings settings, const Progress& progress) {
   settings.eye_height = place.eye_height;
   const HeightField field = input.field_at(place.at.x, place.at.y, settings.max_distance);
-  const double grid_north = north_at(input, place.at.x, place.at.y, settings.max_distance);
+  const double grid_north = input.north_at(place.at.x, place.at.y);
   const SightEnd local = in_part(input, SightEnd{place.at.x, place.at.y});
   std::vector<HorizonView> views(azimuths.size());
   constexpr std::int64_t kGrain = 8;

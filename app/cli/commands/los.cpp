@@ -158,8 +158,8 @@ bool is_json(const std::string& output) {
 // Tests lines over the part of the raster that was read.
 class Tester {
  public:
-  // `many`: whether the lines are so many that structures over the whole part pay off. `frequency`: of the Fresnel zone,
-  // in megahertz. `bare`: nullptr if the raster itself is the ground.
+  // `many`: whether the lines are so many that structures over the whole part pay off. `frequency`: of the Fresnel
+  // zone, in megahertz. `bare`: nullptr if the raster itself is the ground.
   Tester(const MapInput& input, const PlaceTable& table, bool many, std::optional<double> frequency,
          const BareGround* bare)
       : input_(input),
@@ -243,7 +243,7 @@ void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std
     parts.push_back(part_of_line(input, answers[i].ends.from, answers[i].ends.to));
   }
   if (parts.empty()) return;
-  if (!read_together(input, parts)) 
+  if (!read_together(input, parts))
     return test_one_by_one(input, table, lines, status, answers, parts, frequency, bare);
   if (bare) bare->follow(input);
   const Tester tester(input, table, true, frequency, bare);

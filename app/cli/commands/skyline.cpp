@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/map_part.h"
 #include "app/cli/options/plot_options.h"
 #include "app/cli/progress.h"
@@ -65,7 +64,7 @@ std::vector<SkylineLabel> SkylineNames::visible_from(MapInput& input, const Hori
   std::vector<SkylineLabel> labels;
   if (table_.rows.empty()) return labels;
   const HeightField field = input.field_at(place.at.x, place.at.y, settings.max_distance);
-  const double grid_north = north_at(input, place.at.x, place.at.y, settings.max_distance);
+  const double grid_north = input.north_at(place.at.x, place.at.y);
   const HeightFieldSettings& cells = field.settings();
   const SightEnd eye = in_part(input, SightEnd{place.at.x, place.at.y, place.eye_height});
   const SightGround ground(field);

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "app/cli/commands/skyline.h"
-#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_part.h"
 #include "app/cli/options/plot_options.h"
@@ -62,7 +61,7 @@ PointOfSun point_of(const SunHoursOptions& options, MapInput& input, const Horiz
   SunPlaceSettings& settings = point.settings;
   settings.col = local.col, settings.row = local.row;
   settings.place = {lonlat->x / kDegreesPerRadian, lonlat->y / kDegreesPerRadian, *height};
-  settings.grid_north = north_at(input, at.x, at.y, point.horizon.max_distance);
+  settings.grid_north = input.north_at(at.x, at.y);
   settings.refraction = options.refraction;
   settings.horizon = point.horizon;
   settings.step = options.minutes();

@@ -80,21 +80,20 @@ HorizonFrames::HorizonFrames(MapInput& input, const HorizonInput& horizon, doubl
 void HorizonFrames::divide_degrees(MapInput& input, const HorizonInput& horizon, double plane_error) {
   const Georeference& geo = input.georeference();
   const dvec2 centre = input.centre();
-  const auto whole = metric_plane(geo, input.cols(), input.rows(), centre.x, centre.y, HUGE_VAL);
+  const MetricPlane whole = MetricPlanes(geo, input.cols(), input.rows()).around(centre, HUGE_VAL);
   const bool is_plane = whole.error_cells <= plane_error;
   const double reach = std::min(horizon.reach(), std::hypot(input.cols() * geo.cell_x_m, input.rows() * geo.cell_y_m));
   // One plane, and its note; throws if it does not do.
   if (horizon.swept() || (!is_plane && !horizon.max_distance)) input.field_at(centre.x, centre.y, HUGE_VAL);
   if (horizon.swept()) return;
+  // A raster twice as wide: all nodes of a row have the same plane.
+  const MetricPlanes wide(geo, 2 * input.cols() - 1, input.rows());
   std::array<double, kPlaces> lengths{};
   double error = is_plane ? whole.error_cells : 0;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     const double row = static_cast<double>(i) * (input.rows() - 1) / (kPlaces - 1);
     lengths[i] = std::log(lengths_at(geo, centre.x, row).x);
-    // From the middle of a raster twice as wide: all nodes of a row have the same plane.
-    if (!is_plane)
-      error = std::max(error,
-                       metric_plane(geo, 2 * input.cols() - 1, input.rows(), input.cols() - 1, row, reach).error_cells);
+    if (!is_plane) error = std::max(error, wide.around({input.cols() - 1.0, row}, reach).error_cells);
   }
   // A row further, cells at a distance are this much off.
   const double per_row = steepest(lengths, input.rows()) * reach / geo.cell_x_m;
@@ -183,12 +182,6 @@ void for_each_frame(const std::vector<HorizonFrame>& frames,
         for (std::int64_t i = begin; i < end; ++i) body(frames[static_cast<std::size_t>(i)], {});
       },
       progress);
-}
-
-double north_at(MapInput& input, double col, double row, double reach) {
-  if (is_geographic(input.georeference())) return input.grid_north_at(col, row, reach);
-  const auto scale = scale_at(input.georeference(), col, row);
-  return scale ? scale->grid_north_azimuth : input.georeference().grid_north_azimuth;
 }
 
 }  // namespace scarp::cli

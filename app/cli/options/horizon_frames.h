@@ -67,7 +67,4 @@ void paste(const std::vector<T>& values, const HorizonFrame& frame, const RowBan
   }
 }
 
-/// Azimuth of grid north at a place, radians, as MapInput::grid_north_at(), for projected rasters too.
-double north_at(MapInput& input, double col, double row, double reach);
-
 }  // namespace scarp::cli
