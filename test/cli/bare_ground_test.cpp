@@ -17,8 +17,8 @@
 namespace scarp::test {
 namespace {
 
-constexpr int kSide = 17;
-constexpr std::size_t kUnderTrees = 5 * kSide + 4;
+constexpr int kModelSide = 17;
+constexpr std::size_t kUnderTrees = 5 * kModelSide + 4;
 
 struct Place {
   int col, row;
@@ -29,7 +29,7 @@ class BareGround : public testing::Test {
  protected:
   BareGround() {
     std::mt19937 random(3);
-    for (int i = 0; i < kSide * kSide; ++i) {
+    for (int i = 0; i < kModelSide * kModelSide; ++i) {
       ground_.push_back(static_cast<int>(random() % 12));
       surface_.push_back(ground_.back() + (random() % 3 == 0 ? 9 : 0));
     }
@@ -38,13 +38,14 @@ class BareGround : public testing::Test {
     dsm_ = write("dsm.asc", surface_);
   }
   std::string write(const std::string& name, const std::vector<int>& heights, int corner = 0) const {
-    std::string text = fmt::format("ncols {0}\nnrows {0}\nxllcenter {1}\nyllcenter 0\ncellsize 10\n", kSide, corner);
+    std::string text =
+        fmt::format("ncols {0}\nnrows {0}\nxllcenter {1}\nyllcenter 0\ncellsize 10\n", kModelSide, corner);
     for (std::size_t i = 0; i < heights.size(); ++i)
-      text += fmt::format("{}{}", heights[i], (i + 1) % kSide == 0 ? '\n' : ' ');
+      text += fmt::format("{}{}", heights[i], (i + 1) % kModelSide == 0 ? '\n' : ' ');
     return scratch_.write(name, text);
   }
   static int at(const std::vector<int>& heights, int col, int row) {
-    return heights[static_cast<std::size_t>(row * kSide + col)];
+    return heights[static_cast<std::size_t>(row * kModelSide + col)];
   }
 
   // Calls visit(steps, of, scaled): the ray is at steps / of of its way, and the ground there is scaled / of.
@@ -85,22 +86,23 @@ class BareGround : public testing::Test {
   }
 
   static std::string typed(const Place& place, int height) {
-    return fmt::format("{},{},{}", 10 * place.col, 10 * (kSide - 1 - place.row), height);
+    return fmt::format("{},{},{}", 10 * place.col, 10 * (kModelSide - 1 - place.row), height);
   }
   std::vector<float> map(const std::string& dem, const Names& options) const {
     const Result result = run(Names{"viewshed", dem, "--cc", "0", "-o", scratch_.path("map.tif")} + options);
     EXPECT_EQ(result.status, 0) << result.err;
     GDALAllRegister();
     const GDALDatasetUniquePtr raster(GDALDataset::Open(scratch_.path("map.tif").c_str(), GDAL_OF_RASTER));
-    std::vector<float> pixels(kSide * kSide);
+    std::vector<float> pixels(kModelSide * kModelSide);
     if (!raster) return pixels;
-    EXPECT_EQ(raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kSide, kSide, pixels.data(), kSide, kSide, GDT_Float32,
-                                                 0, 0, nullptr),
+    EXPECT_EQ(raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kModelSide, kModelSide, pixels.data(), kModelSide,
+                                                 kModelSide, GDT_Float32, 0, 0, nullptr),
               CE_None);
     return pixels;
   }
   static void for_each(const std::vector<float>& pixels, const std::function<void(Place, double)>& check) {
-    for (int i = 0; i < kSide * kSide; ++i) check({i % kSide, i / kSide}, pixels[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < kModelSide * kModelSide; ++i)
+      check({i % kModelSide, i / kModelSide}, pixels[static_cast<std::size_t>(i)]);
   }
 
   Scratch scratch_;
@@ -158,7 +160,7 @@ TEST_F(BareGround, VisibleHeightsOfTargetsAreSummed) {
 TEST_F(BareGround, LinesAndProfilesStandOnTheGround) {
   std::string lines = "x,y,z,tx,ty,tz\n";
   std::vector<Place> targets;
-  for (int i = 0; i < 60; ++i) targets.push_back({(5 * i + 2) % kSide, (7 * i + 3) % kSide});
+  for (int i = 0; i < 60; ++i) targets.push_back({(5 * i + 2) % kModelSide, (7 * i + 3) % kModelSide});
   for (const Place& to : targets) lines += typed(kEyes[1], 6) + ',' + typed(to, 2) + '\n';
   const Result result = run({"los", dsm_, "--ground", dtm_, "--cc", "0", "--lines", scratch_.write("l.csv", lines)});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -171,8 +173,8 @@ TEST_F(BareGround, LinesAndProfilesStandOnTheGround) {
   const Result profile = run({"profile", dsm_, "--ground", dtm_, "--cc", "0", "--from", "0,80,6", "--to", "160,80,2"});
   ASSERT_EQ(profile.status, 0) << profile.err;
   const auto points = rows_of(profile.out);
-  ASSERT_EQ(points.size(), static_cast<std::size_t>(kSide));
-  for (int col = 0; col < kSide; ++col) {
+  ASSERT_EQ(points.size(), static_cast<std::size_t>(kModelSide));
+  for (int col = 0; col < kModelSide; ++col) {
     EXPECT_EQ(number(points[static_cast<std::size_t>(col)], "ground"), at(surface_, col, 8));
     EXPECT_EQ(number(points[static_cast<std::size_t>(col)], "bare"), at(ground_, col, 8));
   }

@@ -18,7 +18,7 @@ namespace {
 
 using Real = long double;
 
-constexpr int kSide = 24;
+constexpr int kFresnelSide = 24;
 constexpr Real kCell = 50, kDiameter = 2 * 6378137.0L, kLight = 299792458;  // metres, metres per second
 
 // A model without CRS, whose south-west sample is at (0, 0).
@@ -26,10 +26,10 @@ class Fresnel : public testing::Test {
  protected:
   Fresnel() {
     std::mt19937 random(7);
-    std::string text = fmt::format("ncols {0}\nnrows {0}\nxllcenter 0\nyllcenter 0\ncellsize 50\n", kSide);
-    for (int i = 0; i < kSide * kSide; ++i) {
+    std::string text = fmt::format("ncols {0}\nnrows {0}\nxllcenter 0\nyllcenter 0\ncellsize 50\n", kFresnelSide);
+    for (int i = 0; i < kFresnelSide * kFresnelSide; ++i) {
       heights_.push_back(static_cast<int>(random() % 30));
-      text += fmt::format("{}{}", heights_.back(), i % kSide == kSide - 1 ? '\n' : ' ');
+      text += fmt::format("{}{}", heights_.back(), i % kFresnelSide == kFresnelSide - 1 ? '\n' : ' ');
     }
     dem_ = scratch_.write("dem.asc", text);
   }
@@ -38,7 +38,7 @@ class Fresnel : public testing::Test {
     int col, row;
     Real height;  // above ground
   };
-  Real ground(int col, int row) const { return heights_[static_cast<std::size_t>(row * kSide + col)]; }
+  Real ground(int col, int row) const { return heights_[static_cast<std::size_t>(row * kFresnelSide + col)]; }
 
   // The least share of the zone over all crossings of a line between nodes.
   Real least_share(const Point& from, const Point& to, Real coefficient, Real megahertz) const {
@@ -57,18 +57,18 @@ class Fresnel : public testing::Test {
     for (int k = 1; k < std::abs(dc); ++k) {
       const Real along = Real(k) / std::abs(dc), row = from.row + along * dr;
       const int col = from.col + (dc > 0 ? k : -k), north = static_cast<int>(std::floor(row));
-      visit(along, lowered(col, north), lowered(col, std::min(north + 1, kSide - 1)), row - north);
+      visit(along, lowered(col, north), lowered(col, std::min(north + 1, kFresnelSide - 1)), row - north);
     }
     for (int k = 1; k < std::abs(dr); ++k) {
       const Real along = Real(k) / std::abs(dr), col = from.col + along * dc;
       const int row = from.row + (dr > 0 ? k : -k), west = static_cast<int>(std::floor(col));
-      visit(along, lowered(west, row), lowered(std::min(west + 1, kSide - 1), row), col - west);
+      visit(along, lowered(west, row), lowered(std::min(west + 1, kFresnelSide - 1), row), col - west);
     }
     return least;
   }
 
   static std::string typed(const Point& at) {
-    return fmt::format("{},{},{}", 50 * at.col, 50 * (kSide - 1 - at.row), static_cast<double>(at.height));
+    return fmt::format("{},{},{}", 50 * at.col, 50 * (kFresnelSide - 1 - at.row), static_cast<double>(at.height));
   }
 
   Scratch scratch_;
@@ -77,13 +77,14 @@ class Fresnel : public testing::Test {
 };
 
 // Tables have ten digits.
-constexpr double kDigits = 1e-9;
+constexpr double kFresnelDigits = 1e-9;
 
 TEST_F(Fresnel, ShareIsTheLeastOverAllCrossings) {
   const Point tower{2, 3, 25};
   std::string lines = "x,y,z,tx,ty,tz\n";
   std::vector<Point> targets;
-  for (int i = 0; i < 40; ++i) targets.push_back({(5 * i + 9) % kSide, (7 * i + 11) % kSide, Real(i % 13)});
+  for (int i = 0; i < 40; ++i)
+    targets.push_back({(5 * i + 9) % kFresnelSide, (7 * i + 11) % kFresnelSide, Real(i % 13)});
   for (const Point& target : targets) lines += typed(tower) + ',' + typed(target) + '\n';
   const std::string file = scratch_.write("lines.csv", lines);
   struct Case {
@@ -98,7 +99,7 @@ TEST_F(Fresnel, ShareIsTheLeastOverAllCrossings) {
     ASSERT_EQ(rows.size(), targets.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double expected = static_cast<double>(least_share(tower, targets[i], coefficient, 2400));
-      ASSERT_NEAR(number(rows[i], "fresnel"), expected, kDigits * std::max(1.0, std::abs(expected))) << i;
+      ASSERT_NEAR(number(rows[i], "fresnel"), expected, kFresnelDigits * std::max(1.0, std::abs(expected))) << i;
       EXPECT_EQ(rows[i].at("visible"), expected >= 0 ? "1" : "0");
     }
   }
@@ -123,7 +124,7 @@ TEST_F(Fresnel, ProfilesHaveTheZoneAtEachPoint) {
     }
   }
   const double expected = static_cast<double>(least_share(from, to, 0.75L, 900));
-  EXPECT_NEAR(least, expected, kDigits * std::max(1.0, std::abs(expected)));
+  EXPECT_NEAR(least, expected, kFresnelDigits * std::max(1.0, std::abs(expected)));
 #ifdef SCARP_CAIRO
   const Result figure = run(line + Names{"-o", scratch_.path("link.svg")});
   EXPECT_EQ(figure.status, 0) << figure.err;
@@ -140,14 +141,15 @@ TEST_F(Fresnel, MapsHaveTheLargestShareOfAllObservers) {
   GDALAllRegister();
   const GDALDatasetUniquePtr raster(GDALDataset::Open(scratch_.path("share.tif").c_str(), GDAL_OF_RASTER));
   ASSERT_TRUE(raster);
-  std::vector<float> pixels(kSide * kSide);
-  ASSERT_EQ(raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kSide, kSide, pixels.data(), kSide, kSide, GDT_Float32, 0,
-                                               0, nullptr),
+  std::vector<float> pixels(kFresnelSide * kFresnelSide);
+  ASSERT_EQ(raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kFresnelSide, kFresnelSide, pixels.data(), kFresnelSide,
+                                               kFresnelSide, GDT_Float32, 0, 0, nullptr),
             CE_None);
-  for (int i = 0; i < kSide * kSide; ++i) {
+  for (int i = 0; i < kFresnelSide * kFresnelSide; ++i) {
     Real expected = -std::numeric_limits<Real>::infinity();
     for (const Point& tower : towers)
-      expected = std::max(expected, std::min(1.0L, least_share(tower, {i % kSide, i / kSide, 3}, 0, 5800)));
+      expected =
+          std::max(expected, std::min(1.0L, least_share(tower, {i % kFresnelSide, i / kFresnelSide, 3}, 0, 5800)));
     // Floats.
     EXPECT_NEAR(pixels[static_cast<std::size_t>(i)], static_cast<double>(expected),
                 1e-6 * std::max(1.0, std::abs(static_cast<double>(expected))));

@@ -101,12 +101,13 @@ TEST_F(HorizonFramesCli, AzimuthsAreFromTheNorthOfEachBlock) {
 // Two degrees of latitude, over which the columns widen by 6 %, and three of longitude.
 TEST_F(HorizonFramesCli, RowsInDegreesHaveTheirOwnLengths) {
   const std::string dem = ramp("degrees.asc", 150, 200, "xllcorner 10\nyllcorner 58\ncellsize 0.01", 40);
-  const Names words{"horizon", dem, "--crs", "EPSG:4326", "--cc", "0", "--azimuths", "4", "--max-distance", "2000"};
+  const Names words{"horizon",    dem, "--crs",          "EPSG:4326", "--cc",          "0",
+                    "--azimuths", "4", "--max-distance", "2000",      "--plane-error", "0.1"};
   const auto result = run(words + Names{"-o", path("h.tif")});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.err.find("metric planes, one for 32 rows"), std::string::npos) << result.err;
   ASSERT_EQ(run({"skyview", dem, "--crs", "EPSG:4326", "--cc", "0", "--azimuths", "2", "--max-distance", "2000",
-                 "--measure", "sky-view-factor", "-o", path("s.tif")})
+                 "--plane-error", "0.1", "--measure", "sky-view-factor", "-o", path("s.tif")})
                 .status,
             0);
   const Pixels east = pixels_of(*open(path("h.tif")), 2), sky = pixels_of(*open(path("s.tif")));

@@ -240,7 +240,7 @@ void add_profile(Program& program) {
   command.footer(kColumns);
   command.example("scarp profile dem.tif --from 692000,5143000,400 --to 692900,5143500 --march max-mip -o ray.svg");
   command.example(
-      "scarp profile dem.tif --from 692000,5143000,20 --to 698500,5149000,10 --frequency 900 --k-factor 4/3 -o "
+      "scarp profile dem.tif --from 692000,5143000,20 --to 698500,5149000,10 --frequency 900 -o "
       "link.svg");
   command.example("scarp profile dem.tif --path road.gpkg --spacing 25 -o road.csv");
   command.example("scarp profile dem.tif --from 692000,5143000 --to 698500,5149000,10 -o profile.svg");

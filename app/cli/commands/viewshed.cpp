@@ -56,17 +56,6 @@ constexpr const char* kFooter = R"(Modes:
 Pixels without a sample, or outside every observer's limits, are nodata; those of `angle` also where
 the target is hidden. Visible pixels must differ from all others; others may be equal.
 
-Summary (--summary), a row per row of the observers:
-  the other columns of --observers
-  observer  from 1
-  status    with --skip-bad: ok, invalid, outside or nodata; other rows are empty
-  x,y       sample of the observer, in --coords
-  eye       height above sea, metres
-  area      of the visible pixels, square metres
-  share     of the pixels within the limits, 0 to 1
-  farthest  distance of the farthest visible pixel, metres
-With --part, area, share and distance are those of the part.
-
 Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
 -f -q, with the output as last word.)";
 
@@ -505,7 +494,6 @@ void add_viewshed(Program& program) {
                         .closed = true,
                         .note = "files: OUT_N.tif for row N of the observers",
                         .fallback = "one map of all",
-                        .common = true,
                         .rules = {{"does not apply to --mode count (each map would count one observer)",
                                    [&o] { return mode_of(o.mode) != "count"; }}}});
   add_sight_heights(command, o.heights);
@@ -520,8 +508,7 @@ void add_viewshed(Program& program) {
   command.add(&o.min_distance, {.names = "--min-distance",
                                 .help = "minimum distance of targets",
                                 .unit = "metres",
-                                .range = {0, kMostOfGround},
-                                .common = true});
+                                .range = {0, kMostOfGround}});
   command.add(&o.azimuth, {.names = "--azimuth",
                            .value = "FROM,TO",
                            .help = "field of view in degrees clockwise from true north",
@@ -530,8 +517,7 @@ void add_viewshed(Program& program) {
   command.add(&o.pitch, {.names = "--pitch",
                          .value = "LOW,HIGH",
                          .help = "field of view in degrees above horizontal",
-                         .fallback = "-90,90",
-                         .common = true});
+                         .fallback = "-90,90"});
   command.add(&o.crop, {.names = "--crop",
                         .help = "write only the pixels within --max-distance, not the extent of the input",
                         .common = true,

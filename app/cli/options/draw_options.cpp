@@ -3,7 +3,7 @@
 
 namespace scarp::cli {
 
-void add_draw_options(Command& command, DrawOptions& options, Topic topic, bool common, const Rule& rule,
+void add_draw_options(Command& command, DrawOptions& options, Topic topic, const Rule& rule,
                       const std::vector<std::string>& excludes) {
   command.add(&options.files, {.names = "--draw",
                                .value = "FILE",
@@ -13,7 +13,6 @@ void add_draw_options(Command& command, DrawOptions& options, Topic topic, bool 
                                .repeats = true,
                                .fallback = "none",
                                .topic = topic,
-                               .common = common,
                                .inputs = {kTerrain, "only rasters are georeferenced", "only rasters are georeferenced"},
                                .rules = {rule},
                                .excludes = excludes});
@@ -22,7 +21,6 @@ void add_draw_options(Command& command, DrawOptions& options, Topic topic, bool 
                                .help = "column of --draw with labels",
                                .fallback = "none",
                                .topic = topic,
-                               .common = common,
                                .rules = {needs("--draw FILE", [&options] { return !options.files.empty(); })},
                                .excludes = excludes});
 }

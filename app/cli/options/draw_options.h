@@ -15,7 +15,7 @@ struct DrawOptions {
 };
 
 /// Declares --draw and --draw-label. `rule`: when maps are drawn.
-void add_draw_options(Command& command, DrawOptions& options, Topic topic, bool common, const Rule& rule,
+void add_draw_options(Command& command, DrawOptions& options, Topic topic, const Rule& rule,
                       const std::vector<std::string>& excludes = {});
 
 }  // namespace scarp::cli

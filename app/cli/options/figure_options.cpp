@@ -68,7 +68,7 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
        .inputs = {kTerrain, "only maps of rasters have them", "only maps of rasters have them"},
        .looks = {"shaded comanche", "the others have no contour lines"},
        .rules = {on_map, needs("--contours M", [&command] { return command.given("--contours"); })}});
-  add_draw_options(command, options.draw, Topic::figure, false, on_map);
+  add_draw_options(command, options.draw, Topic::figure, on_map);
   add(&options.layout, {.names = "--layout",
                         .value = "WHERE",
                         .help = "place of title, legend, scale bar, north arrow and labels of the graticule",

@@ -68,7 +68,6 @@ void add_curvature_option(Command& command, std::optional<double>& coefficient) 
                .help = "effective Earth radius over the true one: --cc is 1/K",
                .note = "4/3: radio in a standard atmosphere",
                .fallback = "that of --cc",
-               .common = true,
                .excludes = {"--cc"}});
 }
 

@@ -36,7 +36,6 @@ void add_memory_options(Command& command, MemoryOptions& options, const std::vec
                                .help = "maximum memory, for example 512M or 8G; arrays beyond it are kept in files",
                                .note = "at least 256M",
                                .fallback = "half of the machine's",
-                               .common = true,
                                .excludes = excludes});
   command.add(&options.scratch, {.names = "--scratch",
                                  .value = "DIR",

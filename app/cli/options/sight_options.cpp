@@ -41,7 +41,6 @@ void add_frequency_option(Command& command, std::optional<double>& megahertz, st
                            .unit = "megahertz",
                            .range = {1, 1e6},
                            .fallback = "none",
-                           .common = true,
                            .rules = std::move(rules),
                            .excludes = std::move(excludes)});
 }

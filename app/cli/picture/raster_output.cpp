@@ -30,7 +30,6 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                 .choices = {"GTiff", "COG"},
                                 .note = "any raster format of gdalinfo --formats that can be written",
                                 .fallback = "by the extension",
-                                .common = true,
                                 .excludes = excludes});
   command.add(&options.creation, {.names = "--co",
                                   .value = "NAME=VALUE",
@@ -38,7 +37,6 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                   .note = "repeatable",
                                   .repeats = true,
                                   .fallback = "GTiff: tiled, DEFLATE",
-                                  .common = true,
                                   .excludes = excludes});
   command.add(&options.part, {.names = "--part",
                               .value = "I/N",
@@ -49,7 +47,6 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                               .excludes = excludes});
   command.add(&options.resume, {.names = "--resume",
                                 .help = "keep finished rows in OUTPUT.resume, and go on if the file exists",
-                                .common = true,
                                 .excludes = excludes});
   command.add(&options.preview, {.names = "--preview",
                                  .value = "FILE",
@@ -58,14 +55,11 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                  .fallback = "none",
                                  .common = true,
                                  .excludes = excludes});
-  add_draw_options(command, options.draw, Topic::general, true,
+  add_draw_options(command, options.draw, Topic::general,
                    needs("--preview FILE", [&options] { return !options.preview.empty(); }), excludes);
-  command.add(&options.dry_run, {.names = "--dry-run",
-                                 .help = "print size, memory and time, and write nothing",
-                                 .common = true,
-                                 .excludes = excludes});
-  command.add(&options.quiet,
-              {.names = "--quiet", .help = "no summary, notes and progress", .common = true, .excludes = excludes});
+  command.add(&options.dry_run,
+              {.names = "--dry-run", .help = "print size, memory and time, and write nothing", .excludes = excludes});
+  command.add(&options.quiet, {.names = "--quiet", .help = "no summary, notes and progress", .excludes = excludes});
 }
 
 void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type) {
