@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Private to scarp/analysis: the tangent planes of nodes, from central differences; at a border or beside a hole from
-// one neighbour, and level where there is none.
+// one neighbour, and level where there is none. HeightField::shading_normal() takes the same differences, but only
+// within cells, which fields of one row or column do not have, and with one length for all cells.
 #pragma once
 
 #include <vector>
