@@ -23,7 +23,11 @@ namespace scarp::cli {
 namespace {
 
 PlaceTable points_of(const HorizonOptions& options) {
-  if (!options.points.path.empty()) return options.points.read(PlaceKind::points);
+  if (!options.points.path.empty()) {
+    PlaceTable table = options.points.read(PlaceKind::points);
+    ignore_vector_z(table);
+    return table;
+  }
   PlaceTable table;
   for (const std::string& text : options.at) table.rows.push_back({typed_height_place(text, "--at"), {}, 0});
   return table;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/cli/commands.h"
@@ -35,7 +36,7 @@ constexpr const char* kOutput = R"(Output, one row or line per line of sight:
   line          from 1
   status        with --skip-bad: ok, invalid, outside or nodata; other lines are empty
   visible       1 or 0
-  distance      horizontal, metres
+  distance      geodesic, metres
   eye,target    heights above sea, metres
   clearance     least height of the line above the ground, metres; negative if blocked
   clearance_at  distance of that point from the observer
@@ -155,6 +156,8 @@ bool is_json(const std::string& output) {
   return extension == ".geojson" || extension == ".json";
 }
 
+constexpr std::string_view kSeaHint = " (heights above sea: --heights, --observer-z)";
+
 // Tests lines over the part of the raster that was read.
 class Tester {
  public:
@@ -183,25 +186,29 @@ class Tester {
   void test(std::size_t i, const dvec2& cells, Answer& answer) const {
     const HeightField field = with_cells(input_.field(), cells);
     const SightEnd from = in_part(input_, answer.ends.from), to = in_part(input_, answer.ends.to);
-    named(i, [&] {
-      if (!bilinear_) {
-        answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr);
-        if (frequency_)
-          answer.fresnel =
-              fresnel_clearance(SightLine(field, from, to, input_.curvature()), wavelength_of(*frequency_));
-      } else {
-        answer.line = BilinearGround(field, *bilinear_).line_of_sight(from, to);
-      }
-    });
+    named(
+        i,
+        [&] {
+          if (!bilinear_) {
+            answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr);
+            if (frequency_)
+              answer.fresnel =
+                  fresnel_clearance(SightLine(field, from, to, input_.curvature()), wavelength_of(*frequency_));
+          } else {
+            answer.line = BilinearGround(field, *bilinear_).line_of_sight(from, to);
+          }
+        },
+        from.datum == HeightDatum::sea || to.datum == HeightDatum::sea ? kSeaHint : "");
   }
 
  private:
   template <class Work>
-  void named(std::size_t i, const Work& work) const {
+  void named(std::size_t i, const Work& work, std::string_view hint = {}) const {
     try {
       work();
     } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", table_.rows[i].line > 0 ? table_.where(i) : input_.path(), error.what()));
+      throw Error(
+          fmt::format("{}: {}{}", table_.rows[i].line > 0 ? table_.where(i) : input_.path(), error.what(), hint));
     }
   }
 
@@ -283,8 +290,11 @@ void run(LosOptions options, const Command& command) {
   RowStatus status(table, skips);
   const RowStatus* const shown = skips ? &status : nullptr;
   std::vector<Answer> answers(table.rows.size());
+  const SightColumns columns(table, options.places.pairs);
+  if (const std::string note = note_of_z(options.heights, table); !note.empty()) input.notes.push_back(note);
   for (std::size_t i = 0; i < answers.size(); ++i)
-    status.attempt(i, RowStatus::kOutside, [&] { answers[i].ends = sight_ends(input, table, i, options.heights); });
+    status.attempt(i, RowStatus::kOutside,
+                   [&] { answers[i].ends = sight_ends(input, table, i, options.heights, columns); });
   if (options.surface == "bilinear" && input.curvature().coefficient != 0)
     throw Error("--surface bilinear: its rays are straight (add --cc 0)");
   test_lines(input, table, status, answers, options.frequency, bare ? &*bare : nullptr);
@@ -320,6 +330,7 @@ void add_los(Program& program) {
                          .rules = {needs("a .geojson output", [&o] { return is_json(o.output); })}});
   add_sight_heights(command, o.heights);
   add_bare_ground_option(command, o.bare_ground);
+  add_observer_z(command, o.heights, "--lines", o.places.lines);
   add_surface_option(command, o.surface);
   add_frequency_option(command, o.frequency, {needs("--surface crossings", [&o] { return o.surface == "crossings"; })});
   add_curvature_option(command, o.curvature);

@@ -138,7 +138,7 @@ struct ProfileLine {
 // Reads the part of the raster that the line needs, or all of it: steps of marches depend on the whole pyramid.
 // `bare`: nullptr if the raster itself is the ground.
 ProfileLine line_of(MapInput& input, BareGround* bare, const PlaceTable& table, const SightHeights& heights, bool all) {
-  SightEnds ends = sight_ends(input, table, 0, heights);
+  SightEnds ends = sight_ends(input, table, 0, heights, SightColumns(table, false));
   const auto& [from, to] = ends;
   input.read(all ? input.whole() : part_of_line(input, from, to), terminal_progress("read"));
   input.close();

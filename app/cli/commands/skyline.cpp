@@ -52,6 +52,7 @@ std::vector<double> elevations_of(const std::vector<HorizonView>& views) {
 SkylineNames::SkylineNames(const std::string& path) {
   if (path.empty()) return;
   table_ = read_places(path, PlaceKind::points);
+  ignore_vector_z(table_);
   const auto& columns = table_.carried.names;
   if (columns.empty()) throw Error(fmt::format("{}: no column with names (add one: name)", path));
   const auto named = std::find_if(columns.begin(), columns.end(),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -22,6 +23,7 @@
 #include "app/cli/options/bare_ground.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/map_part.h"
+#include "app/cli/options/observer_columns.h"
 #include "app/cli/options/path_file.h"
 #include "app/cli/options/place_file.h"
 #include "app/cli/options/shared_options.h"
@@ -80,8 +82,13 @@ struct Stand {
   double reach;  // metres
   dvec2 at;
   std::string what;  // for messages
+  std::string name;  // empty: none
   std::size_t row;   // of the table of observers
-  std::string name;  // "observer 3", or the name of the row
+
+  // For bands and marks.
+  std::string title(std::size_t observers) const {
+    return !name.empty() ? name : observers == 1 ? "observer" : fmt::format("observer {}", row + 1);
+  }
 };
 
 PlaceTable observer_table(const ViewshedOptions& options) {
@@ -94,50 +101,90 @@ PlaceTable observer_table(const ViewshedOptions& options) {
   return table;
 }
 
+// Metres; infinity: unlimited.
+double reach_of(const ViewshedOptions& options, const ObserverColumns& columns, std::size_t row) {
+  const auto typed = options.max_distance.value_or(std::numeric_limits<double>::infinity());
+  return columns.number(row, ObserverColumn::max_distance).value_or(typed);
+}
+
 // Compass degrees from true north to radians from grid north.
 double grid_azimuth(double degrees, double grid_north) {
   const double turn = 2 * std::numbers::pi, angle = std::remainder(degrees / kDegreesPerRadian - grid_north, turn);
   return angle < 0 ? angle + turn : angle;
 }
 
-void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, double grid_north) {
-  settings.min_distance = options.min_distance;
-  settings.max_distance = options.max_distance.value_or(std::numeric_limits<double>::infinity());
+// Two numbers of an option, low to high with `ordered`.
+dvec2 typed_range(const std::string& text, std::string_view option, std::string_view form, double most, bool ordered) {
+  const auto n = numbers_from(text, ',', 2, 2, option, form);
+  if (!(std::abs(n[0]) <= most && std::abs(n[1]) <= most) || (ordered && n[0] > n[1]))
+    throw Error(fmt::format("{} '{}': expected {}", option, text, form));
+  return {n[0], n[1]};
+}
+
+// The limits of one observer: those of its row, else of the options. `grid_north` is called if azimuths matter.
+void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, const ObserverColumns& columns,
+                std::size_t row, const std::function<double()>& grid_north) {
+  const auto number = [&](ObserverColumn column) { return columns.number(row, column); };
+  settings.min_distance = number(ObserverColumn::min_distance).value_or(options.min_distance);
+  settings.max_distance = reach_of(options, columns, row);
   if (settings.max_distance < settings.min_distance)
     throw Error(
         fmt::format("--max-distance {}: is below --min-distance {}", settings.max_distance, settings.min_distance));
-  if (!options.azimuth.empty()) {
-    const auto n =
-        numbers_from(options.azimuth, ',', 2, 2, "--azimuth", "FROM,TO in degrees clockwise from north, -360 to 360");
-    for (const double degrees : n)
-      if (!(degrees >= -360 && degrees <= 360))
-        throw Error(fmt::format("--azimuth '{}': expected FROM,TO in degrees clockwise from north, -360 to 360",
-                                options.azimuth));
-    if (n[1] - n[0] < 360) {
-      settings.first_azimuth = grid_azimuth(n[0], grid_north);
-      settings.last_azimuth = grid_azimuth(n[1], grid_north);
-    }
+  dvec2 azimuths(0, 360);
+  if (!options.azimuth.empty())
+    azimuths =
+        typed_range(options.azimuth, "--azimuth", "FROM,TO in degrees clockwise from north, -360 to 360", 360, false);
+  azimuths = {number(ObserverColumn::first_azimuth).value_or(azimuths.x),
+              number(ObserverColumn::last_azimuth).value_or(azimuths.y)};
+  if (azimuths.y - azimuths.x < 360) {
+    const double north = grid_north();
+    settings.first_azimuth = grid_azimuth(azimuths.x, north);
+    settings.last_azimuth = grid_azimuth(azimuths.y, north);
   }
-  if (!options.pitch.empty()) {
-    const auto n = numbers_from(options.pitch, ',', 2, 2, "--pitch", "LOW,HIGH in degrees above horizontal, -90 to 90");
-    if (!(n[0] >= -90 && n[0] <= n[1] && n[1] <= 90))
-      throw Error(fmt::format("--pitch '{}': expected LOW,HIGH in degrees above horizontal, -90 to 90", options.pitch));
-    settings.low_pitch = n[0] / kDegreesPerRadian;
-    settings.high_pitch = n[1] / kDegreesPerRadian;
-  }
+  dvec2 pitches(-90, 90);
+  if (!options.pitch.empty())
+    pitches = typed_range(options.pitch, "--pitch", "LOW,HIGH in degrees above horizontal, -90 to 90", 90, true);
+  pitches = {number(ObserverColumn::low_pitch).value_or(pitches.x),
+             number(ObserverColumn::high_pitch).value_or(pitches.y)};
+  if (!(pitches.x >= -90 && pitches.x <= pitches.y && pitches.y <= 90))
+    throw Error(fmt::format("pitch from {} to {}: expected -90 to 90 degrees, the lower first", pitches.x, pitches.y));
+  settings.low_pitch = pitches.x / kDegreesPerRadian;
+  settings.high_pitch = pitches.y / kDegreesPerRadian;
 }
 
-// The name of a row: that of a column `name`, in any case.
-std::string name_of_row(const PlaceTable& table, std::size_t row) {
-  const std::vector<std::string>& names = table.carried.names;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (lower_case(names[k]) == "name" && !table.carried.at(row, k).empty()) return table.carried.at(row, k);
-  return table.rows.size() == 1 ? "observer" : fmt::format("observer {}", row + 1);
+// The stand of a row at a node.
+Stand stand_of(MapInput& input, const ViewshedOptions& options, const PlaceTable& table, const ObserverColumns& columns,
+               std::size_t i, const Node& node, std::string what) {
+  ViewshedSettings settings;
+  settings.curvature = input.curvature();
+  settings.target_height = columns.number(i, ObserverColumn::target_height).value_or(options.heights.target);
+  const auto [metres, datum] =
+      height_of(table.rows[i].from, meaning_of_z(options.heights, table), columns.number(i, ObserverColumn::height),
+                options.heights.observer, columns.number(i, ObserverColumn::spot));
+  if (datum == HeightDatum::sea) {
+    settings.observer_z = metres;
+  } else {
+    settings.observer_height = metres;
+  }
+  const double reach = reach_of(options, columns, i);
+  try {
+    set_limits(settings, options, columns, i, [&] { return input.grid_north_at(node.col, node.row, reach); });
+  } catch (const Error& error) {
+    if (table.rows[i].line == 0) throw;
+    throw Error(fmt::format("{}: {}", what, error.what()));
+  }
+  return {node, settings, reach, input.place_of(node.col, node.row), std::move(what), columns.name(i), i};
 }
 
 std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, const PlaceTable& table,
                              RowStatus& status) {
   input.notes.insert(input.notes.end(), table.notes.begin(), table.notes.end());
+  const PlaceTable none;
+  ViewshedSettings unused;
+  set_limits(unused, options, ObserverColumns(none), 0, [] { return 0.0; });  // reports wrong options
+  const ObserverColumns columns(table);
+  for (const std::string& note : {columns.note(), note_of_z(options.heights, table)})
+    if (!note.empty()) input.notes.push_back(note);
   std::vector<Stand> stands;
   double farthest = 0;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
@@ -145,18 +192,9 @@ std::vector<Stand> stands_of(MapInput& input, const ViewshedOptions& options, co
     const std::string what = row.line > 0 ? table.where(i) : "--observer";
     Node node;
     if (!status.attempt(i, RowStatus::kOutside, [&] { node = input.node_of(row.from, table.lonlat, what); })) continue;
-    const dvec2 snapped = input.place_of(node.col, node.row);
-    ViewshedSettings settings;
-    settings.curvature = input.curvature();
-    settings.target_height = options.heights.target;
-    if (row.from.z && options.heights.datum == "sea") {
-      settings.observer_z = row.from.z;
-    } else {
-      settings.observer_height = row.from.z.value_or(options.heights.observer);
-    }
-    const double reach = options.max_distance.value_or(std::numeric_limits<double>::infinity());
-    set_limits(settings, options, options.azimuth.empty() ? 0 : input.grid_north_at(node.col, node.row, reach));
-    stands.push_back({node, settings, reach, snapped, what, i, name_of_row(table, i)});
+    if (!status.attempt(i, RowStatus::kInvalid,
+                        [&] { stands.push_back(stand_of(input, options, table, columns, i, node, what)); }))
+      continue;
     // Measured in samples, which suits degrees and metres.
     const dvec2 typed = input.position_of(row.from, table.lonlat, what);
     farthest = std::max(farthest, std::hypot(typed.x - node.col, typed.y - node.row));
@@ -188,7 +226,8 @@ void keep_usable(std::vector<Stand>& stands, MapInput& input, RowStatus& status)
       try {
         work();
       } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", one.what, error.what()));
+        throw Error(fmt::format("{}: {}{}", one.what, error.what(),
+                                one.settings.observer_z ? " (heights above sea: --heights, --observer-z)" : ""));
       }
     });
   };
@@ -255,6 +294,9 @@ RasterWindow part_in_reach(MapInput& input, const std::vector<Stand>& stands) {
 // If pixels out of range are not nodata, as holes are, all samples are read.
 void set_area(MapRun& run, const ViewshedOptions& options, bool marks_range, const std::vector<Stand>& stands) {
   const RasterWindow near = part_in_reach(run.input(), stands), whole = run.input().whole();
+  if (options.crop)
+    for (const Stand& one : stands)
+      if (!std::isfinite(one.reach)) throw Error(fmt::format("--crop: {}: needs --max-distance", one.what));
   const bool all = !options.raster_output.preview.empty() || marks_range;
   run.set_area(options.crop ? near : whole, all && !options.crop ? whole : near);
   // A line of sight stays between the rows of its ends.
@@ -310,7 +352,8 @@ std::string places_text(const std::vector<Stand>& stands) {
   std::string text;
   for (std::size_t i = 0; i < stands.size() && i < kListed; ++i) {
     const Stand& one = stands[i];
-    text += fmt::format("{}{:.10g},{:.10g} {}", i == 0 ? "" : "; ", one.at.x, one.at.y,
+    text += fmt::format("{}{}{:.10g},{:.10g} {}", i == 0 ? "" : "; ", one.name.empty() ? "" : one.name + ": ", one.at.x,
+                        one.at.y,
                         one.settings.observer_z ? fmt::format("{:.10g} m above sea", *one.settings.observer_z)
                                                 : fmt::format("{:.10g} m above ground", one.settings.observer_height));
   }
@@ -384,6 +427,13 @@ void check_summary(const ViewshedOptions& options) {
   if (!options.raster_output.dry_run) const ReplaceFile writable(options.summary);
 }
 
+std::string targets_text(const std::vector<Stand>& stands) {
+  const auto height = [](const Stand& one) { return one.settings.target_height; };
+  const double first = height(stands.front());
+  const bool same = std::all_of(stands.begin(), stands.end(), [&](const Stand& one) { return height(one) == first; });
+  return same ? fmt::format("{:.10g} m above ground", first) : "by observer";
+}
+
 void run(ViewshedOptions options, const Command& command) {
   options.mode = mode_of(options.mode);
   const bool codes = options.mode == "visible", counts = options.mode == "count";
@@ -408,9 +458,8 @@ void run(ViewshedOptions options, const Command& command) {
   if (bare) bare->follow(input);
   keep_usable(stands, bare ? bare->input() : input, status);
   if (bare) bare->move_notes(input);
-  Metadata metadata{{"MODE", options.mode},
-                    {"OBSERVERS", places_text(stands)},
-                    {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)}};
+  Metadata metadata{
+      {"MODE", options.mode}, {"OBSERVERS", places_text(stands)}, {"TARGET_HEIGHT", targets_text(stands)}};
   if (bare) metadata.emplace_back("GROUND", bare->path());
   if (options.frequency) metadata.emplace_back("FREQUENCY", fmt::format("{:.10g} MHz", *options.frequency));
   for (auto& pair : input.curvature_metadata()) metadata.push_back(std::move(pair));
@@ -424,7 +473,7 @@ void run(ViewshedOptions options, const Command& command) {
     for (std::size_t k = 0; k < stands.size(); ++k) {
       computed.push_back(maker.make(
           all.one(k), rows, progress_part(progress, static_cast<double>(k), static_cast<double>(stands.size()))));
-      computed.back().name = fmt::format("{}: {}", stands[k].name, computed.back().name);
+      computed.back().name = fmt::format("{}: {}", stands[k].title(stands.size()), computed.back().name);
     }
     return computed;
   };
@@ -435,7 +484,7 @@ void run(ViewshedOptions options, const Command& command) {
   for (double* const total : summary.totals()) recipe.totals.push_back(total);
   constexpr std::size_t kMostNames = 100;
   for (const Stand& one : stands)
-    recipe.marks.push_back({dvec2(one.node.col, one.node.row), stands.size() > kMostNames ? "" : one.name});
+    recipe.marks.push_back({dvec2(one.node.col, one.node.row), stands.size() > kMostNames ? "" : one.title(stands.size())});
   run.write(recipe);
   if (!options.summary.empty()) write_summary(options, summary, table, status, stands);
 }
@@ -499,6 +548,7 @@ void add_viewshed(Program& program) {
   add_sight_heights(command, o.heights);
   add_bare_ground_option(command, o.bare_ground);
   add_frequency_option(command, o.frequency, {needs("--mode fresnel", [&o] { return o.mode == "fresnel"; })});
+  add_observer_z(command, o.heights, "--observers", o.observers_file);
   command.add(&o.max_distance, {.names = "--max-distance",
                                 .help = "maximum distance of targets",
                                 .unit = "metres",
@@ -521,7 +571,8 @@ void add_viewshed(Program& program) {
   command.add(&o.crop, {.names = "--crop",
                         .help = "write only the pixels within --max-distance, not the extent of the input",
                         .common = true,
-                        .rules = {needs("--max-distance M", [&o] { return o.max_distance.has_value(); })}});
+                        .rules = {needs("--max-distance M or --observers FILE",
+                                        [&o] { return o.max_distance || !o.observers_file.path.empty(); })}});
   add_curvature_option(command, o.curvature);
   const Rule codes = needs("--mode visible", [&o] { return mode_of(o.mode) == "visible"; });
   command.add(

@@ -100,6 +100,7 @@ std::vector<Vertex> over_polygon(MapInput& input, const PlaceTable& shapes, std:
 PlaceTable stations_on(MapInput& input, const PlaceTable& shapes, double spacing, bool skip) {
   PlaceTable table;
   table.path = shapes.path;
+  table.vector = shapes.vector;
   table.notes = shapes.notes;
   table.carried.names = shapes.carried.names;
   const auto add = [&](PlaceRow row, std::size_t shape) {

@@ -23,6 +23,13 @@ void add_place_file(Command& command, PlaceFile& options, Option file) {
                                   .rules = {needs_file}});
 }
 
+void ignore_vector_z(PlaceTable& table) {
+  if (!table.vector) return;
+  bool any = false;
+  for (PlaceRow& row : table.rows) any |= std::exchange(row.from.z, std::nullopt).has_value();
+  if (any) table.notes.push_back(fmt::format("{}: Z, a height above the sea, is not used", table.path));
+}
+
 RowStatus::RowStatus(const PlaceTable& table, bool skip)
     : skip_(skip), status_(table.rows.size(), kOk), why_(table.rows.size()) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

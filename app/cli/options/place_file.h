@@ -24,6 +24,10 @@ struct PlaceFile {
 /// Declares the option `file` for the path, --layer and --skip-bad.
 void add_place_file(Command& command, PlaceFile& options, Option file);
 
+/// Removes Z of a vector file's points, which is a height above the sea, and adds a note if there was any: for
+/// subcommands whose heights count from the ground.
+void ignore_vector_z(PlaceTable& table);
+
 /// Whether rows of a table can be used. The first error ends the run, unless bad rows are skipped.
 class RowStatus {
  public:

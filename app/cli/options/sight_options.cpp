@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "app/options/numbers.h"
@@ -30,6 +31,7 @@ void add_sight_heights(Command& command, SightHeights& heights) {
                                .help = "reference of the heights of points",
                                .choices = {"ground", "sea"},
                                .closed = true,
+                               .fallback = "ground; vector Z: sea",
                                .common = true});
 }
 
@@ -43,6 +45,37 @@ void add_frequency_option(Command& command, std::optional<double>& megahertz, st
                            .fallback = "none",
                            .rules = std::move(rules),
                            .excludes = std::move(excludes)});
+}
+
+void add_observer_z(Command& command, SightHeights& heights, std::string_view file, const PlaceFile& places) {
+  command.add(&heights.z, {.names = "--observer-z",
+                           .value = "KIND",
+                           .help = fmt::format("reference of z in {}", file),
+                           .choices = {"ground", "sea", "ignore"},
+                           .closed = true,
+                           .fallback = "as --heights",
+                           .rules = {needs(fmt::format("{} FILE", file), [&places] { return !places.path.empty(); })}});
+}
+
+std::string_view meaning_of_z(const SightHeights& heights, const PlaceTable& table) {
+  if (!heights.z.empty()) return heights.z;
+  if (!heights.datum.empty()) return heights.datum;
+  return table.vector ? "sea" : "ground";
+}
+
+std::string note_of_z(const SightHeights& heights, const PlaceTable& table) {
+  const bool assumed = table.vector && heights.z.empty() && heights.datum.empty();
+  const auto has_z = [](const PlaceRow& row) { return row.from.z.has_value(); };
+  return assumed && std::any_of(table.rows.begin(), table.rows.end(), has_z)
+             ? fmt::format("{}: Z is a height above the sea (--observer-z)", table.path)
+             : "";
+}
+
+DatumHeight height_of(const TablePlace& place, std::string_view meaning, std::optional<double> column, double fallback,
+                      std::optional<double> spot) {
+  if (spot) return {*spot + column.value_or(fallback), HeightDatum::sea};
+  if (!place.z || meaning == "ignore") return {column.value_or(fallback)};
+  return {*place.z + column.value_or(0), meaning == "sea" ? HeightDatum::sea : HeightDatum::ground};
 }
 
 void add_sight_places(Command& command, SightPlaces& places) {
@@ -96,15 +129,20 @@ dvec2 point_along(const SightEnds& ends, double along) {
   return {at(ends.from.col, ends.to.col), at(ends.from.row, ends.to.row)};
 }
 
-SightEnds sight_ends(MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights) {
+SightEnds sight_ends(MapInput& input, const PlaceTable& table, std::size_t row, const SightHeights& heights,
+                     const SightColumns& columns) {
   const PlaceRow& one = table.rows[row];
-  const auto end = [&](const TablePlace& place, double height, std::string_view option) {
+  const std::string_view meaning = meaning_of_z(heights, table);
+  const auto end = [&](const TablePlace& place, std::optional<double> column, double fallback,
+                       std::string_view option) {
     const std::string what = one.line > 0 ? table.where(row, &place == &one.to) : std::string(option);
     const dvec2 at = input.grid_of(place, table.lonlat, what);
-    const bool sea = place.z && heights.datum == "sea";
-    return SightEnd{at.x, at.y, place.z.value_or(height), sea ? HeightDatum::sea : HeightDatum::ground};
+    const auto [metres, datum] = height_of(place, meaning, column, fallback);
+    return SightEnd{at.x, at.y, metres, datum};
   };
-  return {end(one.from, heights.observer, "--from"), end(one.to, heights.target, "--to")};
+  return {end(one.from, columns.from.number(row, ObserverColumn::height), heights.observer, "--from"),
+          end(one.to, columns.to.number(row, columns.pairs ? ObserverColumn::height : ObserverColumn::target_height),
+              heights.target, "--to")};
 }
 
 }  // namespace scarp::cli

@@ -40,7 +40,7 @@ Header header_of(const std::vector<std::string_view>& fields, PlaceKind kind, Pl
   const std::vector<std::string> names = column_names(fields);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto name = std::find(kNames.begin(), kNames.end(), names[i]);
-    if (name == kNames.end()) {
+    if (name == kNames.end() || (kind == PlaceKind::points && name->starts_with('t'))) {
       header.carried.push_back(i);
       table.carried.names.emplace_back(trimmed(fields[i]));
       continue;
@@ -171,6 +171,7 @@ PlaceTable read_vectors(const std::string& path, PlaceKind kind, const PlaceRead
   if (!dataset || dataset->GetLayerCount() == 0)
     throw Error(session.reason("is neither CSV nor a vector format that GDAL can read"));
   PlaceTable table;
+  table.vector = true;
   OGRLayer& layer = layer_of(*dataset, kind, reading.layer, table.notes);
   Transform transform;
   if (const OGRSpatialReference* crs = layer.GetSpatialRef()) {
@@ -243,6 +244,7 @@ PlaceTable pairs_of(const PlaceTable& points) {
   PlaceTable table;
   table.path = points.path;
   table.lonlat = points.lonlat;
+  table.vector = points.vector;
   table.notes = points.notes;
   table.carried.names = {"from", "to"};
   for (const char* end : {"_from", "_to"})

@@ -40,6 +40,7 @@ struct PlaceRow {
 struct PlaceTable {
   std::string path;     ///< for messages
   bool lonlat = false;  ///< x and y are longitude and latitude in degrees, WGS 84
+  bool vector = false;  ///< z is that of geometries in a vector file, not a column
   std::vector<PlaceRow> rows;
   TextColumns carried;             ///< the other columns; one row per place
   std::vector<std::string> notes;  ///< for users: the layer that was read, if there are several
