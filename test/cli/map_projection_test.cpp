@@ -107,7 +107,8 @@ class MapProjection : public MapsCli {
     int seen = 0, wrong = 0;
     for (int row = 0; row < ground.rows; ++row)
       for (int col = 0; col < ground.cols; ++col) {
-        const auto [distance, azimuth] = judge.way(x, y, ground.x + col * ground.cell, ground.y - row * ground.cell);
+        const Judge::Way way = judge.way(x, y, ground.x + col * ground.cell, ground.y - row * ground.cell);
+        const double distance = way.distance, azimuth = way.azimuth;
         const bool visible = pixels.at(col, row) == 1;
         seen += visible;
         const auto beside = [&](double border) {
