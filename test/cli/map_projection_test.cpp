@@ -161,6 +161,25 @@ TEST_F(MapProjection, LinesHaveGeodesicLengths) {
   expect_length(1000000, 5500000, 1090000, 7100000);
 }
 
+// PROJ converts no other body's longitudes to those of WGS 84.
+TEST_F(MapProjection, OtherBodiesHaveTheirOwnGeodesics) {
+  const std::string dem = write({32633, 100, 100, 0, 300000, 1000}, "moon.tif");
+  const std::string moon = "+proj=eqc +R=1737400 +units=m +type=crs";
+  const auto result = run({"los", dem, "--crs", moon, "--from", "10000,290000,9000", "--to", "90000,210000,9000"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  geod_geodesic sphere{};
+  geod_init(&sphere, 1737400, 0);
+  double distance = 0;
+  const auto degrees = [](double metres) { return metres / 1737400 / kRadians; };
+  geod_inverse(&sphere, degrees(290000), degrees(10000), degrees(210000), degrees(90000), &distance, nullptr, nullptr);
+  EXPECT_NEAR(last_row(result.out)[2], distance, 1e-9 * distance);
+  const auto view = run({"viewshed", dem, "--crs", moon, "--observer", "50000,250000,9", "--azimuth", "0,90",
+                         "--max-distance", "5000", "-o", path("seen.tif")});
+  EXPECT_EQ(view.status, 0) << view.err;
+  expect_refused({"los", dem, "--crs", moon, "--lines", scratch_.write("l.csv", "lon,lat,tlon,tlat\n1,2,3,4\n")},
+                 "PROJ cannot convert between WGS 84");
+}
+
 TEST_F(MapProjection, StationsAlongPathsAreEvenlySpacedOnTheGround) {
   const std::string dem = write({3857, 100, 1800, 1000000, 7200000, 1000}, "mercator.tif");
   const std::string road = scratch_.write("road.csv", "x,y\n1010000,5500000\n1010000,7100000\n");

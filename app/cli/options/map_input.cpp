@@ -107,9 +107,14 @@ MapInput::MapInput(const MapOptions& options)
                                     : geo.present                ? Coordinates::map
                                                                  : Coordinates::local;
     frame_.emplace(geo, cols(), rows(), coordinates);
-    if (!geo.crs_wkt.empty()) lonlat_.emplace(geo, cols(), rows(), Coordinates::lonlat);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path(), error.what()));
+  }
+  if (geo.crs_wkt.empty()) return;
+  try {
+    lonlat_.emplace(geo, cols(), rows(), Coordinates::lonlat);
+  } catch (const Error& error) {
+    no_lonlat_ = error.what();  // local systems and other bodies need none, unless places do
   }
 }
 
@@ -187,7 +192,9 @@ std::string MapInput::swapped_hint(const TablePlace& place, bool lonlat) const {
 
 dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   if (lonlat && !lonlat_)
-    throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--crs)", path(), what));
+    throw Error(
+        fmt::format("{}: {}: {}", path(), what,
+                    no_lonlat_.empty() ? "longitude and latitude need a raster with a CRS (--crs)" : no_lonlat_));
   if (const auto at = find_position(place, lonlat)) return *at;
   const std::string hint = swapped_hint(place, lonlat);
   throw Error(fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS{}", what, place.x, place.y,

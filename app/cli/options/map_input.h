@@ -163,6 +163,7 @@ class MapInput {
   Body body_;
   bool geographic_ = false;
   std::optional<CoordinateFrame> frame_, lonlat_;
+  std::string no_lonlat_;  // why a raster with a CRS has no longitude and latitude on Earth
   std::optional<MetricPlanes> planes_;
   struct CheckedPlane {
     double reach;
