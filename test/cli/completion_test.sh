@@ -29,8 +29,8 @@ expect() {
 }
 expect 'scarp ren' 'render'
 expect 'scarp c' 'cast composite contours'
-expect 'scarp render --look ' 'comanche cost error height hillshade shaded steps'
-expect 'scarp render --look s' 'shaded steps'
+expect 'scarp render --look ' 'aspect comanche cost error height hillshade multidirectional shaded slope steps'
+expect 'scarp render --look s' 'shaded slope steps'
 expect 'scarp render --look = h' 'height hillshade'
 expect 'scarp render --fog d' 'distance'
 expect 'scarp render --march voxel-b' 'voxel-bricks'

@@ -353,7 +353,7 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
   const Names soft{"--samples", "4"}, fog{"--fog", "height"}, lake{"--water", "30"}, lit{"shaded", "comanche"},
       steps{"--march", "fixed-step", "--reach", "200", "--lowres", "24x18"};
   const std::vector<Case> cases = {
-      {{"--ramp", "magma"}, {"shaded", "steps", "cost", "comanche"}},
+      {{"--ramp", "magma"}, {"shaded", "steps", "cost", "comanche", "slope"}},
       {{"--ramp-range", "20,30"}, {"shaded", "height", "comanche", "level"}},
       {{"--sun", "100,20"}, {"shaded", "hillshade", "comanche"}},
       {{"--sky", "scattering"}, lit},
@@ -413,7 +413,8 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
   const cli::Command& render = *declared().find("render");
   std::map<Names, std::string> without;
   for (const Case& c : cases) {
-    for (const std::string look : {"shaded", "hillshade", "height", "steps", "cost", "error", "comanche", "level"}) {
+    for (const std::string look : {"shaded", "hillshade", "height", "steps", "cost", "error", "comanche", "level",
+                                   "slope", "aspect", "multidirectional"}) {
       const std::string what = fmt::format("{} with {}", fmt::join(c.options, " "), look);
       if (std::find(c.looks.begin(), c.looks.end(), look) == c.looks.end()) {
         const std::string form = c.looks.size() == 1 ? "applies to the look " : "applies to the looks ";

@@ -45,6 +45,9 @@ void check_output(const RenderOptions& options) {
   }
   if (format.map && options.frames.several())
     throw Error(fmt::format("output '{}': frames are pictures, not maps (name it frame-####.png)", options.output));
+  if (writes_numbers(options) && !options.figure.any().empty())
+    throw Error(
+        fmt::format("{}: '{}' holds numbers, not a picture (name it *.png)", options.figure.any(), options.output));
   if (format.map && !options.camera.top) {
     throw Error(fmt::format("output '{}': a {} is a map (add --top, or name it *.png)", options.output, format.name));
   }

@@ -33,11 +33,12 @@ std::string_view FigureOptions::any() const {
 }
 
 void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output) {
-  command.add(&options.legend, {.names = "--legend",
-                                .help = "legend of the colours in the lower right corner",
-                                .topic = Topic::figure,
-                                .common = true,
-                                .looks = {"shaded height steps cost error comanche level", "its greys have no unit"}});
+  command.add(&options.legend,
+              {.names = "--legend",
+               .help = "legend of the colours in the lower right corner",
+               .topic = Topic::figure,
+               .common = true,
+               .looks = {"shaded height steps cost error comanche level slope aspect", "its greys have no unit"}});
   command.add(&options.scale_bar, {.names = "--scale-bar",
                                    .help = "scale bar in the lower left corner",
                                    .note = "in perspective, valid at the centre",

@@ -88,7 +88,7 @@ void add_ground_options(Command& command, PictureRequest& o, PictureFileNames& f
        .now = [&o, &files] { return files.ramp.empty() ? o.ramp : files.ramp; },
        .topic = Topic::ground,
        .common = true,
-       .looks = {"shaded steps cost comanche", "the others have their own colours"},
+       .looks = {"shaded steps cost comanche slope", "the others have their own colours"},
        .rules = {{"has no effect without --volume or --look steps or cost (voxels and meshes have their own colours)",
                   [&command] {
                     const std::string look = command.value("--look");

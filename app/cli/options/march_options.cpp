@@ -59,7 +59,7 @@ void add_compare_option(Command& command, std::vector<std::string>& marches, con
        .unlisted = true,
        .topic = Topic::march,
        .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree"},
-       .looks = {"shaded hillshade height steps cost error level", "it has its own rays"},
+       .looks = {"shaded hillshade height steps cost error level slope aspect multidirectional", "it has its own rays"},
        .rules = {{"describes one picture, without --path or --turntable", [several] { return !several(); }}},
        .excludes = {"--march"}});
 }
@@ -120,7 +120,8 @@ void add_refinement_options(Command& command, SamplingSettings& sampling) {
                .fallback = std::string(name_of(sampling.refinement)),
                .topic = Topic::march,
                .inputs = kMarched,
-               .looks = {"shaded hillshade height steps cost error level", "it has --fixed-step-interpolate instead"},
+               .looks = {"shaded hillshade height steps cost error level slope aspect multidirectional",
+                         "it has --fixed-step-interpolate instead"},
                .marches = "naive fixed-step relaxed"});
   command.add(&sampling.halvings,
               {.names = "--refine-halvings",

@@ -24,6 +24,8 @@ namespace {
 constexpr std::string_view kNoPlinth = "only a raster alone is shown on a plinth";
 constexpr Looks kLit{"shaded comanche", "the others show numbers"};
 
+bool has_numbers(Look look) { return look == Look::slope || look == Look::aspect || look == Look::multidirectional; }
+
 // All looks except level:N.
 std::vector<std::string> plain_looks() {
   std::vector<std::string> looks;
@@ -90,15 +92,14 @@ void add_picture_options(Command& command, RenderOptions& o) {
        .help = "size of the picture in pixels",
        .fallback = fmt::format("{}x{}; with --top the aspect ratio of the ground or --area", usual.width, usual.height),
        .common = true,
-       .looks = {"shaded hillshade height steps cost error level",
+       .looks = {"shaded hillshade height steps cost error level slope aspect multidirectional",
                  "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
   add([&picture](const std::string& text) { set_look(text, picture); },
       {.names = "--look",
        .value = "LOOK",
        .help = "what the picture shows",
        .choices = plain_looks(),
-       .note = "or level:N, level N of the maximum pyramid; cost: heights, blocks, voxels or evaluations that the "
-               "march reads per ray",
+       .note = "or level:N, level N of the maximum pyramid; cost: values that the march reads",
        .fallback = std::string(name_of(usual.look)),
        .now = [&picture] { return std::string(name_of(picture.look)); },
        .common = true,
@@ -383,6 +384,10 @@ Command& declare_render(Program& program, RenderOptions& o) {
   command.example("scarp render dem.tif -o map.png --top --contours 20 --legend --scale-bar");
   command.example("scarp render city.vox -o city.png --samples 16 --view 220,30");
   return command;
+}
+
+bool writes_numbers(const RenderOptions& options) {
+  return has_numbers(look_of(options.picture)) && !options.output.empty() && picture_format_of(options.output).map;
 }
 
 }  // namespace scarp::cli

@@ -79,4 +79,7 @@ ViewSettings view_of(const CameraOptions& camera, Look look);
 /// Checks everything that needs neither the input nor the output. Throws Error.
 void check_picture(const RenderOptions& options);
 
+/// Whether the output is a map of the numbers of a look (Picture::numbers) instead of colours.
+bool writes_numbers(const RenderOptions& options);
+
 }  // namespace scarp::cli

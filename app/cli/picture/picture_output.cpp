@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/output/jpeg.h"
 #include "scarp/output/png.h"
+#include "scarp/output/raster_map.h"
 #include "scarp/source/raster/coordinates.h"
 
 namespace scarp::cli {
@@ -85,6 +89,25 @@ WrittenSize write_picture(ReplaceFile& file, const std::string& path, const Pict
       break;
   }
   return {view.width, view.height};
+}
+
+void write_numbers(const std::string& path, const Picture& picture, Look look, const std::optional<MapPlace>& place) {
+  RasterMap map;
+  map.cols = picture.image.width, map.rows = picture.image.height;
+  map.place = place;
+  const std::string name(name_of(look));
+  std::vector<float> degrees;
+  std::vector<std::uint8_t> greys;
+  if (look == Look::multidirectional) {
+    for (const float grey : picture.numbers)
+      greys.push_back(static_cast<std::uint8_t>(std::isnan(grey) ? 0 : std::lround(grey)));
+    map.bands.push_back({name, "", std::span<const std::uint8_t>(greys), 0.0});
+  } else {
+    constexpr float kNone = -9999;
+    for (const float number : picture.numbers) degrees.push_back(std::isnan(number) ? kNone : number);
+    map.bands.push_back({name, "degrees", std::span<const float>(degrees), static_cast<double>(kNone)});
+  }
+  write_raster_map(path, map);
 }
 
 }  // namespace scarp::cli

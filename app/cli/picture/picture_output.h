@@ -32,4 +32,8 @@ WrittenSize write_picture(ReplaceFile& file, const std::string& path, const Pict
                           const std::optional<Figure>& figure, const std::optional<MapPlace>& place,
                           double dots_per_inch);
 
+/// Writes the numbers of a picture as a raster of one band: greys of 1 to 255 as bytes, with nodata 0; degrees as
+/// floats, with nodata -9999. Throws Error naming the file.
+void write_numbers(const std::string& path, const Picture& picture, Look look, const std::optional<MapPlace>& place);
+
 }  // namespace scarp::cli

@@ -73,6 +73,7 @@ void PreparedScene::open() {
   subject_.files.ramp_stops = files.ramp_stops, subject_.files.detail_texture = files.detail_texture;
   subject_.size = size_;
   if (request_.camera.top) subject_.map = map_box();
+  if (has_pixel_per_sample()) subject_.size.width = input_.raster.cols;
   if (!options_.output.empty()) subject_.alpha = picture_format_of(options_.output).map;
   picture_ = picture(options_, nullptr);
   facts_.heights = subject_.heights;
@@ -174,6 +175,11 @@ dvec3 PreparedScene::above_surface(const dvec3& at, std::string_view what) const
   return eye + dvec3(0, 0, *request_.camera.eye_above * exaggeration());
 }
 
+bool PreparedScene::has_pixel_per_sample() const {
+  return request_.camera.top && !request_.camera.area && writes_numbers(options_) && input_.scene.only_heights() &&
+         !options_.picture.width;
+}
+
 // The area that --top shows.
 WorldBox PreparedScene::map_box() const {
   if (scene_.box().empty() && scene_.endless() && !scene_.terrain())
@@ -182,6 +188,11 @@ WorldBox PreparedScene::map_box() const {
         "--eye and --target)");
   WorldBox box = picture_box(scene_);
   const auto& area = request_.camera.area;
+  if (has_pixel_per_sample()) {
+    const HeightFieldSettings& cell = input_.scene.only_heights()->settings();
+    const dvec3 half(cell.cell_x / 2, cell.cell_y / 2, 0);
+    box.low -= half, box.high += half;
+  }
   if (!area) return box;
   constexpr std::string_view kArea = "--area";
   const dvec3 low = places_->world(dvec3(area->west, area->south, 0), kArea),

@@ -66,6 +66,9 @@ class PreparedScene {
   void finish(Camera& camera) { finish(camera, options_); }
   void finish(Camera& camera, const RenderOptions& options);
 
+  /// Whether the picture is a map of numbers (writes_numbers()) whose pixels are those of the raster.
+  bool has_pixel_per_sample() const;
+
  private:
   ViewSettings chosen_view() const;
   std::string note_on_relief() const;

@@ -20,6 +20,7 @@
 #include "app/cli/picture/findings.h"
 #include "app/cli/picture/picture_output.h"
 #include "app/cli/picture/prepared_scene.h"
+#include "app/cli/picture/raster_output.h"
 #include "app/cli/picture/seen.h"
 #include "app/cli/progress.h"
 #include "app/options/numbers.h"
@@ -171,6 +172,12 @@ class Render {
     if (format().map) {
       place = place_of_map(camera, picture.image.width, picture.image.height, prepared_.input().raster.georeference,
                            prepared_.input().raster.cols, prepared_.input().raster.rows);
+    }
+    if (writes_numbers(options())) {
+      if (prepared_.has_pixel_per_sample()) place = map_place(prepared_.input().raster.georeference);
+      write_numbers(options().output, picture, settings.look, place);
+      written_ = {picture.image.width, picture.image.height};
+      return picture;
     }
     written_ = write_picture(file, name, format(), picture.image, figure, place, options().figure.dots_per_inch);
     return picture;

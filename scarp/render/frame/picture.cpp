@@ -21,6 +21,7 @@
 #include "scarp/render/look/height_look.h"
 #include "scarp/render/look/hillshade_look.h"
 #include "scarp/render/look/level_look.h"
+#include "scarp/render/look/relief_look.h"
 #include "scarp/render/look/step_look.h"
 #ifdef SCARP_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"
@@ -306,6 +307,52 @@ Picture render_comanche(const Scene& scene, const Camera& camera, const PictureS
                                    : render_lit(scene, camera, settings, progress);
 }
 
+// Colours of azimuths: yellow to the north, red to the east, blue to the south, green to the west.
+Srgb colour_of_azimuth(double degrees) {
+  constexpr std::array<std::array<double, 3>, 4> kColours = {
+      {{245, 215, 70}, {215, 70, 60}, {60, 80, 190}, {60, 165, 90}}};
+  const double quarter = degrees / 90;
+  const auto first = static_cast<std::size_t>(quarter) % 4;
+  Srgb colour{};
+  for (std::size_t k = 0; k < 3; ++k)
+    colour[k] = static_cast<std::uint8_t>(
+        std::lround(std::lerp(kColours[first][k], kColours[(first + 1) % 4][k], quarter - std::floor(quarter))));
+  return colour;
+}
+
+Picture render_relief(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                      const Progress& progress) {
+  Picture picture{Image(settings.width, settings.height)};
+  picture.numbers = relief_numbers(scene, camera, size_of(settings), settings.look, progress);
+  double steepest = 0;
+  for (const float number : picture.numbers) steepest = std::fmax(steepest, static_cast<double>(number));
+  const Ramp ramp = ramp_over(settings, 0, std::max(steepest, 1.0));
+  const auto colour_of = [&](double number) -> Srgb {
+    if (settings.look == Look::aspect) return colour_of_azimuth(number);
+    if (settings.look == Look::slope) {
+      const vec3 colour = ramp(number);
+      return {srgb_byte(colour.x), srgb_byte(colour.y), srgb_byte(colour.z)};
+    }
+    const auto grey = static_cast<std::uint8_t>(std::lround(number));
+    return {grey, grey, grey};
+  };
+  if (settings.alpha) picture.image.make_transparent();
+  for (std::size_t i = 0; i < picture.numbers.size(); ++i) {
+    if (std::isnan(picture.numbers[i])) continue;
+    const Srgb colour = colour_of(static_cast<double>(picture.numbers[i]));
+    std::copy(colour.begin(), colour.end(), picture.image.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(i));
+    if (settings.alpha) picture.image.alpha[i] = 255;
+  }
+  if (settings.look == Look::multidirectional) return picture;
+  constexpr int kColours = 256;
+  const bool aspect = settings.look == Look::aspect;
+  picture.legend = PictureLegend{
+      .title = aspect ? "aspect, degrees" : "slope, degrees", .low = 0, .high = aspect ? 360 : std::max(steepest, 1.0)};
+  for (int i = 0; i < kColours; ++i)
+    picture.legend->colours.push_back(colour_of(picture.legend->high * (i + 0.5) / kColours));
+  return picture;
+}
+
 using RenderLook = Picture (*)(const Scene&, const Camera&, const PictureSettings&, const Progress&);
 
 // The renderer of each look, in the order of the enumeration.
@@ -318,6 +365,9 @@ constexpr std::array kRenderers = std::to_array<std::pair<Look, RenderLook>>({
     {Look::error, render_errors},
     {Look::comanche, render_comanche},
     {Look::level, render_level},
+    {Look::slope, render_relief},
+    {Look::aspect, render_relief},
+    {Look::multidirectional, render_relief},
 });
 
 static_assert([] {
@@ -340,7 +390,8 @@ int pixel_side(const PictureSettings& settings) {
 
 std::string_view ramp_of(const PictureSettings& settings) {
   if (!settings.ramp.empty()) return settings.ramp;
-  return settings.look == Look::steps || settings.look == Look::cost ? "viridis" : "hypsometric";
+  return settings.look == Look::steps || settings.look == Look::cost || settings.look == Look::slope ? "viridis"
+                                                                                                     : "hypsometric";
 }
 
 Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale) {

@@ -130,7 +130,10 @@ struct Picture {
   std::optional<StepRange> cost{};        ///< reads, set by the look `cost`
   std::optional<ErrorCounts> errors{};    ///< set by the look `error`
   std::optional<ErrorMap> error_map{};    ///< likewise
-  std::optional<ReliefRange> heights{};   ///< set by the look `height`, if anything was hit: heights of grey 1 and 255
+  /// Set by the looks `slope` and `aspect` (degrees) and `multidirectional` (1 to 255), see relief_look.h: one per
+  /// pixel, rows from the top; NaN: none.
+  std::vector<float> numbers{};
+  std::optional<ReliefRange> heights{};  ///< set by the look `height`, if anything was hit: heights of grey 1 and 255
 };
 
 /// Renders a picture. `camera` must have been created with the width and height of the settings; if terrain wraps, it

@@ -18,6 +18,9 @@ constexpr std::array<LookEntry, kLookCount> kLooks = {{
     {.look = Look::error, .name = "error", .measures = true},
     {.look = Look::comanche, .name = "comanche", .lit = true, .large_pixels = true},
     {.look = Look::level, .name = "level", .measures = true},
+    {.look = Look::slope, .name = "slope", .measures = true},
+    {.look = Look::aspect, .name = "aspect", .measures = true},
+    {.look = Look::multidirectional, .name = "multidirectional", .measures = true},
 }};
 
 constexpr std::array<std::string_view, kLooks.size()> look_names() {

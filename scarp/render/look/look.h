@@ -12,9 +12,11 @@
 //   error     errors of the march, see error_look.h
 //   comanche  like `shaded`, in few large pixels, see comanche.h
 //   level     maxima of a level of the pyramid, see level_look.h
+//   slope, aspect, multidirectional
+//             gradients of the samples and shading by them, as in gdaldem, see relief_look.h
 //
-// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps`, `cost`, `error` and `level` trace one ray
-// through the centre of each pixel.
+// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps`, `cost`, `error`, `level`, `slope`,
+// `aspect` and `multidirectional` trace one ray through the centre of each pixel.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +27,20 @@
 
 namespace scarp {
 
-enum class Look : std::uint8_t { shaded, hillshade, height, steps, cost, error, comanche, level };
-constexpr std::size_t kLookCount = 8;
+enum class Look : std::uint8_t {
+  shaded,
+  hillshade,
+  height,
+  steps,
+  cost,
+  error,
+  comanche,
+  level,
+  slope,
+  aspect,
+  multidirectional
+};
+constexpr std::size_t kLookCount = 11;
 
 /// A row of the table.
 struct LookEntry {
