@@ -16,7 +16,7 @@ namespace scarp::test {
 namespace {
 
 using Colour = std::array<int, 3>;
-constexpr Colour kMarked = {255, 210, 0}, kDrawn = {190, 20, 30};
+constexpr Colour kMarked = {235, 0, 140}, kDrawn = {190, 20, 30};
 
 // On pictures of greys.
 bool is_red(const Colour& colour) { return colour[0] - colour[1] > 100 && colour[0] - colour[2] > 100; }

@@ -239,9 +239,7 @@ void add_profile(Program& program) {
   add_map_options(command, o);
   command.footer(kColumns);
   command.example("scarp profile dem.tif --from 692000,5143000,400 --to 692900,5143500 --march max-mip -o ray.svg");
-  command.example(
-      "scarp profile dem.tif --from 692000,5143000,20 --to 698500,5149000,10 --frequency 900 -o "
-      "link.svg");
+  command.example("scarp profile dem.tif --from 692000,5143000,20 --to 698500,5149000,10 --frequency 900 -o link.svg");
   command.example("scarp profile dem.tif --path road.gpkg --spacing 25 -o road.csv");
   command.example("scarp profile dem.tif --from 692000,5143000 --to 698500,5149000,10 -o profile.svg");
   command.runs([options, &command] {

@@ -17,7 +17,7 @@
 namespace scarp::cli {
 namespace {
 
-constexpr std::array<std::uint8_t, 3> kDrawn = {190, 20, 30}, kMarked = {255, 210, 0};
+constexpr std::array<std::uint8_t, 3> kDrawn = {190, 20, 30}, kMarked = {235, 0, 140};
 
 // Converts places to pixels of the picture.
 class Pixels {
