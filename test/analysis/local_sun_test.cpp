@@ -91,17 +91,17 @@ TEST(LocalSun, StepsAreGroundDistances) {
   const auto steps = node_steps({10, 46, 0}, {9.99, 46, 0}, {10.01, 46, 0}, 2, {10, 46.01, 0}, {10, 45.99, 0}, 2);
   EXPECT_NEAR(steps.col.x, 774.63, 0.05);
   EXPECT_NEAR(steps.row.y, -1111.51, 0.05);
-  constexpr double kRounding = 4 * 6378137.0 / (std::int64_t{1} << 53);  // of points in space
-  EXPECT_NEAR(steps.col.y, 0, kRounding);
-  EXPECT_NEAR(steps.row.x, 0, kRounding);
+  constexpr double kSpaceRounding = 4 * 6378137.0 / (std::int64_t{1} << 53);  // of points in space
+  EXPECT_NEAR(steps.col.y, 0, kSpaceRounding);
+  EXPECT_NEAR(steps.row.x, 0, kSpaceRounding);
   // Across the antimeridian.
   EXPECT_NEAR(node_steps({180, 46, 0}, {179.99, 46, 0}, {-179.99, 46, 0}, 2, {180, 46.01, 0}, {180, 45.99, 0}, 2).col.x,
               774.63, 0.05);
   // At the north pole, 0.01 degrees of latitude away: north of longitude 0 is towards longitude 180.
   const auto pole = node_steps({0, 90, 0}, {-90, 89.99, 0}, {90, 89.99, 0}, 2, {180, 89.99, 0}, {0, 89.99, 0}, 2);
   EXPECT_NEAR(pole.col.x, 1116.94, 0.05);
-  EXPECT_NEAR(pole.col.y, 0, kRounding);
-  EXPECT_NEAR(pole.row.x, 0, kRounding);
+  EXPECT_NEAR(pole.col.y, 0, kSpaceRounding);
+  EXPECT_NEAR(pole.row.x, 0, kSpaceRounding);
   EXPECT_NEAR(pole.row.y, -1116.94, 0.05);
   EXPECT_THROW(sun_ray({{0, 0}, {0, -1}}, {.azimuth = 1, .altitude = 1}), Error);
 }

@@ -83,7 +83,7 @@ class ReliefLook : public testing::Test {
   std::string dem_;
 };
 
-constexpr double kDegrees = 57.29577951308232, kFloats = 360 * 0x1p-23;
+constexpr double kDegreesPerUnit = 57.29577951308232, kFloats = 360 * 0x1p-23;
 
 TEST_F(ReliefLook, SlopeAndAspectAreThoseOfGdaldem) {
   const GDALDatasetUniquePtr file(GDALDataset::Open(dem_.c_str(), GDAL_OF_RASTER));
@@ -96,11 +96,12 @@ TEST_F(ReliefLook, SlopeAndAspectAreThoseOfGdaldem) {
   double steepest = 0;
   for (std::size_t i = 0; i < slopes.pixels.size(); ++i) {
     if (slopes.hole(i)) continue;
-    EXPECT_NEAR(slope.pixels[i], slopes.pixels[i], kDegrees * 2 * error + kFloats) << i;
+    EXPECT_NEAR(slope.pixels[i], slopes.pixels[i], kDegreesPerUnit * 2 * error + kFloats) << i;
     steepest = std::max(steepest, static_cast<double>(slope.pixels[i]));
     if (aspects.hole(i)) continue;
-    const double gradient = std::tan(slope.pixels[i] / kDegrees);
-    EXPECT_NEAR(std::remainder(aspect.pixels[i] - aspects.pixels[i], 360), 0, kDegrees * 2 * error / gradient + kFloats)
+    const double gradient = std::tan(slope.pixels[i] / kDegreesPerUnit);
+    EXPECT_NEAR(std::remainder(aspect.pixels[i] - aspects.pixels[i], 360), 0,
+                kDegreesPerUnit * 2 * error / gradient + kFloats)
         << i;
   }
   EXPECT_GT(steepest, 10);

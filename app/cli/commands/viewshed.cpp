@@ -484,7 +484,8 @@ void run(ViewshedOptions options, const Command& command) {
   for (double* const total : summary.totals()) recipe.totals.push_back(total);
   constexpr std::size_t kMostNames = 100;
   for (const Stand& one : stands)
-    recipe.marks.push_back({dvec2(one.node.col, one.node.row), stands.size() > kMostNames ? "" : one.title(stands.size())});
+    recipe.marks.push_back(
+        {dvec2(one.node.col, one.node.row), stands.size() > kMostNames ? "" : one.title(stands.size())});
   run.write(recipe);
   if (!options.summary.empty()) write_summary(options, summary, table, status, stands);
 }
