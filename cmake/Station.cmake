@@ -83,8 +83,8 @@ endfunction()
 
 # scarp_station(NAME SOURCES ... HEADERS ... APP_HEADERS ... STATIONS ... PUBLIC_LIBRARIES ... LIBRARIES ...)
 # One library per station of the data's way: target scarp_NAME, exported as scarp::NAME. STATIONS are the stations it may see.
-# HEADERS are public: they are installed, and doc/library/versions.md applies. APP_HEADERS are not; app/ and bench/ include
-# them all the same. Headers in neither list are for stations and tests (test/house/public_headers.cmake).
+# HEADERS are public: they are installed, and doc/library/versions.md applies. APP_HEADERS are not; app/, bench/ and
+# python/ include them all the same. Headers in neither list are for stations and tests (test/house/public_headers.cmake).
 function(scarp_station name)
   cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;APP_HEADERS;STATIONS;PUBLIC_LIBRARIES;LIBRARIES" ${ARGN})
   add_library(scarp_${name} ${arg_SOURCES})

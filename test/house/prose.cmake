@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.25)
 set(documents README.md CHANGELOG.md APICHANGES.md CONTRIBUTING.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md doc/dev/decisions/*.md .github/*.md
     .github/ISSUE_TEMPLATE/*.md)
 # folders whose code is checked, subfolders included
-set(code_folders scarp app bench test examples)
+set(code_folders scarp app bench python test examples)
 set(code_files h cpp comp vert frag glsl gdshader shader)
 # calls of the program whose output is checked; only of subcommands that every build has
 set(help_calls "--help" "render --help all" "cast --help all" "composite --help all" "viewshed --help all" "shadow --help all"

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: MIT
+"""Where a raster is: coordinates, CRS, units and holes of arrays and of xarray's DataArray."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any, Optional, Sequence
+
+import numpy as np
+
+from . import _core
+from ._core import Error
+
+_X_NAMES = {"x", "lon", "longitude", "easting", "eastings", "projection_x_coordinate"}
+_Y_NAMES = {"y", "lat", "latitude", "northing", "northings", "projection_y_coordinate"}
+_DEGREES = {"lon", "longitude", "lat", "latitude"}
+#: Metres per vertical unit.
+_UNITS = {
+    "m": 1.0,
+    "metre": 1.0,
+    "metres": 1.0,
+    "meter": 1.0,
+    "meters": 1.0,
+    "km": 1000.0,
+    "cm": 0.01,
+    "dm": 0.1,
+    "ft": 0.3048,
+    "foot": 0.3048,
+    "feet": 0.3048,
+    "international foot": 0.3048,
+    "us-ft": 1200 / 3937,
+    "us survey foot": 1200 / 3937,
+    "us survey feet": 1200 / 3937,
+}
+#: Coordinates may be off their even spacing by this share of a step: the accuracy of hits is the same.
+_UNEVEN = 1e-3
+
+
+@dataclasses.dataclass
+class Source:
+    """An array of heights and what is known of it."""
+
+    heights: Any
+    map_from_node: Optional[tuple[float, ...]] = None  # rows from north
+    south_up: bool = False
+    crs: str = ""
+    nodata: Optional[float] = None
+    scale: float = 1.0
+    offset: float = 0.0
+    unit: str = ""
+    template: Any = None  # the DataArray
+
+
+def crs_text(crs: Any) -> str:
+    """Returns WKT, or the text itself in a build without GDAL."""
+    if crs is None:
+        return ""
+    if isinstance(crs, int):
+        crs = f"EPSG:{crs}"
+    for method in ("to_wkt", "ExportToWkt"):
+        if hasattr(crs, method):
+            crs = getattr(crs, method)()
+    if not isinstance(crs, str):
+        raise TypeError(
+            f"crs: {type(crs).__name__} is not a CRS (expected text such as EPSG:32610, or an object of "
+            "rasterio or pyproj)"
+        )
+    return _core.wkt_of(crs) if crs and _core.HAS_FILES else crs
+
+
+def node_transform(transform: Any) -> tuple[float, ...]:
+    """Returns x0, dx, 0, y0, 0, dy of the first sample from an affine transform of pixel corners, as rasterio's."""
+    try:
+        a, b, c, d, e, f = (float(v) for v in tuple(transform)[:6])
+    except (TypeError, ValueError):
+        raise TypeError(
+            "transform: expected six numbers (a, b, c, d, e, f) of pixel corners, as rasterio's Affine"
+        ) from None
+    if b != 0 or d != 0:
+        raise Error("transform: the raster is rotated (first: gdalwarp, or rio.reproject)")
+    if not (a > 0 and e != 0 and all(map(math.isfinite, (a, c, e, f)))):
+        raise Error(f"transform: expected a step east above 0 and a step along rows, found {a} and {e}")
+    return (c + a / 2, a, 0.0, f + e / 2, 0.0, e)
+
+
+def rows_from_north(map_from_node: Sequence[float], rows: int) -> tuple[tuple[float, ...], bool]:
+    """Returns the transform with rows from north, and whether the rows were from south."""
+    x0, dx, _, y0, _, dy = map_from_node
+    return ((x0, dx, 0.0, y0, 0.0, dy), False) if dy < 0 else ((x0, dx, 0.0, y0 + (rows - 1) * dy, 0.0, -dy), True)
+
+
+def metres_per_unit(unit: str) -> float:
+    """Returns the length of a vertical unit."""
+    try:
+        return _UNITS[unit.strip().lower()] if unit else 1.0
+    except KeyError:
+        raise Error(f"unit: '{unit}' is not a unit of heights (give unit='m' or 'ft')") from None
+
+
+def is_dataarray(value: Any) -> bool:
+    """Whether a value is a DataArray, without importing xarray."""
+    return (
+        type(value).__module__.partition(".")[0] == "xarray" and hasattr(value, "dims") and hasattr(value, "variable")
+    )
+
+
+def source_of(value: Any) -> Source:
+    """Reads what an array says of itself."""
+    return _of_dataarray(value) if is_dataarray(value) else Source(value)
+
+
+def _of_dataarray(data: Any) -> Source:
+    while data.ndim > 2 and data.shape[0] == 1:
+        data = data[0]
+    if data.ndim != 2:
+        raise Error(f"heights: the DataArray has the dimensions {data.dims} (expected two; select one band)")
+    y, x = data.dims
+    if str(y).lower() in _X_NAMES or str(x).lower() in _Y_NAMES:
+        raise Error(f"heights: the dimensions are {data.dims}, rows first (use .transpose('{x}', '{y}').copy())")
+    source = Source(data.data, template=data)
+    attrs = data.attrs
+    source.map_from_node = _map_from_coordinates(data, x, y)
+    if source.map_from_node:
+        source.map_from_node, source.south_up = rows_from_north(source.map_from_node, data.shape[0])
+    source.crs = crs_text(_crs_of(data))
+    if not source.crs and {str(x).lower(), str(y).lower()} <= _DEGREES:
+        source.crs = crs_text("EPSG:4326")
+    for name in ("_FillValue", "missing_value", "nodata"):
+        if attrs.get(name) is not None:
+            source.nodata = float(np.asarray(attrs[name]).reshape(-1)[0])
+            break
+    source.scale = float(attrs.get("scale_factor", 1))
+    source.offset = float(attrs.get("add_offset", 0))
+    source.unit = str(attrs.get("units", "") or "")
+    return source
+
+
+def _map_from_coordinates(data: Any, x: Any, y: Any) -> Optional[tuple[float, ...]]:
+    mapping = _grid_mapping(data)
+    transform = mapping.get("GeoTransform") if mapping else None
+    if isinstance(transform, str):
+        c, a, b, f, d, e = (float(v) for v in transform.split())
+        stored = node_transform((a, b, c, d, e, f))
+    else:
+        stored = None
+    steps: list[tuple[float, float]] = []
+    for name, fallback in ((x, stored[1] if stored else None), (y, stored[5] if stored else None)):
+        if name not in data.coords or data.coords[name].ndim != 1:
+            return stored
+        values = np.asarray(data.coords[name].values, float)
+        if len(values) == 1:
+            if fallback is None:
+                return None
+            steps.append((values[0], fallback))
+            continue
+        step = (values[-1] - values[0]) / (len(values) - 1)
+        even = values[0] + step * np.arange(len(values))
+        if not (math.isfinite(step) and step != 0 and np.abs(values - even).max() <= _UNEVEN * abs(step)):
+            raise Error(f"heights: the coordinates of '{name}' are not evenly spaced (interpolate the DataArray first)")
+        steps.append((values[0], step))
+    if steps[0][1] < 0:
+        raise Error(f"heights: '{x}' decreases (use .sortby('{x}').copy())")
+    return (steps[0][0], steps[0][1], 0.0, steps[1][0], 0.0, steps[1][1])
+
+
+def _grid_mapping(data: Any) -> Optional[dict[str, Any]]:
+    name = data.encoding.get("grid_mapping") or data.attrs.get("grid_mapping") or "spatial_ref"
+    return dict(data.coords[name].attrs) if name in data.coords else None
+
+
+def _crs_of(data: Any) -> Any:
+    mapping = _grid_mapping(data) or {}
+    for text in (mapping.get("crs_wkt"), mapping.get("spatial_ref"), data.attrs.get("crs")):
+        if text is not None and text != "":
+            return text
+    return None
+
+
+@dataclasses.dataclass
+class Ground:
+    """Lengths on the ground of the steps between samples, around one of them."""
+
+    cell: tuple[float, float]  # metres east and north
+    grid_north: float = 0.0  # azimuth of decreasing rows, radians
+    error_cells: float = 0.0
+
+
+@dataclasses.dataclass
+class Body:
+    """The body that a CRS refers to."""
+
+    geographic: bool = False
+    diameter: float = 2 * 6378137.0
+    earth: bool = True
+
+
+def body_of(crs: str) -> Body:
+    """Returns the body of a CRS; the Earth without one."""
+    if not crs:
+        return Body()
+    if _core.HAS_FILES:
+        return Body(*_core.crs_of(crs))
+    found = _pyproj_crs(crs)
+    ellipsoid = found.ellipsoid
+    axis = ellipsoid.semi_major_metre if ellipsoid else 6378137.0
+    return Body(found.is_geographic, 2 * axis, abs(axis / 6378137.0 - 1) <= 0.05)
+
+
+def ground_at(
+    map_from_node: Sequence[float], crs: str, shape: tuple[int, int], col: float, row: float, reach: float = 0.0
+) -> Ground:
+    """Returns the lengths around a sample. `reach`: metres within which `error_cells` counts."""
+    if not crs:
+        return Ground((map_from_node[1], -map_from_node[5]))
+    rows, cols = shape
+    if _core.HAS_FILES:
+        cell_x, cell_y, north, error = _core.ground_plane(tuple(map_from_node), crs, cols, rows, col, row, reach)
+        return Ground((cell_x, cell_y), north, error)
+    return _ground_by_pyproj(map_from_node, crs, col, row)
+
+
+def lonlat_of(
+    map_from_node: Sequence[float], crs: str, shape: tuple[int, int], col: float, row: float
+) -> Optional[tuple[float, float]]:
+    """Returns longitude and latitude of a sample in degrees, WGS 84."""
+    if _core.HAS_FILES:
+        return _core.lonlat(tuple(map_from_node), crs, shape[1], shape[0], col, row)
+    import pyproj
+
+    transform = pyproj.Transformer.from_crs(_pyproj_crs(crs), "EPSG:4326", always_xy=True)
+    return transform.transform(*_map_position(map_from_node, col, row))
+
+
+def _map_position(m: Sequence[float], col: float, row: float) -> tuple[float, float]:
+    return m[0] + col * m[1], m[3] + row * m[5]
+
+
+def _pyproj_crs(crs: str) -> Any:
+    try:
+        import pyproj
+    except ImportError:
+        raise Error(
+            "crs: this build cannot compute lengths on the ground (give cell=(east, north) in metres and no crs, "
+            "install pyproj, or use the build with GDAL)"
+        ) from None
+    try:
+        return pyproj.CRS.from_user_input(crs)
+    except pyproj.exceptions.CRSError as error:
+        raise Error(f"crs: {str(error).splitlines()[0]} (expected EPSG:32610, WKT or PROJ text)") from None
+
+
+def _ground_by_pyproj(m: Sequence[float], crs: str, col: float, row: float) -> Ground:
+    """Central differences of geodesic distances, one cell wide."""
+    import pyproj
+
+    found = _pyproj_crs(crs)
+    base = found.geodetic_crs
+    transform = pyproj.Transformer.from_crs(found, base, always_xy=True)
+    geod = found.get_geod()
+
+    def step(cols: float, rows: float) -> tuple[float, float]:
+        ends = [
+            transform.transform(*_map_position(m, col + sign * cols / 2, row + sign * rows / 2)) for sign in (-1, 1)
+        ]
+        azimuth, _, distance = geod.inv(*ends[0], *ends[1])
+        if not math.isfinite(distance) or distance <= 0:
+            raise Error("crs: the raster is outside the domain of its CRS (check crs and coordinates)")
+        return distance, math.radians(azimuth)
+
+    north, azimuth = step(0, -1)
+    return Ground((step(1, 0)[0], north), azimuth)

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""Ray queries that every scene answers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+from ._hits import Hits
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._core import SceneBase
+else:
+    SceneBase = object
+
+
+def vectors(values: "ArrayLike") -> np.ndarray:
+    """Returns an array of floats (..., 3), the same object if it is one."""
+    if type(values) is np.ndarray and values.dtype.char in "df":
+        return values
+    array = np.asarray(values)
+    if array.dtype.char not in "df":
+        if array.dtype.kind not in "iuf":
+            raise TypeError(f"rays: {array.dtype} is not a type of numbers (expected x, y and z)")
+        array = array.astype(float)
+    return array
+
+
+def batch(origins: "ArrayLike", directions: "ArrayLike") -> tuple[np.ndarray, np.ndarray, tuple[int, ...]]:
+    """Returns both as arrays (n, 3), and the shape of the batch. Broadcasting repeats no memory."""
+    from ._core import Error
+
+    a, b = vectors(origins), vectors(directions)
+    if a.ndim == 2 and a.shape == b.shape:
+        return a, b, a.shape[:1]
+    for name, array in ("origins", a), ("directions", b):
+        if array.ndim < 1 or array.shape[-1] != 3:
+            raise Error(f"{name}: the array has the shape {array.shape} (expected (..., 3): x, y and z)")
+    try:
+        shape = np.broadcast_shapes(a.shape[:-1], b.shape[:-1])
+    except ValueError:
+        raise Error(f"rays: origins of the shape {a.shape} and directions of {b.shape} do not broadcast") from None
+    a, b = np.broadcast_to(a, shape + (3,)), np.broadcast_to(b, shape + (3,))
+    if len(shape) != 1:
+        a, b = a.reshape(-1, 3), b.reshape(-1, 3)  # copies only arrays of more dimensions that are not contiguous
+    return a, b, shape
+
+
+def limit(value: Any, shape: tuple[int, ...], name: str) -> Any:
+    """Returns None, one number, or one number per ray."""
+    if value is None or isinstance(value, (int, float)):
+        return value
+    from ._core import Error
+
+    try:
+        return np.ascontiguousarray(np.broadcast_to(np.asarray(value, float), shape))
+    except ValueError:
+        raise Error(f"{name}: values of the shape {np.shape(value)} do not broadcast to {shape} rays") from None
+
+
+class Rays(SceneBase):
+    """Queries of `Terrain`, `Voxels` and `Scene`.
+
+    Rays are points ``origin + t * direction`` for t in [t_min, t_max], in metres: x east and y north from the
+    south-west sample of a terrain, z up. Directions have any length except 0; t counts in this length. Origins and
+    directions have the shapes ``(..., 3)`` and broadcast; float64 and float32 arrays are read where they are. Queries
+    run on all threads, without the interpreter's lock.
+    """
+
+    _token: object  # of the scene, to which hits belong
+
+    def cast(
+        self,
+        origins: "ArrayLike",
+        directions: "ArrayLike",
+        *,
+        t_min: Any = None,
+        t_max: Any = None,
+        start: Optional[Hits] = None,
+        out: Optional[Hits] = None,
+        position: bool = True,
+        normal: bool = True,
+    ) -> Hits:
+        """Finds the closest hit of each ray.
+
+        Args:
+            origins: ``(..., 3)``, metres.
+            directions: ``(..., 3)``, any length except 0.
+            t_min, t_max: number, or one per ray; 0 and infinity.
+            start: hits of this scene, as many as rays: the rays start on the surface at these hits, without an offset.
+                Rays whose entry is no hit start anywhere.
+            out: room for the answers, ``Hits(shape)``; it is returned.
+            position, normal: whether a new `Hits` has them; without them the call is faster.
+
+        Raises:
+            Error: the index of the first ray that is not finite, has a direction of 0 or an empty range; shapes that
+                do not broadcast; an array that was resized.
+            TypeError: arrays that are not numbers.
+
+        >>> terrain = Terrain(np.full((3, 3), 5, np.float32), cell=10)
+        >>> hits = terrain.cast([[7, 3, 100], [7, 300, 100]], [0, 0, -1])
+        >>> hits.t.tolist(), hits.position[0].tolist(), hits.cell.tolist()
+        ([95.0, inf], [7.0, 3.0, 5.0], [[0, 1], [-1, -1]])
+        """
+        if (
+            out is not None
+            and t_min is None
+            and t_max is None
+            and start is None
+            and self._cast_plain(origins, directions, out._raw, out.position, out.normal)
+        ):
+            out._scene = self._token
+            return out
+        a, b, shape = batch(origins, directions)
+        if out is None:
+            out = Hits(shape, position=position, normal=normal)
+        elif out._raw.shape != shape:
+            from ._core import Error
+
+            raise Error(f"out: room for the shape {out._raw.shape}, but rays of the shape {shape}")
+        self._cast(
+            a,
+            b,
+            out._raw,
+            out.position,
+            out.normal,
+            limit(t_min, shape, "t_min"),
+            limit(t_max, shape, "t_max"),
+            None if start is None else self._starts(start, shape),
+        )
+        out._scene = self._token
+        return out
+
+    def occluded(
+        self,
+        origins: "ArrayLike",
+        directions: "ArrayLike",
+        *,
+        t_min: Any = None,
+        t_max: Any = None,
+        start: Optional[Hits] = None,
+        out: Optional[np.ndarray] = None,
+    ) -> np.ndarray:
+        """Returns whether anything blocks each ray, bool ``(...)``; faster than `cast`.
+
+        For the segment from a to b, use ``directions = b - a`` and ``t_max=1``. Arguments and errors as in `cast`;
+        ``out`` is a bool array of the shape of the batch.
+
+        >>> terrain = Terrain(np.full((3, 3), 5, np.float32), cell=10)
+        >>> terrain.occluded([7, 3, 6], [[0, 0, -1], [0, 0, 1]]).tolist()
+        [True, False]
+        """
+        a, b, shape = batch(origins, directions)
+        if out is None:
+            out = np.empty(shape, bool)
+        elif out.shape != shape or out.dtype != bool:
+            from ._core import Error
+
+            raise Error(f"out: {out.dtype} of the shape {out.shape} (expected bool of the shape {shape})")
+        self._occluded(
+            a,
+            b,
+            out,
+            limit(t_min, shape, "t_min"),
+            limit(t_max, shape, "t_max"),
+            None if start is None else self._starts(start, shape),
+        )
+        return out
+
+    def heights_at(self, x: "ArrayLike", y: "ArrayLike", *, out: Optional[np.ndarray] = None) -> np.ndarray:
+        """Returns the height of the highest ground at points, float64, metres; NaN outside and over holes.
+
+        ``x`` and ``y`` are in metres, as in rays, and broadcast.
+
+        >>> terrain = Terrain(np.array([[0, 10], [0, 10]], np.float32), cell=10)
+        >>> terrain.heights_at([2.5, 5, 99], 5).tolist()
+        [2.5, 5.0, nan]
+        """
+        xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        xs, ys = np.ascontiguousarray(xs), np.ascontiguousarray(ys)
+        if out is None:
+            out = np.empty(np.shape(x) if np.shape(x) == np.shape(y) else xs.shape)
+        self._heights_at(xs, ys, out)
+        return out
+
+    def _starts(self, start: Hits, shape: tuple[int, ...]) -> np.ndarray:
+        from ._core import Error
+
+        if start._raw.shape != shape:
+            raise Error(f"start: hits of the shape {start._raw.shape} for rays of the shape {shape}")
+        if start._scene is not self._token:
+            raise Error("start: the hits are of another scene (cast rays against this one)")
+        return start._raw

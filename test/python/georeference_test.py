@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""DataArrays and files: coordinates, CRS, units, holes; and the same bytes as the command line's."""
+
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import hills
+
+import pyscarp
+from pyscarp import Error, Terrain
+
+xarray = pytest.importorskip("xarray")
+
+HAS_FILES = pyscarp._core.HAS_FILES
+needs_files = pytest.mark.skipif(not HAS_FILES, reason="this build reads no files")
+
+
+def data_array(heights, x0=500_000.0, y0=5_200_000.0, step=30.0, crs="EPSG:32632", dims=("y", "x"), **attrs):
+    """Rows from north, with the coordinates of pixel centres, as rioxarray has them."""
+    rows, cols = heights.shape
+    array = xarray.DataArray(
+        heights,
+        dims=dims,
+        attrs=attrs,
+        coords={dims[0]: y0 - step * np.arange(rows), dims[1]: x0 + step * np.arange(cols)},
+    )
+    if crs:
+        array = array.assign_coords(spatial_ref=xarray.DataArray(0, attrs={"crs_wkt": pyscarp._core.wkt_of(crs)}))
+    return array
+
+
+@needs_files
+def test_reads_a_data_array_without_a_copy():
+    heights = hills(20, 30)
+    terrain = Terrain(data_array(heights, _FillValue=-9999.0))
+    assert np.shares_memory(terrain.heights, heights) and np.array_equal(terrain.heights, heights)
+    assert terrain.transform == (30, 0, 499_985, 0, -30, 5_200_015)
+    # UTM at its central meridian: the scale is 0.9996, and grid north is true north.
+    assert np.allclose(terrain.cell, 30 / 0.9996, rtol=1e-6) and abs(terrain.grid_north) < 0.01
+    assert "UTM zone 32N" in terrain.crs
+    x, y = terrain.to_local(500_030, 5_200_000 - 19 * 30)
+    assert np.allclose([x, y], [terrain.cell[0], 0], atol=1e-6)
+    assert np.allclose(terrain.to_map(x, y), [500_030, 5_200_000 - 19 * 30])
+
+
+@needs_files
+def test_maps_have_the_coordinates_of_the_input():
+    data = data_array(hills(20, 30))
+    seen = pyscarp.viewshed(data, (500_300, 5_199_700))
+    assert seen.dims == data.dims and seen.attrs["_FillValue"] == 255
+    xarray.testing.assert_equal(seen.coords.to_dataset(), data.coords.to_dataset())
+    angles = pyscarp.horizon(data, 4)
+    assert angles.dims == ("azimuth", "y", "x") and angles.azimuth.values.tolist() == [0, 90, 180, 270]
+    assert angles.attrs["units"] == "degrees" and "spatial_ref" in angles.coords
+    for result in (
+        pyscarp.shadow(data, (135, 20)),
+        pyscarp.sky_view(data, azimuths=8),
+        pyscarp.sun_hours(data, "2026-06-21", step=240),
+    ):
+        assert result.shape == data.shape and "spatial_ref" in result.coords
+
+
+@needs_files
+def test_rows_from_south_give_the_same_maps():
+    north = data_array(hills(20, 30))
+    south = north[::-1].copy()
+    for call in (
+        lambda d: pyscarp.viewshed(d, (500_300, 5_199_700)),
+        lambda d: pyscarp.shadow(d, (135, 20)),
+        lambda d: pyscarp.horizon(d, 4),
+    ):
+        xarray.testing.assert_identical(call(north), call(south).sortby("y", ascending=False))
+
+
+@needs_files
+def test_degrees_are_measured_at_the_observer():
+    tall = data_array(np.zeros((200, 5), np.float32), x0=10.0, y0=50.0, step=0.002, crs=None, dims=("lat", "lon"))
+    terrain = Terrain(tall)
+    assert "WGS 84" in terrain.crs
+    seen = [pyscarp.viewshed(terrain, (10.004, y), max_distance=1000, cc=0) for y in (49.99, 49.62)]
+    metres_east = 111_320 * np.cos(np.radians(49.99)) * 0.002
+    # Two columns away on both sides, and rows of 222.4 m.
+    assert terrain.cell[0] > metres_east and [int((s == 1).sum()) for s in seen] == [5 * 9, 5 * 9]
+    with pytest.raises(Error, match="metric plane"):
+        pyscarp.shadow(
+            data_array(np.zeros((200, 200), np.float32), x0=10.0, y0=50.0, step=0.05, crs="EPSG:4326"), (90, 30)
+        )
+
+
+@needs_files
+def test_lengths_agree_with_pyproj():
+    pytest.importorskip("pyproj")
+    from pyscarp import _georeference as geo
+
+    for crs, m in (
+        ("EPSG:32632", (300_000.0, 30.0, 0.0, 5_200_000.0, 0.0, -30.0)),
+        ("EPSG:3857", (1_200_000.0, 30.0, 0.0, 6_000_000.0, 0.0, -30.0)),
+        ("EPSG:4326", (10.0, 0.0003, 0.0, 50.0, 0.0, -0.0003)),
+    ):
+        wkt = pyscarp._core.wkt_of(crs)
+        own, other = geo.ground_at(m, wkt, (9, 9), 4, 4), geo._ground_by_pyproj(m, wkt, 4, 4)
+        assert np.allclose(own.cell, other.cell, rtol=1e-6)
+        assert abs(own.grid_north - other.grid_north) < 1e-5
+
+
+@needs_files
+def test_units_scales_and_holes_come_from_the_attributes():
+    heights = np.array([[1000, 2000], [-1, 3000]], np.int16)
+    feet = Terrain(data_array(heights, units="ft", _FillValue=-1, scale_factor=0.1, add_offset=10.0))
+    assert np.allclose(feet.range, [110 * 0.3048, 310 * 0.3048]) and np.isnan(feet.heights_at(0, 0))
+    assert Terrain(data_array(heights), unit="m", nodata=-1).range == (1000, 3000)
+    with pytest.raises(Error, match="'K' is not a unit"):
+        Terrain(data_array(heights, units="K"))
+
+
+@needs_files
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (lambda d: d.transpose(), "rows first"),
+        (lambda d: d[:, ::-1], "decreases"),
+        (lambda d: d.assign_coords(x=d.x + (d.x > 500_100)), "evenly spaced"),
+        (lambda d: d.expand_dims(band=2), "two"),
+    ],
+)
+def test_refuses_other_data_arrays_with_the_remedy(change, message):
+    with pytest.raises(Error, match=message):
+        Terrain(change(data_array(hills(9, 9))))
+
+
+def test_lazy_data_arrays_are_loaded_by_the_caller():
+    dask = pytest.importorskip("dask.array")
+    data = xarray.DataArray(dask.zeros((9, 9), dtype=np.float32), dims=("y", "x"))
+    with pytest.raises(TypeError, match="load"):
+        Terrain(data, cell=1)
+    assert Terrain(data, cell=1, copy=True).shape == (9, 9)
+
+
+@needs_files
+def test_unknown_coordinate_systems():
+    with pytest.raises(Error, match="EPSG:99999"):
+        Terrain(hills(9, 9), crs="EPSG:99999", transform=(1, 0, 0, 0, -1, 0))
+    with pytest.raises(TypeError, match="CRS"):
+        Terrain(hills(9, 9), crs=3.5, transform=(1, 0, 0, 0, -1, 0))
+
+
+@pytest.fixture
+def dem(tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    path = tmp_path / "dem.tif"
+    heights = hills(60, 70).astype(np.int16)
+    heights[30, 40] = -9999
+    with rasterio.open(
+        path,
+        "w",
+        driver="GTiff",
+        width=70,
+        height=60,
+        count=1,
+        dtype="int16",
+        crs="EPSG:32633",
+        transform=rasterio.Affine(30, 0, 300_000, 0, -30, 5_100_000),
+        nodata=-9999,
+    ) as file:
+        file.write(heights, 1)
+    return path
+
+
+def command(program, *arguments):
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@needs_files
+def test_opens_files(dem, tmp_path):
+    terrain = Terrain.open(dem)
+    import rasterio
+
+    with rasterio.open(dem) as file:
+        heights, transform = file.read(1), file.transform
+    assert np.array_equal(terrain.heights, heights) and not terrain.heights.flags.writeable
+    assert terrain.transform == tuple(transform)[:6]
+    over = Terrain(heights, crs="EPSG:32633", transform=transform, nodata=-9999)
+    assert np.allclose(over.cell, terrain.cell, rtol=1e-12) and np.isclose(over.grid_north, terrain.grid_north)
+    assert np.array_equal(pyscarp.viewshed(over, (301_000, 5_099_000)), pyscarp.viewshed(terrain, (301_000, 5_099_000)))
+    terrain.edit(500, rows=slice(3, 5), cols=slice(3, 5))
+    assert terrain.heights[3, 3] == 500 and terrain.range[1] == 500
+    assert Terrain.open(dem, window=(5, 6, 7, 8)).shape == (8, 7)
+    with pytest.raises(Error, match="none.tif"):
+        Terrain.open(tmp_path / "none.tif")
+
+
+@needs_files
+def test_maps_equal_those_of_the_command_line(dem, tmp_path, scarp_program):
+    import rasterio
+
+    def written(*arguments):
+        command(scarp_program, *arguments, "-o", tmp_path / "map.tif")
+        with rasterio.open(tmp_path / "map.tif") as file:
+            return file.read()
+
+    rioxarray = pytest.importorskip("rioxarray")
+    data = rioxarray.open_rasterio(dem)
+    place = ("--observer", "301000,5099000,5")
+    for terrain in Terrain.open(dem), data:
+        as_array = lambda result: np.asarray(result)
+        assert np.array_equal(
+            as_array(pyscarp.viewshed(terrain, (301_000, 5_099_000, 5))), written("viewshed", dem, *place)[0]
+        )
+        angle = as_array(pyscarp.viewshed(terrain, (301_000, 5_099_000, 5), mode="angle"))
+        assert np.array_equal(np.nan_to_num(angle, nan=-9999), written("viewshed", dem, *place, "--mode", "angle")[0])
+        assert np.array_equal(
+            as_array(pyscarp.shadow(terrain, (135, 20))), written("shadow", dem, "--sun", "135,20")[0]
+        )
+        assert np.array_equal(
+            np.nan_to_num(as_array(pyscarp.horizon(terrain, 4)), nan=-9999), written("horizon", dem, "--azimuths", 4)
+        )
+        assert np.array_equal(
+            np.nan_to_num(as_array(pyscarp.sky_view(terrain, azimuths=8)), nan=-9999),
+            written("skyview", dem, "--azimuths", 8)[0],
+        )
+        hours = as_array(pyscarp.sun_hours(terrain, "2026-06-21", step=60))
+        assert np.array_equal(
+            np.nan_to_num(hours, nan=-9999), written("sunhours", dem, "--date", "2026-06-21", "--step", 60)[0]
+        )

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""The package: names, types, documentation, the command line."""
+
+import ast
+import inspect
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+import pyscarp
+
+
+def public_objects():
+    for name in pyscarp.__all__:
+        value = getattr(pyscarp, name)
+        if callable(value):
+            yield name, value
+        if inspect.isclass(value):
+            yield from ((f"{name}.{key}", getattr(value, key)) for key in vars(value) if not key.startswith("_"))
+
+
+def test_everything_public_is_documented():
+    missing = [
+        name
+        for name, value in public_objects()
+        if not name.startswith("Status.")
+        and value is not None
+        and not isinstance(value, (int, float, str, tuple))
+        and not inspect.getdoc(value)
+        and not inspect.ismemberdescriptor(value)
+    ]
+    assert not missing
+
+
+def test_functions_have_a_docstring_of_their_own_with_an_example():
+    for name in (
+        "horizon",
+        "line_of_sight",
+        "png",
+        "profile",
+        "render",
+        "shadow",
+        "sky_view",
+        "sun_hours",
+        "sun_position",
+        "viewshed",
+    ):
+        assert ">>>" in getattr(pyscarp, name).__doc__, name
+    for name in "cast", "occluded", "heights_at", "all_hits", "cast_from", "edit", "samples_changed", "to_local":
+        assert ">>>" in getattr(pyscarp.Terrain, name).__doc__, name
+
+
+def stub_signatures():
+    """Names of the functions of the stub, with those of their arguments."""
+    tree = ast.parse(open(os.path.join(os.path.dirname(pyscarp.__file__), "_core.pyi")).read())
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            yield node.name, [a.arg for a in node.args.args] + ["*"] * bool(node.args.vararg)
+        elif isinstance(node, ast.ClassDef):
+            for member in node.body:
+                if isinstance(member, ast.FunctionDef):
+                    yield f"{node.name}.{member.name}", [a.arg for a in member.args.args] + ["*"] * bool(
+                        member.args.vararg
+                    )
+                else:
+                    assert isinstance(member, ast.Expr)
+        elif isinstance(node, ast.AnnAssign):
+            yield node.target.id, None
+
+
+def test_stubs_name_the_arguments_of_the_module():
+    from pyscarp import _core
+
+    stubs = dict(stub_signatures())
+    for name, arguments in stubs.items():
+        found = _core
+        for part in name.split("."):
+            assert hasattr(found, part), name
+            found = getattr(found, part)
+        if arguments and "*" not in arguments and not isinstance(found, property) and found.__doc__:
+            signature = found.__doc__.splitlines()[0].partition("(")[2].rpartition(")")[0]
+            named = re.findall(r"(?:^|, )(\w+): ", signature)
+            positional = all(re.fullmatch(r"arg\d+", n) for n in named if n != "self")
+            assert named == arguments or (positional and len(named) == len(arguments)), (name, named)
+    for name, value in vars(_core).items():
+        if not name.startswith("__"):
+            assert name in stubs or inspect.isclass(value), name
+
+
+LONG = pytest.mark.skipif("SCARP_LONG_TESTS" not in os.environ, reason="mypy takes half a minute (./dev test --long)")
+
+
+def mypy(tmp_path, *arguments):
+    pytest.importorskip("mypy")
+    return subprocess.run(
+        [sys.executable, "-m", *arguments],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env={**os.environ, "MYPYPATH": os.path.dirname(os.path.dirname(pyscarp.__file__))},
+    )
+
+
+@LONG
+def test_stubs_agree_with_the_module(tmp_path):
+    # The classes of pybind11 have a metaclass of their own.
+    (tmp_path / "allowed").write_text(
+        "".join(f"pyscarp._core.{name}\n" for name in ("SceneBase", "Terrain", "Voxels", "Scene"))
+    )
+    done = mypy(tmp_path, "mypy.stubtest", "pyscarp._core", "--allowlist", "allowed")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@LONG
+def test_types_are_consistent_and_find_mistakes(tmp_path):
+    done = mypy(tmp_path, "mypy", "-p", "pyscarp")
+    assert done.returncode == 0, done.stdout
+    (tmp_path / "use.py").write_text(
+        "import numpy as np\nimport pyscarp\n"
+        "terrain = pyscarp.Terrain(np.zeros((3, 3), np.float32), cell=1)\n"
+        "hits: pyscarp.Hits = terrain.cast([0, 0, 1], [0, 0, -1])\n"
+        "t: np.ndarray = hits.t\n"
+        "terrain.cast([0, 0, 1], [0, 0, -1], outt=hits)\n"
+    )
+    lines = mypy(tmp_path, "mypy", "use.py").stdout.strip().splitlines()
+    assert len(lines) == 2 and lines[0].startswith('use.py:6: error: Unexpected keyword argument "outt"'), lines
+
+
+def run(*arguments, **environment):
+    return subprocess.run(
+        [sys.executable, "-m", "pyscarp", *arguments], capture_output=True, text=True, env={**os.environ, **environment}
+    )
+
+
+def test_runs_the_command_line(scarp_program):
+    path = os.path.dirname(os.path.abspath(scarp_program))
+    done = run("--version", PATH=path)
+    assert done.returncode == 0 and done.stdout.startswith("scarp ")
+    assert run("viewshed", PATH=path).returncode != 0
+
+
+def test_says_that_the_command_line_is_missing():
+    done = run("viewshed", PATH="/nowhere")
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "not installed" in done.stderr
+    assert run("--version", PATH="/nowhere").stdout == f"pyscarp {pyscarp.__version__}\n"

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""Long tasks: other threads run meanwhile, progress, Ctrl-C, and edits that wait."""
+
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import hills
+
+import pyscarp
+from pyscarp import Error, Terrain
+
+
+@pytest.fixture(scope="module")
+def large():
+    return Terrain(hills(700, 700), cell=10)
+
+
+def long_task(terrain, progress=None):
+    """Takes minutes to its end."""
+    return pyscarp.horizon(terrain, 3000, progress=progress)
+
+
+def test_other_threads_run_during_queries(large):
+    origins = np.random.default_rng(1).random((400_000, 3)) * (6990, 6990, 0) + (0, 0, 400)
+    directions = np.array([1.0, 0.5, -0.05])
+    span = []
+
+    def query():
+        batch = np.ascontiguousarray(np.broadcast_to(directions, origins.shape))
+        out = pyscarp.Hits(len(origins))
+        large.cast(origins[:2], batch[:2])
+        span.append(time.perf_counter())
+        large.cast(origins, batch, out=out)
+        span.append(time.perf_counter())
+
+    thread = threading.Thread(target=query)
+    seen = []
+    thread.start()
+    while thread.is_alive():
+        seen.append(time.perf_counter())
+    thread.join()
+    begin, end = span
+    third = (end - begin) / 3
+    # With the interpreter's lock held, this thread would stand still between the two.
+    assert sum(begin + third < moment < end - third for moment in seen) > 100
+
+
+def test_threads_share_a_terrain(large):
+    origins = np.random.default_rng(2).random((20_000, 3)) * (6990, 6990, 0) + (0, 0, 400)
+    directions = np.broadcast_to(np.array([1.0, 0.5, -0.2]), origins.shape)
+    wanted = large.cast(origins, directions).t
+    found = [None] * 6
+
+    def query(i):
+        found[i] = large.cast(origins, directions).t
+
+    threads = [threading.Thread(target=query, args=(i,)) for i in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(t, wanted) for t in found)
+
+
+def test_edits_wait_for_queries():
+    terrain = Terrain(np.zeros((200, 200), np.float32), cell=1)
+    origins = np.random.default_rng(3).random((20_000, 3)) * (198, 198, 0) + (0, 0, 500)
+    directions = np.broadcast_to(np.array([0, 0, -1.0]), origins.shape)
+    stop, uniform = threading.Event(), []
+
+    def query():
+        while not stop.is_set():
+            # A query sees the ground before or after an edit, never a mixture.
+            uniform.append(np.ptp(terrain.cast(origins, directions, normal=False).t) == 0)
+
+    threads = [threading.Thread(target=query) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for height in range(1, 40):
+        terrain.edit(height)
+    stop.set()
+    for thread in threads:
+        thread.join()
+    assert len(uniform) > 2 and all(uniform)
+
+
+def test_reports_progress_to_the_end(large):
+    seen = []
+    pyscarp.horizon(large, 6, progress=seen.append)
+    assert seen[-1] == 1 and seen == sorted(seen) and all(0 <= f <= 1 for f in seen)
+    pyscarp.viewshed(large, (500, 500), progress=seen.append)
+    assert seen[-1] == 1
+
+
+def test_progress_stops_a_task(large):
+    begin = time.perf_counter()
+    with pytest.raises(pyscarp.Interrupted):
+        long_task(large, lambda fraction: False)
+    assert time.perf_counter() - begin < 5
+
+
+def test_errors_of_the_callback_are_raised(large):
+    def fail(fraction):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        long_task(large, fail)
+    with pytest.raises(TypeError, match="progress"):
+        long_task(large, 5)
+
+
+def test_callbacks_cannot_edit(large):
+    with pytest.raises(Error, match="callback"):
+        long_task(large, lambda fraction: large.edit(5, rows=slice(0, 1)))
+
+
+def test_ctrl_c_stops_a_task(large):
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begin = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        long_task(large)
+    assert time.perf_counter() - begin < 5
+
+
+def test_ctrl_c_stops_a_batch(large):
+    origins = np.broadcast_to(np.array([10.0, 10.0, 150.0]), (40_000_000, 3))
+    directions = np.broadcast_to(np.array([1.0, 0.7, 0.001]), (40_000_000, 3))
+    blocked = np.empty(len(origins), bool)
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        large.occluded(origins, directions, out=blocked)
+
+
+def test_threads_can_be_limited(large):
+    pyscarp.set_threads(1)
+    try:
+        one = pyscarp.viewshed(large, (500, 500))
+    finally:
+        pyscarp.set_threads(0)
+    assert np.array_equal(one, pyscarp.viewshed(large, (500, 500)))
+
+
+def test_terrains_do_not_leak():
+    heights = np.zeros((300, 300), np.float32)
+
+    def resident():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    def round_trip():
+        terrain = Terrain(heights, cell=1)
+        hits = terrain.cast([[5, 5, 9]] * 100, [0, 0, -1])
+        pyscarp.viewshed(terrain, (5, 5))
+        for wrong in (lambda: terrain.cast([np.nan, 0, 0], [0, 0, 1]), lambda: pyscarp.viewshed(terrain, (999, 0))):
+            with pytest.raises(Error):
+                wrong()
+        return hits
+
+    for _ in range(20):
+        round_trip()
+    before = resident()
+    for _ in range(60):
+        round_trip()
+    # A leaked map has 90 kB, a leaked terrain a pyramid of 60 kB.
+    assert resident() - before < 60 * 30_000
