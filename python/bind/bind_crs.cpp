@@ -71,6 +71,16 @@ std::optional<std::pair<double, double>> lonlat(const MapFromNode& map_from_node
   return std::pair(points[0].x, points[0].y);
 }
 
+// Column and row of a place on Earth; None if it has none.
+std::optional<std::pair<double, double>> node_of_lonlat(const MapFromNode& map_from_node, const std::string& crs,
+                                                        int cols, int rows, double longitude, double latitude) {
+  const Georeference georeference = georeference_of(map_from_node, crs);
+  const CoordinateFrame frame(georeference, cols, rows, Coordinates::lonlat);
+  std::array points{dvec3(longitude, latitude, 0)};
+  if (frame.to_local(points)) return std::nullopt;
+  return std::pair(points[0].x / georeference.cell_x_m, rows - 1 - points[0].y / georeference.cell_y_m);
+}
+
 }  // namespace
 
 void bind_crs(py::module_& module) {
@@ -78,6 +88,8 @@ void bind_crs(py::module_& module) {
   module.def("ground_plane", &ground_plane, py::arg("map_from_node"), py::arg("crs"), py::arg("cols"), py::arg("rows"),
              py::arg("col"), py::arg("row"), py::arg("reach"));
   module.def("crs_of", &crs_of, py::arg("crs"));
+  module.def("node_of_lonlat", &node_of_lonlat, py::arg("map_from_node"), py::arg("crs"), py::arg("cols"),
+             py::arg("rows"), py::arg("longitude"), py::arg("latitude"));
   module.def("lonlat", &lonlat, py::arg("map_from_node"), py::arg("crs"), py::arg("cols"), py::arg("rows"),
              py::arg("col"), py::arg("row"));
 }

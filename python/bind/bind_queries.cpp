@@ -168,15 +168,19 @@ void cast_rays(const SceneObject& self, const py::array& origins, const py::arra
                  });
 }
 
-// The plain case of cast() in one call: arrays (n, 3) of floats and room for n hits. Returns false for all others.
-bool cast_plain(const SceneObject& self, const py::object& origins, const py::object& directions, py::array& hits,
-                const py::object& positions, const py::object& normals) {
+// Whether these are arrays (n, 3) of floats and room for n answers: such calls need no preparation in Python.
+bool plain(const py::object& origins, const py::object& directions, const py::array& answers) {
   if (!py::isinstance<py::array>(origins) || !py::isinstance<py::array>(directions)) return false;
   const auto a = py::reinterpret_borrow<py::array>(origins), b = py::reinterpret_borrow<py::array>(directions);
-  if (a.ndim() != 2 || b.ndim() != 2 || hits.ndim() != 1 || a.shape(0) != b.shape(0) || hits.shape(0) != a.shape(0) ||
-      !Vectors::readable(a) || !Vectors::readable(b))
-    return false;
-  cast_rays(self, a, b, hits, positions, normals, py::none(), py::none(), py::none());
+  return Vectors::readable(a) && Vectors::readable(b) && answers.ndim() == 1 && a.shape(0) == b.shape(0) &&
+         answers.shape(0) == a.shape(0);
+}
+
+bool cast_plain(const SceneObject& self, const py::object& origins, const py::object& directions, py::array& hits,
+                const py::object& positions, const py::object& normals) {
+  if (!plain(origins, directions, hits)) return false;
+  cast_rays(self, origins.cast<py::array>(), directions.cast<py::array>(), hits, positions, normals, py::none(),
+            py::none(), py::none());
   return true;
 }
 
@@ -195,6 +199,14 @@ void occluded_rays(const SceneObject& self, const py::array& origins, const py::
                  [&](std::size_t first, std::span<const Ray> piece, std::span<const Hit* const> starts) {
                    occluded(scene, piece, std::span(answers + first, piece.size()), starts);
                  });
+}
+
+bool occluded_plain(const SceneObject& self, const py::object& origins, const py::object& directions,
+                    py::array& blocked) {
+  if (!plain(origins, directions, blocked)) return false;
+  occluded_rays(self, origins.cast<py::array>(), directions.cast<py::array>(), blocked, py::none(), py::none(),
+                py::none());
+  return true;
 }
 
 void heights(const SceneObject& self, const Doubles& xs, const Doubles& ys, py::array_t<double>& out) {
@@ -266,6 +278,7 @@ void bind_queries(py::module_& module, py::class_<SceneObject>& base) {
            py::arg("normals"))
       .def("_occluded", &occluded_rays, py::arg("origins"), py::arg("directions"), py::arg("blocked"), py::arg("t_min"),
            py::arg("t_max"), py::arg("start"))
+      .def("_occluded_plain", &occluded_plain, py::arg("origins"), py::arg("directions"), py::arg("blocked"))
       .def("_heights_at", &heights, py::arg("xs"), py::arg("ys"), py::arg("out"));
   module.def("all_hits", &all_hits, py::arg("terrain"), py::arg("origins"), py::arg("directions"), py::arg("t_min"),
              py::arg("t_max"));

@@ -54,10 +54,14 @@ PYBIND11_MODULE(_core, module) {
   module.attr("HAS_SUN") = false;
 #endif
   add_errors(module);
-  module.def("set_threads", [](int threads) {
-    thread_limit.reset();
-    if (threads != 0) thread_limit = std::make_unique<ThreadLimit>(threads);
-  });
+  module.def(
+      "set_threads",
+      [](int threads) {
+        if (threads < 0) throw Error("threads: below 0 (expected a number of threads, or 0 for all)");
+        thread_limit.reset();
+        if (threads != 0) thread_limit = std::make_unique<ThreadLimit>(threads);
+      },
+      py::arg("threads"), "Limits the threads of all calls that start afterwards; 0: all. Raises Error below 0.");
   py::class_<SceneObject> base(module, "SceneBase");
   bind_queries(module, base);
   bind_terrain(module);

@@ -232,6 +232,20 @@ def lonlat_of(
     return transform.transform(*_map_position(map_from_node, col, row))
 
 
+def node_of_lonlat(
+    map_from_node: Sequence[float], crs: str, shape: tuple[int, int], longitude: float, latitude: float
+) -> Optional[tuple[float, float]]:
+    """Returns column and row of a place in degrees, WGS 84."""
+    if _core.HAS_FILES:
+        return _core.node_of_lonlat(tuple(map_from_node), crs, shape[1], shape[0], longitude, latitude)
+    import pyproj
+
+    transform = pyproj.Transformer.from_crs("EPSG:4326", _pyproj_crs(crs), always_xy=True)
+    x, y = transform.transform(longitude, latitude)
+    col, row = (x - map_from_node[0]) / map_from_node[1], (y - map_from_node[3]) / map_from_node[5]
+    return (col, row) if math.isfinite(col) and math.isfinite(row) else None
+
+
 def _map_position(m: Sequence[float], col: float, row: float) -> tuple[float, float]:
     return m[0] + col * m[1], m[3] + row * m[5]
 

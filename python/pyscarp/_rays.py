@@ -153,6 +153,9 @@ class Rays(SceneBase):
         >>> terrain.occluded([7, 3, 6], [[0, 0, -1], [0, 0, 1]]).tolist()
         [True, False]
         """
+        if out is not None and t_min is None and t_max is None and start is None:
+            if out.dtype.char == "?" and self._occluded_plain(origins, directions, out):
+                return out
         a, b, shape = batch(origins, directions)
         if out is None:
             out = np.empty(shape, bool)

@@ -74,8 +74,8 @@ def viewshed(
             angle    float32 degrees above the horizontal at which an observer sees the target; else NaN
             ======== ======= ==========================================================================
         cc: curvature coefficient, 1 - refraction coefficient, 0 (flat) to 1. Default: 6/7 on Earth.
-        coords: of observers: ``map`` (those of the DataArray or file) or ``local`` (metres, as in rays). Default: map
-            if there are any.
+        coords: of observers: ``map`` (those of the DataArray or file), ``local`` (metres, as in rays) or ``lonlat``
+            (degrees, WGS 84). Default: map if there are any, else local.
         progress: None, True (a bar; tqdm where it is installed), or a function of the fraction done; if it returns
             False, the call raises Interrupted. Ctrl-C raises KeyboardInterrupt.
 
@@ -229,9 +229,8 @@ def line_of_sight(
     line = _line(terrain, start, end, observer_height, target_height, heights, cc, coords)
     visible, obstruction, *rest = _core.line_of_sight(terrain, *line)
     if obstruction is not None:
-        along = obstruction[0]
-        x, y = (start[i] + along * (end[i] - start[i]) for i in (0, 1))
-        obstruction = (along, float(x), float(y), obstruction[3])
+        (x,), (y,) = terrain._place(np.array([obstruction[1]]), np.array([obstruction[2]]), coords)
+        obstruction = (obstruction[0], float(x), float(y), obstruction[3])
     return LineOfSight(visible, obstruction, *rest)
 
 
@@ -270,6 +269,7 @@ def profile(
     """
     terrain = terrain_of(terrain)
     table = _core.profile(terrain, *_line(terrain, start, end, observer_height, target_height, heights, cc, coords))
-    along = table[:, 0]
-    x, y = (start[i] + along * (end[i] - start[i]) for i in (0, 1))
-    return Profile(along, table[:, 1], x, y, table[:, 4], table[:, 5], table[:, 6], table[:, 7] != 0, table[:, 8] != 0)
+    x, y = terrain._place(table[:, 2], table[:, 3], coords)
+    return Profile(
+        table[:, 0], table[:, 1], x, y, table[:, 4], table[:, 5], table[:, 6], table[:, 7] != 0, table[:, 8] != 0
+    )

@@ -213,17 +213,41 @@ class Terrain(Rays, _core.Terrain):
             )
         return x0, dx, y0, dy
 
+    def _coords(self, coords: Optional[str]) -> str:
+        """The kind of coordinates of places: ``map``, ``local`` or ``lonlat``."""
+        if coords not in (None, "map", "local", "lonlat"):
+            raise Error(f"coords: unknown name '{coords}' (expected one of: map, local, lonlat)")
+        if coords == "lonlat" and not self.crs:
+            raise Error("coords: longitude and latitude need a CRS (give crs, or use coords='local')")
+        return coords or ("map" if self._georeference[0] else "local")
+
     def _node(self, x: float, y: float, coords: Optional[str]) -> tuple[float, float]:
         """Column and row of a place."""
-        if coords not in (None, "map", "local"):
-            raise Error(f"coords: unknown name '{coords}' (expected one of: map, local)")
+        kind = self._coords(coords)
         x, y = float(x), float(y)
         if not (math.isfinite(x) and math.isfinite(y)):
             raise Error(f"place {x}, {y}: is not finite")
-        if coords == "local" or (coords is None and not self._georeference[0]):
+        if kind == "local":
             return x / self.cell[0], self.shape[0] - 1 - y / self.cell[1]
         x0, dx, y0, dy = self._map()
-        return (x - x0) / dx, (y - y0) / dy
+        if kind == "map":
+            return (x - x0) / dx, (y - y0) / dy
+        node = geo.node_of_lonlat(self._georeference[1], self.crs, self.shape, x, y)
+        if node is None:
+            raise Error(f"place {x}, {y}: is outside the domain of the CRS (expected longitude, latitude in degrees)")
+        return node
+
+    def _place(self, col: np.ndarray, row: np.ndarray, coords: Optional[str]) -> tuple[np.ndarray, np.ndarray]:
+        """The reverse of `_node`."""
+        kind = self._coords(coords)
+        if kind == "local":
+            return col * self.cell[0], (self.shape[0] - 1 - row) * self.cell[1]
+        x0, dx, y0, dy = self._map()
+        if kind == "map":
+            return x0 + col * dx, y0 + row * dy
+        m, crs = self._georeference[1:3]
+        places = [geo.lonlat_of(m, crs, self.shape, c, r) or (math.nan, math.nan) for c, r in zip(col, row)]
+        return np.array([p[0] for p in places]), np.array([p[1] for p in places])
 
     def _ground(self, col: float, row: float, reach: float) -> geo.Ground:
         """The plane for maps around a sample: of its own place in a CRS in degrees, else that of the terrain."""
@@ -402,6 +426,8 @@ def _bounds(part: slice, count: int) -> tuple[int, int]:
 
 def _samples(heights: Any, nodata: Optional[float], copy: bool) -> tuple[np.ndarray, Optional[float]]:
     """Returns the array that the terrain reads, and its nodata."""
+    if isinstance(heights, (str, os.PathLike)):
+        raise TypeError(f"heights: {os.fspath(heights)!r} is a path (use Terrain.open)")
     if not isinstance(heights, np.ndarray):
         if not copy:
             raise TypeError(

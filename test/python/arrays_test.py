@@ -56,6 +56,11 @@ def test_copies_other_types_when_allowed(dtype):
     assert not np.shares_memory(terrain.heights, heights)
 
 
+def test_paths_are_opened():
+    with pytest.raises(TypeError, match="Terrain.open"):
+        Terrain("dem.tif")
+
+
 def test_holes_survive_rounding_to_float32():
     lowest = np.finfo(np.float64).min
     terrain = Terrain(np.array([[1, 2, 3], [4, lowest, 6], [7, 8, 9.0]]), cell=1, nodata=lowest, copy=True)

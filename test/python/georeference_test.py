@@ -89,6 +89,24 @@ def test_degrees_are_measured_at_the_observer():
 
 
 @needs_files
+def test_places_in_degrees():
+    terrain = Terrain(data_array(hills(20, 30)))
+    pyproj = pytest.importorskip("pyproj")
+    to_lonlat = pyproj.Transformer.from_crs("EPSG:32632", "EPSG:4326", always_xy=True).transform
+    start, end = (500_100, 5_199_900), (500_700, 5_199_600)
+    line = pyscarp.profile(terrain, start, end)
+    degrees = pyscarp.profile(terrain, to_lonlat(*start), to_lonlat(*end), coords="lonlat")
+    assert np.array_equal(degrees.ground, line.ground)
+    # A cell is 1 / 1024 of 30 m; a degree has about 111 km.
+    assert np.allclose([degrees.x, degrees.y], to_lonlat(line.x, line.y), atol=30 / 1024 / 111e3)
+    local = pyscarp.profile(terrain, *zip(*terrain.to_local(*zip(start, end))), coords="local")
+    assert np.array_equal(local.ground, line.ground)
+    assert np.allclose(terrain.to_map(local.x, local.y), [line.x, line.y], rtol=1e-12)
+    seen = pyscarp.viewshed(terrain, to_lonlat(*start), coords="lonlat")
+    xarray.testing.assert_equal(seen, pyscarp.viewshed(terrain, start))
+
+
+@needs_files
 def test_lengths_agree_with_pyproj():
     pytest.importorskip("pyproj")
     from pyscarp import _georeference as geo

@@ -75,6 +75,9 @@ def test_stubs_name_the_arguments_of_the_module():
     from pyscarp import _core
 
     stubs = dict(stub_signatures())
+    if not _core.HAS_FILES:
+        for name in "wkt_of", "ground_plane", "crs_of", "lonlat", "node_of_lonlat":
+            del stubs[name]
     for name, arguments in stubs.items():
         found = _core
         for part in name.split("."):

@@ -144,6 +144,8 @@ def test_threads_can_be_limited(large):
     finally:
         pyscarp.set_threads(0)
     assert np.array_equal(one, pyscarp.viewshed(large, (500, 500)))
+    with pytest.raises(Error, match="threads"):
+        pyscarp.set_threads(-1)
 
 
 def test_terrains_do_not_leak():
