@@ -201,7 +201,10 @@ def body_of(crs: str) -> Body:
         return Body()
     if _core.HAS_FILES:
         return Body(*_core.crs_of(crs))
-    found = _pyproj_crs(crs)
+    try:
+        found = _pyproj_crs(crs)
+    except ImportError:
+        return Body()  # cells were given
     ellipsoid = found.ellipsoid
     axis = ellipsoid.semi_major_metre if ellipsoid else 6378137.0
     return Body(found.is_geographic, 2 * axis, abs(axis / 6378137.0 - 1) <= 0.05)
@@ -226,9 +229,7 @@ def lonlat_of(
     """Returns longitude and latitude of a sample in degrees, WGS 84."""
     if _core.HAS_FILES:
         return _core.lonlat(tuple(map_from_node), crs, shape[1], shape[0], col, row)
-    import pyproj
-
-    transform = pyproj.Transformer.from_crs(_pyproj_crs(crs), "EPSG:4326", always_xy=True)
+    transform = _transformer(crs, "EPSG:4326")
     return transform.transform(*_map_position(map_from_node, col, row))
 
 
@@ -238,9 +239,7 @@ def node_of_lonlat(
     """Returns column and row of a place in degrees, WGS 84."""
     if _core.HAS_FILES:
         return _core.node_of_lonlat(tuple(map_from_node), crs, shape[1], shape[0], longitude, latitude)
-    import pyproj
-
-    transform = pyproj.Transformer.from_crs("EPSG:4326", _pyproj_crs(crs), always_xy=True)
+    transform = _transformer("EPSG:4326", crs)
     x, y = transform.transform(longitude, latitude)
     col, row = (x - map_from_node[0]) / map_from_node[1], (y - map_from_node[3]) / map_from_node[5]
     return (col, row) if math.isfinite(col) and math.isfinite(row) else None
@@ -250,13 +249,17 @@ def _map_position(m: Sequence[float], col: float, row: float) -> tuple[float, fl
     return m[0] + col * m[1], m[3] + row * m[5]
 
 
+class _NoPyproj(Error, ImportError):
+    """pyproj is not installed, and this build has no PROJ."""
+
+
 def _pyproj_crs(crs: str) -> Any:
     try:
         import pyproj
     except ImportError:
-        raise Error(
-            "crs: this build cannot compute lengths on the ground (give cell=(east, north) in metres and no crs, "
-            "install pyproj, or use the build with GDAL)"
+        raise _NoPyproj(
+            "crs: this build needs pyproj for coordinate systems (install it; or give cell=(east, north) in metres, and no "
+            "places or times that depend on the CRS)"
         ) from None
     try:
         return pyproj.CRS.from_user_input(crs)
@@ -264,13 +267,17 @@ def _pyproj_crs(crs: str) -> Any:
         raise Error(f"crs: {str(error).splitlines()[0]} (expected EPSG:32610, WKT or PROJ text)") from None
 
 
-def _ground_by_pyproj(m: Sequence[float], crs: str, col: float, row: float) -> Ground:
-    """Central differences of geodesic distances, one cell wide."""
+def _transformer(source: str, target: str) -> Any:
+    ends = _pyproj_crs(source), _pyproj_crs(target)
     import pyproj
 
+    return pyproj.Transformer.from_crs(*ends, always_xy=True)
+
+
+def _ground_by_pyproj(m: Sequence[float], crs: str, col: float, row: float) -> Ground:
+    """Central differences of geodesic distances, one cell wide."""
     found = _pyproj_crs(crs)
-    base = found.geodetic_crs
-    transform = pyproj.Transformer.from_crs(found, base, always_xy=True)
+    transform = _transformer(crs, found.geodetic_crs.to_wkt())
     geod = found.get_geod()
 
     def step(cols: float, rows: float) -> tuple[float, float]:

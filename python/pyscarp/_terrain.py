@@ -87,6 +87,7 @@ class Terrain(Rays, _core.Terrain):
         self._template = source.template
         self._south_up = source.south_up
         self._plane_error = plane_error
+        self._cell_given = cell is not None
         factor = geo.metres_per_unit(source.unit if unit is None else unit)
         super().__init__(
             array,
@@ -141,6 +142,7 @@ class Terrain(Rays, _core.Terrain):
         self._template = None
         self._south_up = False
         self._plane_error = plane_error
+        self._cell_given = False
         _core.Terrain.__init__(
             self, os.fspath(path), band, nodata, geo.crs_text(crs), unit, window, exaggeration, surface, wrap, solid
         )
@@ -252,7 +254,7 @@ class Terrain(Rays, _core.Terrain):
     def _ground(self, col: float, row: float, reach: float) -> geo.Ground:
         """The plane for maps around a sample: of its own place in a CRS in degrees, else that of the terrain."""
         present, map_from_node, crs, north = self._georeference
-        if not (present and crs and self._body.geographic):
+        if self._cell_given or not (present and crs and self._body.geographic):
             return geo.Ground(self.cell, north)
         ground = geo.ground_at(map_from_node, crs, self.shape, col, row, reach)
         if ground.error_cells > self._plane_error:

@@ -2,6 +2,7 @@
 """DataArrays and files: coordinates, CRS, units, holes; and the same bytes as the command line's."""
 
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -86,6 +87,35 @@ def test_degrees_are_measured_at_the_observer():
         pyscarp.shadow(
             data_array(np.zeros((200, 200), np.float32), x0=10.0, y0=50.0, step=0.05, crs="EPSG:4326"), (90, 30)
         )
+
+
+def test_builds_without_gdal_use_pyproj_or_given_cells(monkeypatch):
+    monkeypatch.setattr(pyscarp._core, "HAS_FILES", False)
+    heights = hills(20, 30)
+    transform = (30, 0, 500_000, 0, -30, 5_200_000)
+    if pytest.importorskip("pyproj"):
+        terrain = Terrain(heights, crs="EPSG:32632", transform=transform)
+        assert np.allclose(terrain.cell, 30 / 0.9996, rtol=1e-6)
+        seen = pyscarp.viewshed(terrain, terrain.to_map(300, 300))
+        assert np.array_equal(pyscarp.viewshed(terrain, (9.00389, 46.95), coords="lonlat").shape, seen.shape)
+        with pytest.raises(Error, match="EPSG:99999"):
+            Terrain(heights, crs="EPSG:99999", transform=transform)
+    monkeypatch.setitem(sys.modules, "pyproj", None)
+    with pytest.raises(Error, match="pyproj"):
+        Terrain(heights, crs="EPSG:32632", transform=transform)
+    given = Terrain(heights, crs="EPSG:32632", transform=transform, cell=30)
+    assert given.cell == (30, 30) and pyscarp.viewshed(given, (500_300, 5_199_700)).shape == (20, 30)
+    with pytest.raises(Error, match="pyproj"):
+        pyscarp.viewshed(given, (9, 46.9), coords="lonlat")
+    with pytest.raises(Error, match="reads no files"):
+        Terrain.open("dem.tif")
+
+
+@needs_files
+def test_given_cells_hold_for_degrees():
+    degrees = dict(crs="EPSG:4326", transform=(0.1, 0, 10, 0, -0.1, 50))
+    given = Terrain(np.zeros((50, 50), np.float32), cell=20, **degrees)
+    assert given.cell == (20, 20) and (pyscarp.viewshed(given, (12, 47), max_distance=20, cc=0) == 1).sum() == 5
 
 
 @needs_files
