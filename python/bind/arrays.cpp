@@ -95,8 +95,8 @@ Vectors::Vectors(const py::array& array, const char* name) {
 void* require_room(py::array& array, std::size_t items, std::size_t item_bytes, const char* name) {
   if (!(array.flags() & py::array::c_style) || !array.writeable() ||
       static_cast<std::size_t>(array.nbytes()) != items * item_bytes)
-    throw Error(fmt::format("{}: expected a writable, contiguous array of {} bytes, found {} (use pyscarp.Hits)", name,
-                            items * item_bytes, array.nbytes()));
+    throw Error(fmt::format("{}: expected a writable, contiguous array of {} bytes, found {} (room for each answer)",
+                            name, items * item_bytes, array.nbytes()));
   return array.mutable_data();
 }
 

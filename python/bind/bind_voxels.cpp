@@ -57,7 +57,7 @@ class VoxelsObject : public SceneObject {
     require_no_callback();
     FieldGuard& guard = *guards().front();
     const py::gil_scoped_release release;
-    const std::unique_lock lock(guard.mutex);
+    const auto lock = guard.turnstile.edit();
     ++guard.edits;
     voxels_.edit([&](VoxelGrid& grid) { return change(grid); });
   }

@@ -11,7 +11,7 @@ void require_memory(const SceneObject& object) {
 std::vector<std::shared_lock<std::shared_mutex>> shared_locks(const SceneObject& object) {
   std::vector<std::shared_lock<std::shared_mutex>> locks;
   locks.reserve(object.guards().size());
-  for (const auto& guard : object.guards()) locks.emplace_back(guard->mutex);
+  for (const auto& guard : object.guards()) locks.push_back(guard->turnstile.read());
   return locks;
 }
 

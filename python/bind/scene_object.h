@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <shared_mutex>
@@ -11,13 +12,14 @@
 #include <vector>
 
 #include "python/bind/arrays.h"
+#include "scarp/base/turnstile.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp::python {
 
 /// The lock of one field, and its array if it has one. Queries share it; edits own it.
 struct FieldGuard {
-  std::shared_mutex mutex{};
+  Turnstile turnstile{};
   std::unique_ptr<ArrayMemory> memory{};
   std::uint64_t edits = 0;  // changed under the lock
 };
@@ -32,7 +34,8 @@ class SceneObject {
   const FieldGuards& guards() const { return guards_; }
 
  protected:
-  explicit SceneObject(FieldGuards guards) : guards_(std::move(guards)) {}
+  // In the same order in all scenes, so that two queries never wait for each other.
+  explicit SceneObject(FieldGuards guards) : guards_(std::move(guards)) { std::sort(guards_.begin(), guards_.end()); }
 
  private:
   FieldGuards guards_;

@@ -103,7 +103,7 @@ void TerrainObject::edit(const Change& change) {
   require_no_callback();
   require_memory(*this);
   const py::gil_scoped_release release;
-  const std::unique_lock lock(guards().front()->mutex);
+  const auto lock = guards().front()->turnstile.edit();
   ++guards().front()->edits;
   if (terrain_) {
     change(*terrain_);

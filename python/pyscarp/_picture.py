@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from ._core import Error
+from ._rays import numbers
 from ._progress import Progress, reporting
 from ._scene import scene_of
 
@@ -72,20 +73,20 @@ def render(
     (18, 32, 3)
     """
     scene = scene_of(scene)
-    width, height = (int(v) for v in size)
+    width, height = (int(v) for v in numbers(size, 2, "size", "width and height in pixels"))
     with reporting(progress) as report:
         return _core.render(
             scene,
             (width, height),
             look,
             aa,
-            tuple(map(float, sun)),
-            tuple(map(float, view)),
+            numbers(sun, 2, "sun", "azimuth and altitude in degrees"),
+            numbers(view, 2, "view", "azimuth and elevation in degrees"),
             distance,
             fov,
             top,
-            _point(eye),
-            _point(target),
+            _point(eye, "eye"),
+            _point(target, "target"),
             shadows,
             unlit,
             (0.1 if isinstance(scene, _core.Terrain) else 0.0) if haze is None else haze,
@@ -99,8 +100,8 @@ def render(
         )
 
 
-def _point(place: Optional[Sequence[float]]) -> Optional[tuple[float, ...]]:
-    return None if place is None else tuple(float(v) for v in place)
+def _point(place: Optional[Sequence[float]], name: str) -> Optional[tuple[float, ...]]:
+    return None if place is None else numbers(place, 3, name, "x, y and z in metres")
 
 
 def png(picture: np.ndarray) -> bytes:

@@ -49,6 +49,25 @@ def batch(origins: "ArrayLike", directions: "ArrayLike") -> tuple[np.ndarray, np
     return a, b, shape
 
 
+def number(value: Any, name: str) -> float:
+    """Returns a float; throws TypeError naming the argument."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: {value!r} is not a number") from None
+
+
+def numbers(values: Any, count: int, name: str, meaning: str) -> tuple[float, ...]:
+    """Returns that many floats; throws TypeError naming the argument."""
+    try:
+        found = tuple(float(v) for v in values)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: {values!r} (expected {meaning})") from None
+    if len(found) != count:
+        raise TypeError(f"{name}: {len(found)} numbers (expected {meaning})")
+    return found
+
+
 def limit(value: Any, shape: tuple[int, ...], name: str) -> Any:
     """Returns None, one number, or one number per ray."""
     if value is None or isinstance(value, (int, float)):
@@ -56,7 +75,11 @@ def limit(value: Any, shape: tuple[int, ...], name: str) -> Any:
     from ._core import Error
 
     try:
-        return np.ascontiguousarray(np.broadcast_to(np.asarray(value, float), shape))
+        values = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: {value!r} is not a number, nor an array of numbers") from None
+    try:
+        return np.ascontiguousarray(np.broadcast_to(values, shape))
     except ValueError:
         raise Error(f"{name}: values of the shape {np.shape(value)} do not broadcast to {shape} rays") from None
 
@@ -105,6 +128,8 @@ class Rays(SceneBase):
         >>> hits.t.tolist(), hits.position[0].tolist(), hits.cell.tolist()
         ([95.0, inf], [7.0, 3.0, 5.0], [[0, 1], [-1, -1]])
         """
+        if out is not None and not isinstance(out, Hits):
+            raise TypeError(f"out: {type(out).__name__} is not a Hits (make room with pyscarp.Hits(shape))")
         if (
             out is not None
             and t_min is None
@@ -153,6 +178,8 @@ class Rays(SceneBase):
         >>> terrain.occluded([7, 3, 6], [[0, 0, -1], [0, 0, 1]]).tolist()
         [True, False]
         """
+        if out is not None and not isinstance(out, np.ndarray):
+            raise TypeError(f"out: {type(out).__name__} is not an array (expected bool)")
         if out is not None and t_min is None and t_max is None and start is None:
             if out.dtype.char == "?" and self._occluded_plain(origins, directions, out):
                 return out
@@ -182,11 +209,17 @@ class Rays(SceneBase):
         >>> terrain.heights_at([2.5, 5, 99], 5).tolist()
         [2.5, 5.0, nan]
         """
-        xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        xs, ys = np.ascontiguousarray(xs), np.ascontiguousarray(ys)
+        from ._core import Error
+
+        try:
+            xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        except ValueError as error:
+            raise Error(f"heights_at: x of the shape {np.shape(x)}, y of {np.shape(y)}: {error}") from None
         if out is None:
-            out = np.empty(np.shape(x) if np.shape(x) == np.shape(y) else xs.shape)
-        self._heights_at(xs, ys, out)
+            out = np.empty(xs.shape)
+        elif not isinstance(out, np.ndarray) or out.dtype != float or out.shape != xs.shape:
+            raise Error(f"out: expected an array of float64 of the shape {xs.shape}")
+        self._heights_at(np.ascontiguousarray(xs), np.ascontiguousarray(ys), out)
         return out
 
     def _starts(self, start: Hits, shape: tuple[int, ...]) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _core
 from ._core import Error
-from ._rays import Rays
+from ._rays import Rays, number
 from ._terrain import Terrain
 
 if TYPE_CHECKING:
@@ -43,8 +43,8 @@ class Voxels(Rays, _core.Voxels):
                 f"voxels: {array.dtype} is not uint8 (convert the array: (indices > 0).astype(numpy.uint8))"
             )
         colours = [] if palette is None else np.asarray(palette, np.uint8).reshape(-1, 3).tolist()
+        super().__init__(np.ascontiguousarray(array), number(side, "side"), colours)
         self._token = object()
-        super().__init__(np.ascontiguousarray(array), float(side), colours)
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -100,6 +100,8 @@ class Voxels(Rays, _core.Voxels):
             self._fill_sphere(tuple(map(float, sphere[0])), float(sphere[1]), int(index))
 
     def __repr__(self) -> str:
+        if "_token" not in self.__dict__:
+            return "<pyscarp.Voxels, not built>"
         x, y, z = self._size
         return f"<pyscarp.Voxels {x} x {y} x {z}, {self.solid_count} solid>"
 
@@ -144,6 +146,8 @@ class Scene(Rays, _core.Scene):
     """
 
     def __init__(self, parts: Sequence[Union[Rays, Part]]) -> None:
+        if isinstance(parts, (Rays, Part)):
+            raise TypeError("scene: expected a list of parts")
         placed = tuple(part if isinstance(part, Part) else Part(part) for part in parts)
         for part in placed:
             if not isinstance(part.scene, _core.SceneBase):

@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from ._core import Error
 from ._progress import Progress, reporting
+from ._rays import number
 from ._terrain import Terrain
 
 _VISIBLE_LIGHT = 6 / 7
@@ -26,14 +27,6 @@ def curvature_of(terrain: Terrain, cc: Optional[float]) -> tuple[float, float]:
     """Returns the curvature coefficient and the diameter of the body in metres."""
     body = terrain._body
     return (_VISIBLE_LIGHT if body.earth else 1.0) if cc is None else float(cc), body.diameter
-
-
-def number(value: Any, name: str) -> float:
-    """Returns a float; throws TypeError naming the argument."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name}: {value!r} is not a number") from None
 
 
 def viewshed(
@@ -184,8 +177,8 @@ def _line(
     ends: list[Any] = []
     places = []
     for name, place, height in (("start", start, observer_height), ("end", end, target_height)):
-        if len(place) not in (2, 3):
-            raise Error(f"{name}: {len(place)} numbers (expected x, y or x, y, height)")
+        if np.ndim(place) != 1 or len(place) not in (2, 3):
+            raise Error(f"{name}: {place!r} (expected x, y or x, y, height)")
         col, row = terrain._node(place[0], place[1], coords)
         if not (0 <= col <= terrain.shape[1] - 1 and 0 <= row <= terrain.shape[0] - 1):
             raise Error(f"{name} {place[0]:.10g},{place[1]:.10g}: is outside the terrain")

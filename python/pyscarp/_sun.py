@@ -12,7 +12,8 @@ import numpy as np
 from . import _core, _georeference as geo
 from ._core import Error
 from ._progress import Progress, reporting
-from ._sight import curvature_of, number, terrain_of
+from ._rays import number, numbers
+from ._sight import curvature_of, terrain_of
 from ._terrain import Terrain
 
 _MINUTES = 1440
@@ -118,7 +119,7 @@ def shadow(
         sun = sun_position(terrain, time, refraction=refraction, place=place)
         if sun[1] <= 0:
             raise Error(f"time {_time_text(time)}: the sun is {-sun[1]:.2f} degrees below the horizon")
-    azimuth, altitude = (number(v, "sun") for v in sun)  # type: ignore[union-attr]
+    azimuth, altitude = numbers(sun, 2, "sun", "azimuth and altitude in degrees")
     if not (math.isfinite(azimuth) and 0 < altitude <= 90):
         raise Error(
             f"sun: {azimuth}, {altitude} (expected azimuth and altitude in degrees, altitude above 0 and at most 90)"
@@ -188,7 +189,7 @@ def horizon(
     """
     terrain = terrain_of(terrain)
     degrees = (
-        np.arange(azimuths) * (360 / azimuths)
+        np.arange(azimuths) * (360 / max(azimuths, 1))
         if isinstance(azimuths, (int, np.integer))
         else np.asarray(azimuths, float)
     )

@@ -13,7 +13,7 @@ from . import _core, _georeference as geo
 from ._core import Error
 from ._hits import AllHits, FanHits
 from ._instruments import Camera, Scanner
-from ._rays import Rays, batch, limit
+from ._rays import Rays, batch, limit, number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -73,7 +73,7 @@ class Terrain(Rays, _core.Terrain):
         copy: bool = False,
     ) -> None:
         source = geo.source_of(heights)
-        array, hole = _samples(source.heights, source.nodata if nodata is None else nodata, copy)
+        array, hole = _samples(source.heights, source.nodata if nodata is None else number(nodata, "nodata"), copy)
         if transform is not None:
             source.map_from_node, source.south_up = geo.rows_from_north(geo.node_transform(transform), array.shape[0])
         if crs is not None:
@@ -83,7 +83,6 @@ class Terrain(Rays, _core.Terrain):
                 raise Error(f"south_up: {south_up} contradicts the coordinates (leave it out)")
             source.south_up = bool(south_up)
         size, north = _cells(source, array.shape, cell)
-        self._token = object()
         self._template = source.template
         self._south_up = source.south_up
         self._plane_error = plane_error
@@ -94,9 +93,9 @@ class Terrain(Rays, _core.Terrain):
             source.south_up,
             size[0],
             size[1],
-            factor * (source.scale if scale is None else scale),
-            factor * (source.offset if offset is None else offset),
-            exaggeration,
+            factor * (source.scale if scale is None else number(scale, "scale")),
+            factor * (source.offset if offset is None else number(offset, "offset")),
+            number(exaggeration, "exaggeration"),
             hole,
             surface,
             wrap,
@@ -105,6 +104,7 @@ class Terrain(Rays, _core.Terrain):
             source.crs,
             north if grid_north is None else math.radians(grid_north),
         )
+        self._token = object()  # last: __repr__() of an object that was not built must not read it
 
     @classmethod
     def open(
@@ -138,7 +138,6 @@ class Terrain(Rays, _core.Terrain):
                 "pass the array to Terrain)"
             )
         self = cls.__new__(cls)
-        self._token = object()
         self._template = None
         self._south_up = False
         self._plane_error = plane_error
@@ -146,6 +145,7 @@ class Terrain(Rays, _core.Terrain):
         _core.Terrain.__init__(
             self, os.fspath(path), band, nodata, geo.crs_text(crs), unit, window, exaggeration, surface, wrap, solid
         )
+        self._token = object()
         return self
 
     @property
@@ -303,6 +303,8 @@ class Terrain(Rays, _core.Terrain):
         ([[True, True, True, True], [False, False, False, False]], 1.414)
         """
         i = instrument
+        if not isinstance(i, (Camera, Scanner)):
+            raise TypeError(f"cast_from: {type(i).__name__} is not a Camera or Scanner")
         eye = tuple(map(float, i.eye))
         if isinstance(i, Camera):
             tan = math.tan(math.radians(i.fov) / 2) if 0 < i.fov < 180 else math.nan
@@ -410,6 +412,8 @@ class Terrain(Rays, _core.Terrain):
         return png(render(self, (640, 360)))
 
     def __repr__(self) -> str:
+        if "_token" not in self.__dict__:
+            return "<pyscarp.Terrain, not built>"
         rows, cols = self.shape
         low, high = self.range
         between = "all nodata" if low is None else f"{low:.6g} to {high:.6g} m"

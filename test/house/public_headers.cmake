@@ -4,7 +4,7 @@
 # 1. A header is public if README.md, doc/user or doc/library names it, an example or test/house/outside includes it, or
 #    another public header does. All others are private.
 # 2. At most 120 headers are public. scarp/version.h, which the build generates, is not counted.
-# 3. app/ and bench/ include only those private headers that are in APP_HEADERS, and each of these at least once.
+# 3. app/, bench/ and python/ include only those private headers that are in APP_HEADERS, and each of these at least once.
 # Names of shader texts, *.glsl.h, do not count: share/scarp/glsl has them. house.rules checks that public headers and
 # examples include only public headers. Before it judges the checkout, the check proves itself on a planted tree.
 cmake_minimum_required(VERSION 3.25)
@@ -70,7 +70,8 @@ function(check root public_headers app_headers result)
     list(APPEND breaches "${count} public headers, ${most_headers} at most")
   endif()
 
-  file(GLOB_RECURSE programs RELATIVE ${root} ${root}/app/*.h ${root}/app/*.cpp ${root}/bench/*.h ${root}/bench/*.cpp)
+  file(GLOB_RECURSE programs RELATIVE ${root} ${root}/app/*.h ${root}/app/*.cpp ${root}/bench/*.h ${root}/bench/*.cpp
+       ${root}/python/*.h ${root}/python/*.cpp)
   includes_of(${root} "${programs}" included)
   foreach(header IN LISTS app_headers)
     if(header IN_LIST public_headers)
@@ -78,7 +79,7 @@ function(check root public_headers app_headers result)
     elseif(NOT EXISTS ${root}/${header})
       list(APPEND breaches "${header}: in APP_HEADERS, but does not exist")
     elseif(NOT header IN_LIST included)
-      list(APPEND breaches "${header}: in APP_HEADERS, but neither app/ nor bench/ includes it")
+      list(APPEND breaches "${header}: in APP_HEADERS, but neither app/, bench/ nor python/ includes it")
     endif()
   endforeach()
   set(${result} "${breaches}" PARENT_SCOPE)
@@ -123,7 +124,7 @@ file(STRINGS ${folder}/app_headers.txt app_headers)
 check(${ROOT} "${public_headers}" "${app_headers}" breaches)
 list(LENGTH public_headers count)
 list(LENGTH app_headers app_count)
-message("${count} public headers (${most_headers} at most); ${app_count} more for app/ and bench/")
+message("${count} public headers (${most_headers} at most); ${app_count} more for app/, bench/ and python/")
 if(breaches)
   list(JOIN breaches "\n  " text)
   message(FATAL_ERROR "public headers:\n  ${text}")

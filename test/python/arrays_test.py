@@ -61,6 +61,24 @@ def test_paths_are_opened():
         Terrain("dem.tif")
 
 
+def test_objects_that_were_not_built_can_be_shown():
+    # Tracebacks of pytest and IPython show the objects whose constructors failed.
+    for call in (
+        lambda: Terrain(np.full((2, 2), np.inf, np.float32), cell=1),
+        lambda: Terrain.open("none.tif"),
+        lambda: pyscarp.Voxels(np.full((2, 2, 2), 9, np.uint8), palette=[(0, 0, 0)]),
+    ):
+        with pytest.raises(Error) as caught:
+            call()
+        shown = [
+            repr(value)
+            for entry in caught.traceback
+            for value in entry.frame.f_locals.values()
+            if isinstance(value, (Terrain, pyscarp.Voxels))
+        ]
+        assert all("not built" in text for text in shown)
+
+
 def test_holes_survive_rounding_to_float32():
     lowest = np.finfo(np.float64).min
     terrain = Terrain(np.array([[1, 2, 3], [4, lowest, 6], [7, 8, 9.0]]), cell=1, nodata=lowest, copy=True)

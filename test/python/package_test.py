@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import pyscarp
@@ -130,6 +131,34 @@ def test_types_are_consistent_and_find_mistakes(tmp_path):
     )
     lines = mypy(tmp_path, "mypy", "use.py").stdout.strip().splitlines()
     assert len(lines) == 2 and lines[0].startswith('use.py:6: error: Unexpected keyword argument "outt"'), lines
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda t: pyscarp.Terrain(t.heights, cell=1, exaggeration="x"),
+        lambda t: pyscarp.Terrain(t.heights, cell=1, nodata="x"),
+        lambda t: t.cast([0, 0, 1], [0, 0, 1], t_max="a"),
+        lambda t: t.cast([0, 0, 1], [0, 0, 1], out=5),
+        lambda t: t.cast(None, [0, 0, 1]),
+        lambda t: t.occluded([0, 0, 1], [0, 0, 1], out=[1]),
+        lambda t: t.heights_at([1, 2], [1, 2, 3]),
+        lambda t: t.heights_at([1, 2], 1, out=np.zeros(2, np.float32)),
+        lambda t: t.cast_from(None),
+        lambda t: pyscarp.render(t, (8,)),
+        lambda t: pyscarp.render(t, view=5),
+        lambda t: pyscarp.render(t, eye=(1, 2)),
+        lambda t: pyscarp.line_of_sight(t, 5, (1, 1)),
+        lambda t: pyscarp.shadow(t, sun=5),
+        lambda t: pyscarp.horizon(t, 0),
+        lambda t: pyscarp.Scene(t),
+        lambda t: pyscarp.Voxels(np.ones((2, 2, 2), np.uint8), side="x"),
+    ],
+)
+def test_wrong_arguments_have_one_line(call):
+    with pytest.raises((TypeError, pyscarp.Error)) as caught:
+        call(pyscarp.Terrain(np.zeros((4, 4), np.float32), cell=1))
+    assert "\n" not in str(caught.value) and ": " in str(caught.value)
 
 
 def run(*arguments, **environment):
