@@ -258,8 +258,8 @@ def _pyproj_crs(crs: str) -> Any:
         import pyproj
     except ImportError:
         raise _NoPyproj(
-            "crs: this build needs pyproj for coordinate systems (install it; or give cell=(east, north) in metres, and "
-            "no places or times that depend on the CRS)"
+            "crs: this build needs pyproj for coordinate systems (install it; or give cell=(east, north) in metres, "
+            "and no places or times that depend on the CRS)"
         ) from None
     try:
         return pyproj.CRS.from_user_input(crs)
