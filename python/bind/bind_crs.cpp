@@ -50,7 +50,15 @@ std::string wkt_of(const std::string& text) {
 // cells.
 py::tuple ground_plane(const MapFromNode& map_from_node, const std::string& crs, int cols, int rows, double col,
                        double row, double reach) {
-  const MetricPlane plane = metric_plane(georeference_of(map_from_node, crs), cols, rows, col, row, reach);
+  const MetricPlane plane = MetricPlanes(georeference_of(map_from_node, crs), cols, rows).around({col, row}, reach);
+  return py::make_tuple(plane.cell_x, plane.cell_y, plane.grid_north_azimuth, plane.error_cells);
+}
+
+// The same along a line between two samples.
+py::tuple line_plane(const MapFromNode& map_from_node, const std::string& crs, int cols, int rows,
+                     std::pair<double, double> from, std::pair<double, double> to) {
+  const MetricPlane plane = MetricPlanes(georeference_of(map_from_node, crs), cols, rows)
+                                .along({from.first, from.second}, {to.first, to.second});
   return py::make_tuple(plane.cell_x, plane.cell_y, plane.grid_north_azimuth, plane.error_cells);
 }
 
@@ -87,6 +95,8 @@ void bind_crs(py::module_& module) {
   module.def("wkt_of", &wkt_of, py::arg("text"));
   module.def("ground_plane", &ground_plane, py::arg("map_from_node"), py::arg("crs"), py::arg("cols"), py::arg("rows"),
              py::arg("col"), py::arg("row"), py::arg("reach"));
+  module.def("line_plane", &line_plane, py::arg("map_from_node"), py::arg("crs"), py::arg("cols"), py::arg("rows"),
+             py::arg("from_node"), py::arg("to_node"));
   module.def("crs_of", &crs_of, py::arg("crs"));
   module.def("node_of_lonlat", &node_of_lonlat, py::arg("map_from_node"), py::arg("crs"), py::arg("cols"),
              py::arg("rows"), py::arg("longitude"), py::arg("latitude"));

@@ -185,6 +185,14 @@ def wkt_of(text: str) -> str: ...
 def ground_plane(
     map_from_node: _Six, crs: str, cols: int, rows: int, col: float, row: float, reach: float
 ) -> tuple[float, float, float, float]: ...
+def line_plane(
+    map_from_node: _Six,
+    crs: str,
+    cols: int,
+    rows: int,
+    from_node: tuple[float, float],
+    to_node: tuple[float, float],
+) -> tuple[float, float, float, float]: ...
 def crs_of(crs: str) -> tuple[bool, float, bool]: ...
 def lonlat(
     map_from_node: _Six, crs: str, cols: int, rows: int, col: float, row: float

@@ -223,6 +223,23 @@ def ground_at(
     return _ground_by_pyproj(map_from_node, crs, col, row)
 
 
+def ground_along(
+    map_from_node: Sequence[float],
+    crs: str,
+    shape: tuple[int, int],
+    from_node: tuple[float, float],
+    to_node: tuple[float, float],
+) -> Ground:
+    """Returns the lengths along a line: with them it has its geodesic length, as far as this build has PROJ."""
+    if crs and _core.HAS_FILES:
+        cell_x, cell_y, north, error = _core.line_plane(
+            tuple(map_from_node), crs, shape[1], shape[0], from_node, to_node
+        )
+        return Ground((cell_x, cell_y), north, error)
+    col, row = (from_node[0] + to_node[0]) / 2, (from_node[1] + to_node[1]) / 2
+    return ground_at(map_from_node, crs, shape, col, row)
+
+
 def lonlat_of(
     map_from_node: Sequence[float], crs: str, shape: tuple[int, int], col: float, row: float
 ) -> Optional[tuple[float, float]]:

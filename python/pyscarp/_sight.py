@@ -184,11 +184,8 @@ def _line(
             raise Error(f"{name} {place[0]:.10g},{place[1]:.10g}: is outside the terrain")
         own = len(place) == 3
         ends += [col, row, number(place[2] if own else height, name), own and heights == "sea"]
-        places.append((col, row))
-    (a, b), (c, d) = places
-    ground = terrain._ground(
-        (a + c) / 2, (b + d) / 2, math.hypot((c - a) * terrain.cell[0], (d - b) * terrain.cell[1]) / 2
-    )
+        places.append((round(col * 1024) / 1024, round(row * 1024) / 1024))  # as lines of sight round their ends
+    ground = terrain._ground_along(*places)
     return (*ends, *curvature_of(terrain, cc), *ground.cell)
 
 

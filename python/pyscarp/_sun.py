@@ -28,7 +28,8 @@ def _centre(terrain: Terrain) -> tuple[float, float]:
 
 def _plane(terrain: Terrain) -> Terrain:
     """The terrain on the plane of its centre."""
-    terrain._ground(*_centre(terrain), math.inf)  # throws for rasters in degrees that are too large
+    if terrain._body.geographic:
+        terrain._ground(*_centre(terrain), math.inf)  # throws for rasters that are too large
     return terrain
 
 

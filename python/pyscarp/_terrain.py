@@ -39,8 +39,7 @@ class Terrain(Rays, _core.Terrain):
         solid: whether borders and rims of holes have walls.
         south_up: whether the first row is the southernmost. Default: from coordinates, else False.
         grid_north: azimuth of decreasing rows in degrees from true north. Default: from the CRS, else 0.
-        plane_error: for CRSs in degrees, whose maps are computed on a plane in metres: the most cells by which it may
-            misplace samples.
+        plane_error: maps are computed on planes in metres: the most cells by which they may misplace samples.
         copy: allow a copy, of arrays of other types (float64 becomes float32) or layouts.
 
     Raises:
@@ -69,7 +68,7 @@ class Terrain(Rays, _core.Terrain):
         solid: bool = False,
         south_up: Optional[bool] = None,
         grid_north: Optional[float] = None,
-        plane_error: float = 0.1,
+        plane_error: float = 0.5,
         copy: bool = False,
     ) -> None:
         source = geo.source_of(heights)
@@ -120,7 +119,7 @@ class Terrain(Rays, _core.Terrain):
         surface: str = "bilinear",
         wrap: str = "none",
         solid: bool = False,
-        plane_error: float = 0.1,
+        plane_error: float = 0.5,
     ) -> "Terrain":
         """Reads an elevation model in any format of the command line (GeoTIFF, .hgt, .npy, a folder of tiles, ...).
 
@@ -252,16 +251,25 @@ class Terrain(Rays, _core.Terrain):
         return np.array([p[0] for p in places]), np.array([p[1] for p in places])
 
     def _ground(self, col: float, row: float, reach: float) -> geo.Ground:
-        """The plane for maps around a sample: of its own place in a CRS in degrees, else that of the terrain."""
+        """The plane for maps around a sample, with scale and north there."""
         present, map_from_node, crs, north = self._georeference
-        if self._cell_given or not (present and crs and self._body.geographic):
+        if self._cell_given or not (present and crs):
             return geo.Ground(self.cell, north)
-        ground = geo.ground_at(map_from_node, crs, self.shape, col, row, reach)
+        return self._checked(geo.ground_at(map_from_node, crs, self.shape, col, row, reach))
+
+    def _ground_along(self, start: tuple[float, float], end: tuple[float, float]) -> geo.Ground:
+        """The plane for a line between two samples."""
+        present, map_from_node, crs, north = self._georeference
+        if self._cell_given or not (present and crs):
+            return geo.Ground(self.cell, north)
+        return self._checked(geo.ground_along(map_from_node, crs, self.shape, start, end))
+
+    def _checked(self, ground: geo.Ground) -> geo.Ground:
         if ground.error_cells > self._plane_error:
             raise Error(
-                f"degrees: samples are up to {ground.error_cells:.2g} cells off the metric plane, limit "
-                f"{self._plane_error} (first: reproject, for example with rio.reproject; or set max_distance; or "
-                "raise plane_error of Terrain)"
+                f"samples are up to {ground.error_cells:.2g} cells off the metric plane, limit {self._plane_error} "
+                "(first: reproject, for example with rio.reproject; or set max_distance; or raise plane_error of "
+                "Terrain)"
             )
         return ground
 

@@ -200,7 +200,7 @@ FLAT = np.zeros((5, 5), np.float32)
         (lambda t: pyscarp.viewshed(t, np.empty((0, 2))), "expected"),
         (lambda t: pyscarp.viewshed(t, (0, 0), mode="all"), "visible, count, dem, ground, angle"),
         (lambda t: pyscarp.viewshed(t, (0, 0), observer_height=-1), "height"),
-        (lambda t: pyscarp.viewshed(t, (0, 0), cc=2), "coefficient"),
+        (lambda t: pyscarp.viewshed(t, (0, 0), cc=11), "coefficient"),
         (lambda t: pyscarp.viewshed(t, (0, 0), azimuth=(0, 999)), "azimuth"),
         (lambda t: pyscarp.viewshed(t, (0, 0), max_distance=np.nan), "distance"),
         (lambda t: pyscarp.viewshed(t, (0, 0), coords="lonlat"), "need a CRS"),
