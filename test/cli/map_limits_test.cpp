@@ -261,7 +261,7 @@ TEST_F(MapLimits, JournalEndsWithItsLastWholeStrip) {
   }
   // A changed byte is noticed, too.
   std::string changed = complete;
-  changed[ends[1] + 20] ^= 1;
+  changed[ends[1] + 30] ^= 1;  // of the totals
   EXPECT_EQ(strips_of(changed), 1);
   std::ofstream(file) << "text";
   EXPECT_THROW(MapJournal(output, "me"), Error);

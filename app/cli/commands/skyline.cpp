@@ -135,8 +135,8 @@ std::string skyline_title(const MapInput& input, const HorizonPlace& place) {
 #ifdef SCARP_CAIRO
 
 void draw_skyline(const HorizonOptions& options, MapInput& input, const PlaceTable& point, const SkylineNames& names) {
-  constexpr int kWidth = 1200, kHeight = 480;
-  const auto [width, height] = plot_size(options.size, kWidth, kHeight);
+  constexpr int kUsualWidth = 1200, kUsualHeight = 480;
+  const auto [width, height] = plot_size(options.size, kUsualWidth, kUsualHeight);
   const HorizonSettings settings = horizon_settings(options.horizon, input);
   const HorizonPlace place = horizon_place(input, point, 0, horizon_position(input, point, 0), settings);
   input.read(place.part, terminal_progress("read"));

@@ -449,6 +449,8 @@ void run(ViewshedOptions options, const Command& command) {
   const PlaceTable table = options.spacing ? stations_on(input, places, *options.spacing, skips) : places;
   RowStatus status(table, skips);
   std::vector<Stand> stands = stands_of(input, options, table, status);
+  if (stands.size() > kMostObservers && (codes || counts))
+    throw Error(fmt::format("{} observers: at most {} are possible", stands.size(), kMostObservers));
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
   constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
   const double bands = options.each.empty() ? 1 : static_cast<double>(stands.size());

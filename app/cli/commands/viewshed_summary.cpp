@@ -18,8 +18,8 @@ void ViewshedSummary::add(std::size_t observer, const Viewpoint& view, std::span
   std::int64_t visible = 0, hidden = 0;
   double farthest = 0;  // squared
   std::mutex mutex;
-  constexpr std::int64_t kGrain = 16;  // rows
-  parallel_for(static_cast<std::int64_t>(codes.size() / cols), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t kRowsAtOnce = 16;
+  parallel_for(static_cast<std::int64_t>(codes.size() / cols), kRowsAtOnce, [&](std::int64_t begin, std::int64_t end) {
     std::int64_t seen = 0, unseen = 0;
     double far = 0;
     for (std::size_t i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {

@@ -54,9 +54,10 @@ BareGround::BareGround(const std::string& path, const MapOptions& options, const
   const double west = map[0] - 0.5 * map[1], north = map[3] - 0.5 * map[5];
   throw Error(fmt::format(
       "--ground '{}': its {} x {} samples are not at the places of the {} x {} of {} (first: gdalwarp -te {:.10g} "
-      "{:.10g} {:.10g} {:.10g} -ts {} {} -r bilinear {} ground.tif)",
+      "{:.10g} {:.10g} {:.10g} -ts {} {} -r bilinear{} {} ground.tif)",
       path, input_.cols(), input_.rows(), surface.cols(), surface.rows(), surface.path(), west,
-      north + surface.rows() * map[5], west + surface.cols() * map[1], north, surface.cols(), surface.rows(), path));
+      north + surface.rows() * map[5], west + surface.cols() * map[1], north, surface.cols(), surface.rows(),
+      input_.warp_words(), path));
 }
 
 void BareGround::follow(const MapInput& surface) {

@@ -140,6 +140,10 @@ std::optional<double> MapInput::height_at_centre() {
   return one.all_nodata() ? std::nullopt : std::optional(one.min_height());
 }
 
+std::string MapInput::warp_words() const {
+  return warp_nodata_words(header_.file_type, header_.nodata.has_value(), options_.raster.nodata);
+}
+
 std::optional<double> MapInput::highest_possible() const {
   const auto height = [&](auto most) { return static_cast<double>(most) * header_.scale + header_.offset; };
   if (sample_type() == SampleType::int16) return height(std::numeric_limits<std::int16_t>::max());
@@ -254,8 +258,7 @@ void MapInput::check_plane(const MetricPlane& plane, const dvec2& at) const {
   if (const auto lonlat = lonlat_of(at.x, at.y); lonlat && body_.earth)
     warp = fmt::format(
         "; or first: gdalwarp -t_srs '+proj=aeqd +lat_0={:.6f} +lon_0={:.6f} +datum=WGS84' -r bilinear{} {} plane.tif",
-        lonlat->y, lonlat->x, warp_nodata_words(header_.file_type, header_.nodata.has_value(), options_.raster.nodata),
-        path());
+        lonlat->y, lonlat->x, warp_words(), path());
   throw Error(fmt::format(
       "{}: samples are up to {:.2g} cells off the metric plane at {:.10g},{:.10g}, limit {} (set a distance limit; or "
       "raise --plane-error{})",

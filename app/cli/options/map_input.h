@@ -79,6 +79,8 @@ class MapInput {
   /// Reads the sample nearest to the centre, and returns its height in metres above sea; nullopt on a hole. Before
   /// close(); the part that was read stays. Throws Error naming the file.
   std::optional<double> height_at_centre();
+  /// Words for gdalwarp commands in messages, by which pixels that the file does not cover become nodata.
+  std::string warp_words() const;
   /// The height in metres that no sample exceeds, whatever the file contains; nullopt for floats.
   std::optional<double> highest_possible() const;
   /// Closes the file, which frees the blocks that GDAL keeps. The samples stay.

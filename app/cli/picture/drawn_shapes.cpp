@@ -48,14 +48,12 @@ class Pixels {
   CoordinateFrame frame_;
 };
 
-// The column of labels.
+// The column of labels; nullopt without one.
 std::optional<std::size_t> label_column(const PlaceTable& table, const std::string& label) {
-  if (label.empty()) return std::nullopt;
   const std::vector<std::string>& names = table.carried.names;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (lower_case(names[i]) == lower_case(label)) return i;
-  throw Error(fmt::format("{}: no column '{}' for --draw-label (columns: {})", table.path, label,
-                          names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  return std::nullopt;
 }
 
 FigureShape shape_of(const PlaceRow& row, const Pixels& pixels) {
@@ -80,9 +78,13 @@ FigureShape shape_of(const PlaceRow& row, const Pixels& pixels) {
 
 std::vector<FigureShape> drawn_shapes(const DrawOptions& options, const DrawnMap& map) {
   std::vector<FigureShape> shapes;
+  bool labelled = options.label.empty();
+  std::string columns;
   for (const std::string& path : options.files) {
     const PlaceTable table = read_places(path, PlaceKind::shapes, {{}, true, false});
     const auto label = label_column(table, options.label);
+    labelled |= label.has_value();
+    for (const std::string& name : table.carried.names) columns += (columns.empty() ? "" : ", ") + name;
     std::optional<Pixels> pixels;
     try {
       pixels.emplace(map, table.lonlat);
@@ -95,6 +97,9 @@ std::vector<FigureShape> drawn_shapes(const DrawOptions& options, const DrawnMap
       if (!shape.parts.front().empty()) shapes.push_back(std::move(shape));
     }
   }
+  if (!labelled)
+    throw Error(fmt::format("--draw-label '{}': no such column in {} (columns: {})", options.label,
+                            fmt::join(options.files, ", "), columns.empty() ? "none" : columns));
   return shapes;
 }
 

@@ -25,7 +25,11 @@ namespace {
 // Checks the output before the raster is opened.
 MapCommand& settled(MapCommand& options, std::string_view sample_type) {
   settle_output(options.raster_output, options, sample_type);
-  options.raster.beyond_memory = true;
+  return options;
+}
+
+MapCommand& limited(MapCommand& options, const MemoryLimit& limit) {
+  options.raster.memory = limit.bytes();
   return options;
 }
 
@@ -97,7 +101,7 @@ MapRun::MapRun(MapCommand& options, const Command& command, std::string_view sam
       memory_(limit_memory(options.memory, options.output)),
       silence_(options.raster_output.quiet ? std::make_optional<SilentProgress>() : std::nullopt),
       start_(std::chrono::steady_clock::now()),
-      input_(options) {
+      input_(limited(options, *memory_)) {
   keep_inputs(options.output, input_.files());
   set_area(input_.whole(), input_.whole());
 }

@@ -221,6 +221,19 @@ bool hides_some(GDALRasterBand& mask, const RasterWindow& window, GdalSession& s
   return hides;
 }
 
+// GDAL holds a whole block in memory.
+void refuse_large_blocks(GDALRasterBand& band, double memory) {
+  constexpr double kMostShare = 0.25, kMebi = 1 << 20;
+  int cols = 0, rows = 0;
+  band.GetBlockSize(&cols, &rows);
+  const double bytes = static_cast<double>(cols) * rows * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
+  if (bytes > kMostShare * memory)
+    throw Error(
+        fmt::format("a block of {} x {} samples takes {:.0f} MiB, more than a quarter of --memory (raise it, or first: "
+                    "gdal_translate -co TILED=YES)",
+                    cols, rows, bytes / kMebi));
+}
+
 template <class T>
 bool holds(double value) {
   return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
@@ -305,11 +318,12 @@ void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample) {
 }
 
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
-                      const std::optional<Decimation>& decimation, bool beyond_memory, GdalSession& session,
+                      const std::optional<Decimation>& decimation, std::optional<double> memory, GdalSession& session,
                       const Progress& progress) {
   const GDALDataType type = band.GetRasterDataType();
   const std::string_view type_name = GDALGetDataTypeName(type);
   empty_samples(band);  // rejects complex ones
+  if (memory) refuse_large_blocks(band, *memory);
   const GdalCacheLimit cache;
   const ReadingPlan plan = plan_reading(band, window, decimation, !nodata);
   BandSamples read;
@@ -329,7 +343,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   Findings found;
   found.beyond_are_holes = !nodata;
   const auto require_room = [&](std::size_t bytes) {
-    if (!beyond_memory) refuse_beyond_memory({0, 0, plan.cols, plan.rows}, static_cast<int>(bytes));
+    if (!memory) refuse_beyond_memory({0, 0, plan.cols, plan.rows}, static_cast<int>(bytes));
   };
   const auto read_floats = [&] {
     require_room(sizeof(float));

@@ -45,9 +45,10 @@ struct BandSamples {
 
 /// Reads a window, which must lie inside the band; rows as stored. `nodata` overrides the band's own. With `decimation`
 /// a large window is reduced. Throws Error without the file's name: unreadable, complex, infinite, too large for the
-/// free memory unless `beyond_memory`.
+/// free memory
+/// unless `memory` bytes may be used at once (RasterOptions::memory), blocks too large for these.
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
-                      const std::optional<Decimation>& decimation, bool beyond_memory, GdalSession& session,
+                      const std::optional<Decimation>& decimation, std::optional<double> memory, GdalSession& session,
                       const Progress& progress);
 
 /// Returns an empty vector of the type that samples of the band have in memory, masked ones if it has a mask. Throws

@@ -309,7 +309,7 @@ Raster DatasetReader::read(const std::optional<RasterWindow>& part, GdalSession&
   const RasterPlace& place = in.place;
   const RasterWindow window = part ? in.stored(*part) : in.window;
   BandSamples read = read_band(*in.band, window, in.options.nodata, part ? std::nullopt : in.options.decimation,
-                               in.options.beyond_memory, session, progress);
+                               in.options.memory, session, progress);
   raster.samples = std::move(read.samples);
   raster.cols = read.cols;
   raster.rows = read.rows;

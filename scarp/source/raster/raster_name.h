@@ -6,6 +6,7 @@
 
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "scarp/base/error.h"
 
@@ -20,7 +21,9 @@ auto read_named(const std::string& path, Read&& read) {
     throw;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));
-  } catch (const std::bad_alloc&) {
+  } catch (const std::bad_alloc& error) {
+    // An operator new of the program may say more.
+    if (error.what() != std::string_view("std::bad_alloc")) throw;
     throw Error(fmt::format("{}: samples do not fit in memory (read a part with --window COL,ROW,COLS,ROWS)", path));
   }
 }

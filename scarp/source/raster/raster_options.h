@@ -71,8 +71,9 @@ struct RasterOptions {
   std::string channel;                   ///< channel of an EXR; default: the only one, else Y, else R
   std::string key;                       ///< array in a .npz; default: the only one with heights
   std::optional<Decimation> decimation;  ///< default: all samples
-  /// Whether operator new may return more memory than is free, so that no raster is refused for its size.
-  bool beyond_memory = false;
+  /// Bytes of memory that may be used at once, if operator new returns other memory for arrays beyond them. Rasters are
+  /// then not refused for their size, but for blocks that take more than a quarter of it.
+  std::optional<double> memory;
 
   bool operator==(const RasterOptions&) const = default;
 };
