@@ -272,6 +272,9 @@ const Command* Program::find(std::string_view name) const {
 
 void Program::run(int argc, char** argv) {
   static const std::string kNoText;
+  words_.assign(argv + 1, argv + argc);
+  std::vector<std::string> words = words_;
+  if (about_.reworded) words = about_.reworded(words);
   CLI::App app({}, about_.name);
   app.set_help_flag();
   const auto add_help = [](CLI::App& to) { return to.add_option(kHelp, CLI::callback_t())->expected(0, 1); };
@@ -289,6 +292,8 @@ void Program::run(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name())->group(command.hidden() ? "" : "Subcommands");
     sub->set_help_flag();
     Parsed& parsed = all.emplace_back(Parsed{&command, sub, add_help(*sub), {}});
+    // CLI11 compares each option with all before it: declaring those of all subcommands takes longer than parsing.
+    if (std::find(words.begin(), words.end(), command.name()) == words.end()) continue;
     for (const Declared& one : command.options()) {
       const std::string& names = one.option.names;
       CLI::Option* option = one.flag() ? sub->add_flag(names, kNoText) : sub->add_option(names, CLI::callback_t());
@@ -301,9 +306,6 @@ void Program::run(int argc, char** argv) {
   }
   std::string wrong;
   try {
-    words_.assign(argv + 1, argv + argc);
-    std::vector<std::string> words = words_;
-    if (about_.reworded) words = about_.reworded(words);
     std::reverse(words.begin(), words.end());  // CLI11 expects them reversed
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
