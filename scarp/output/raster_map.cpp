@@ -77,10 +77,24 @@ CPLStringList options_of(const MapFormat& format) {
   return options;
 }
 
+// Whether a creation option of GeoTIFF changes no sample.
+bool keeps_samples(const std::string& option) {
+  const std::string name = lower_case(name_of_option(option)), value = lower_case(option.substr(name.size() + 1));
+  const auto is_one_of = [](const std::string& word, std::initializer_list<const char*> all) {
+    return std::find(all.begin(), all.end(), word) != all.end();
+  };
+  if (name == "compress") return is_one_of(value, {"none", "deflate", "lzw", "zstd", "lzma", "packbits"});
+  return is_one_of(name, {"tiled", "blockxsize", "blockysize", "blocksize", "bigtiff", "num_threads", "zlevel",
+                          "zstd_level", "level", "predictor", "sparse_ok"});
+}
+
 // GeoTIFF is exact by default. Lossy compression is a choice for measures, but codes would change their meaning.
+// Reading a map again takes longer than writing it, so that it is spared where samples cannot change.
 bool may_change_samples(const MapFormat& format) {
   const bool tiff = format.driver == "GTiff" || format.driver == "COG";
-  return format.creation_options.empty() ? !tiff : !format.floats;
+  const auto& options = format.creation_options;
+  if (tiff && std::all_of(options.begin(), options.end(), keeps_samples)) return false;
+  return options.empty() || !format.floats;
 }
 
 int CPL_STDCALL report(double done, const char*, void* progress) {

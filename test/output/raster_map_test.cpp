@@ -239,6 +239,36 @@ TEST_F(RasterMaps, LossyOptionsAreForMeasuresOnly) {
   EXPECT_EQ(write(folder, map, "b.tif"), "");
 }
 
+// These are not read again after they were written.
+TEST_F(RasterMaps, OptionsOfLayoutAndLosslessCompressionKeepSamples) {
+  int written = 0;
+  for (const char* driver : {"GTiff", "COG"}) {
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+             {"COMPRESS=NONE"},
+             {"compress=deflate", "PREDICTOR=2", "ZLEVEL=1"},
+             {"COMPRESS=DEFLATE", "PREDICTOR=YES", "LEVEL=9"},
+             {"COMPRESS=LZW", "PREDICTOR=2"},
+             {"COMPRESS=ZSTD", "ZSTD_LEVEL=1"},
+             {"COMPRESS=LZMA"},
+             {"COMPRESS=PACKBITS"},
+             {"TILED=NO", "BLOCKYSIZE=16", "BIGTIFF=YES", "NUM_THREADS=1", "SPARSE_OK=TRUE"},
+             {"BLOCKSIZE=128", "SPARSE_OK=TRUE"},
+             {"TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=32"}}) {
+      for (auto& [kind, map] : maps_.all()) {
+        const std::string what = fmt::format("{}, {}, {}", driver, fmt::join(options, " "), kind);
+        const test::Scratch folder;
+        map.driver = driver;
+        map.creation_options = options;
+        // COG has other names for some, and GDAL may be built without a compression.
+        if (!write(folder, map, "out.tif").empty()) continue;
+        ++written;
+        expect_equal(folder.path("out.tif"), map, what);
+      }
+    }
+  }
+  EXPECT_GE(written, 30);
+}
+
 TEST_F(RasterMaps, MentionsTheDiskOnlyIfItMayBeFull) {
   const test::Scratch folder;
   RasterMap map = maps_.heights(2);
