@@ -95,6 +95,82 @@ TEST_F(ViewshedObservers, EveryObserverHasABandOrAFile) {
   }
 }
 
+// Rolling ground of 24 x 16 samples with 10 m cells, and a mosaic around it that is wider on the west by 15 samples
+// without ground, as `gdalbuildvrt -te` makes it.
+constexpr int kGroundCols = 24, kGroundRows = 16, kMargin = 15;
+
+double rolling(int col, int row) {
+  return 100 + std::round(20 * std::sin(0.7 * col) * std::cos(0.45 * row) + 9 * std::sin(1.9 * (col + 2 * row)));
+}
+
+// Whether a straight line between two samples of the mosaic stays above the ground where it crosses grid lines, linear
+// between samples; there is none in the margin.
+bool is_seen(int col, int row, double eye, int to_col, int to_row) {
+  const auto height = [](int c, int r) { return c < kMargin ? std::nan("") : rolling(c - kMargin, r); };
+  const double target = height(to_col, to_row), dx = to_col - col, dy = to_row - row;
+  const auto hides = [&](double t, int c0, int r0, int c1, int r1, double share) {
+    return (1 - share) * height(c0, r0) + share * height(c1, r1) > eye + t * (target - eye);
+  };
+  for (int c = std::min(col, to_col) + 1; c < std::max(col, to_col); ++c) {
+    const double t = (c - col) / dx, y = row + t * dy;
+    const int r = static_cast<int>(std::floor(y));
+    if (y > r ? hides(t, c, r, c, r + 1, y - r) : hides(t, c, r, c, r, 0)) return false;
+  }
+  for (int r = std::min(row, to_row) + 1; r < std::max(row, to_row); ++r) {
+    const double t = (r - row) / dy, x = col + t * dx;
+    const int c = static_cast<int>(std::floor(x));
+    if (x > c ? hides(t, c, r, c + 1, r, x - c) : hides(t, c, r, c, r, 0)) return false;
+  }
+  return true;
+}
+
+// As doc/user/viewshed.md tells: nothing hides between the observer and the border.
+TEST_F(ViewshedObservers, ObserversStandBeyondTheBorderOfAWidenedRaster) {
+  std::string text = "ncols 24\nnrows 16\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n";
+  for (int row = 0; row < kGroundRows; ++row) {
+    for (int col = 0; col < kGroundCols; ++col) text += fmt::format("{} ", rolling(col, row));
+    text += '\n';
+  }
+  const std::string ground = scratch_.write("ground.asc", text);
+  const std::string wide = scratch_.write(
+      "wide.vrt",
+      fmt::format("<VRTDataset rasterXSize=\"39\" rasterYSize=\"16\"><GeoTransform>-150,10,0,160,0,-10</GeoTransform>"
+                  "<VRTRasterBand dataType=\"Float32\" band=\"1\"><NoDataValue>-9999</NoDataValue><ComplexSource>"
+                  "<SourceFilename relativeToVRT=\"1\">ground.asc</SourceFilename><SourceBand>1</SourceBand>"
+                  "<SrcRect xOff=\"0\" yOff=\"0\" xSize=\"24\" ySize=\"16\"/>"
+                  "<DstRect xOff=\"15\" yOff=\"0\" xSize=\"24\" ySize=\"16\"/><NODATA>-9999</NODATA></ComplexSource>"
+                  "</VRTRasterBand></VRTDataset>"));
+  // 95 m west of the border pixels, in row 8.
+  const std::string observer = "-95,75,131.3";
+  expect_refused({"viewshed", ground, "--observer=" + observer, "--heights", "sea", "-o", path("a.tif")},
+                 "-95,75 is outside");
+  expect_refused({"los", ground, "--from=" + observer, "--to", "105,75,0", "-o", path("a.csv")}, "gdalbuildvrt -te");
+  const Names words{"--crs", "none", "--heights", "sea", "--cc", "0"};
+  const Result seen = run(Names{"viewshed", wide, "--observer=" + observer, "-o", path("a.tif")} + words);
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  const Pixels map = pixels("a.tif");
+  std::string lines = "x,y,z,tx,ty,tz\n";
+  std::vector<bool> expected;
+  int visible = 0;
+  for (int row = 0; row < kGroundRows; ++row) {
+    for (int col = kMargin; col < kMargin + kGroundCols; ++col) {
+      expected.push_back(is_seen(5, 8, 131.3, col, row));
+      visible += expected.back();
+      EXPECT_EQ(map.at(col, row), expected.back() ? 1 : 0) << col << ", " << row;
+      lines +=
+          fmt::format("-95,75,131.3,{},{},{}\n", 10 * (col - kMargin) + 5, 155 - 10 * row, rolling(col - kMargin, row));
+    }
+    EXPECT_EQ(map.at(3, row), 255);
+  }
+  EXPECT_GT(visible, 50);
+  EXPECT_LT(visible, kGroundCols * kGroundRows - 50);
+  const Result sight = run(Names{"los", wide, "--lines", scratch_.write("lines.csv", lines)} + words);
+  ASSERT_EQ(sight.status, 0) << sight.err;
+  const auto rows = rows_of(sight.out);
+  ASSERT_EQ(rows.size(), expected.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i].at("visible"), expected[i] ? "1" : "0") << i;
+}
+
 // A line, a square with a hole, a polygon smaller than the spacing, and one that leaves the raster.
 std::string shapes_file(const std::string& path) {
   GDALAllRegister();

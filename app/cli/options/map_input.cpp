@@ -211,7 +211,8 @@ void MapInput::refuse_outside(const TablePlace& place, bool lonlat, std::string_
   const std::string hint = swapped_hint(place, lonlat);
   const dvec2 low = place_of(-0.5, rows() - 0.5), high = place_of(cols() - 0.5, -0.5);
   throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} ({})", what,
-                          place.x, place.y, path(), low.x, high.x, low.y, high.y, hint.empty() ? "--coords" : hint));
+                          place.x, place.y, path(), low.x, high.x, low.y, high.y,
+                          hint.empty() ? "--coords; to stand beyond the border, widen it: gdalbuildvrt -te" : hint));
 }
 
 dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) {
