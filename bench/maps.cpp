@@ -20,6 +20,7 @@
 #include "bench/trace_options.h"
 #ifdef SCARP_BENCH_GDAL
 #include "bench/map_programs.h"
+#include "bench/map_reach.h"
 #include "bench/map_task.h"
 #include "bench/protocol.h"
 #include "bench/report.h"
@@ -183,6 +184,14 @@ std::vector<Json> measure_programs(const MapsOptions& options) {
   constexpr int kCumulativeSide = 2048;
   add(programs.measure_cumulative(std::min(sizes.back(), kCumulativeSide)));
   if (!rows.empty()) print_table(lines, 3);
+  std::vector<std::vector<std::string>> reach{{"program", "s", "CPU s", "MB", "x gdal_viewshed", "CPU"}};
+  for (Json& row : measure_reach(options)) {
+    reach.push_back({row["program"], short_number(row["seconds"]), short_number(row["cpu_s"]),
+                     short_number(row["peak_mb"]), short_number(row["gdal_ratio"]),
+                     short_number(row["gdal_cpu_ratio"])});
+    rows.push_back(std::move(row));
+  }
+  if (reach.size() > 1) print_table(reach, 1);
   return rows;
 }
 #endif
@@ -267,6 +276,7 @@ void add_maps(cli::Program& program) {
   command.add(
       &o.observers,
       {.names = "--observers", .help = "observers of a cumulative viewshed", .range = {0, 65533}, .note = "0: none"});
+  command.add(&o.reach, {.names = "--reach", .help = "also measure small parts of 40,000 x 40,000 samples"});
   command.add(
       &o.program_limit_s,
       {.names = "--program-limit", .help = "longest run of a program", .unit = "seconds", .range = cli::kAboveZero});

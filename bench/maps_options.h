@@ -22,6 +22,7 @@ struct MapsOptions {
   std::vector<std::string> programs{"scarp", "gdal_viewshed", "r.viewshed", "r.sunmask", "saga"};
   std::string scarp;             ///< path of the program
   int observers = 500;           ///< number of observers of a cumulative viewshed; 0: none
+  bool reach = false;            ///< whether small parts of a raster of 40,000 x 40,000 are measured, too
   double program_limit_s = 120;  ///< programs that take longer are stopped, and not run at larger sizes
 };
 
