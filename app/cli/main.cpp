@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   const int status = scarp::cli::run_command_line(argc, argv);
 #ifdef NDEBUG
-  // What is left to destroy belongs to libraries, whose destructors only free memory. The system does so faster.
+  // The destructors of libraries would only free memory, which the system does faster.
   std::fflush(nullptr);
   std::_Exit(status);
 #else
