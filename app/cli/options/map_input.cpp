@@ -110,12 +110,18 @@ MapInput::MapInput(const MapOptions& options)
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path(), error.what()));
   }
-  if (geo.crs_wkt.empty()) return;
-  try {
-    lonlat_.emplace(geo, cols(), rows(), Coordinates::lonlat);
-  } catch (const Error& error) {
-    no_lonlat_ = error.what();  // local systems and other bodies need none, unless places do
-  }
+}
+
+const CoordinateFrame* MapInput::find_lonlat() const {
+  std::call_once(lonlat_is_sought_, [&] {
+    if (georeference().crs_wkt.empty()) return;
+    try {
+      lonlat_.emplace(georeference(), cols(), rows(), Coordinates::lonlat);
+    } catch (const Error& error) {
+      no_lonlat_ = error.what();  // local systems and other bodies need none, unless places do
+    }
+  });
+  return lonlat_ ? &*lonlat_ : nullptr;
 }
 
 void MapInput::read(const RasterWindow& part, const Progress& progress) {
@@ -177,7 +183,7 @@ Metadata MapInput::curvature_metadata() const {
 
 std::optional<dvec2> MapInput::find_position(const TablePlace& place, bool lonlat) const {
   std::array points{dvec3(place.x, place.y, 0)};
-  if ((lonlat ? *lonlat_ : *frame_).to_local(points)) return std::nullopt;
+  if ((lonlat ? *find_lonlat() : *frame_).to_local(points)) return std::nullopt;
   return dvec2(points[0].x / georeference().cell_x_m, rows() - 1 - points[0].y / georeference().cell_y_m);
 }
 
@@ -195,7 +201,7 @@ std::string MapInput::swapped_hint(const TablePlace& place, bool lonlat) const {
 }
 
 dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
-  if (lonlat && !lonlat_)
+  if (lonlat && !find_lonlat())
     throw Error(
         fmt::format("{}: {}: {}", path(), what,
                     no_lonlat_.empty() ? "longitude and latitude need a raster with a CRS (--crs)" : no_lonlat_));
@@ -242,9 +248,10 @@ dvec2 MapInput::place_of(double col, double row) const {
 }
 
 std::optional<dvec2> MapInput::lonlat_of(double col, double row) const {
-  if (!lonlat_) return std::nullopt;
+  const CoordinateFrame* const lonlat = find_lonlat();
+  if (!lonlat) return std::nullopt;
   std::array points{dvec3(col * georeference().cell_x_m, (rows() - 1 - row) * georeference().cell_y_m, 0)};
-  if (lonlat_->from_local(points)) return std::nullopt;
+  if (lonlat->from_local(points)) return std::nullopt;
   return dvec2(points[0].x, points[0].y);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -141,6 +142,9 @@ class MapInput {
   std::optional<BilinearGround> bilinear_ground(const HeightField& field) const;
 
  private:
+  // The frame of longitude and latitude; nullptr without a CRS on Earth. Made when it is first needed, because the
+  // search for a transformation takes as long as a small map.
+  const CoordinateFrame* find_lonlat() const;
   // nullopt outside the domain of the CRS.
   std::optional<dvec2> find_position(const TablePlace& place, bool lonlat) const;
   // Whether a position is in one of the raster's pixels, which are half open, as in GDAL.
@@ -164,8 +168,10 @@ class MapInput {
   std::size_t notes_of_file_ = 0;  // those in front of `notes`
   Body body_;
   bool geographic_ = false;
-  std::optional<CoordinateFrame> frame_, lonlat_;
-  std::string no_lonlat_;  // why a raster with a CRS has no longitude and latitude on Earth
+  std::optional<CoordinateFrame> frame_;
+  mutable std::once_flag lonlat_is_sought_;
+  mutable std::optional<CoordinateFrame> lonlat_;
+  mutable std::string no_lonlat_;  // why a raster with a CRS has no longitude and latitude on Earth
   std::optional<MetricPlanes> planes_;
   struct CheckedPlane {
     double reach;
