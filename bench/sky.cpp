@@ -148,7 +148,7 @@ std::vector<double> by_embree(const HeightField& field, const EmbreePeer& peer, 
 
 struct SkyRow {
   std::string engine;
-  double rate, cpu_rate;  // million azimuths of nodes per second of wall-clock and of processor time
+  double rate, cpu_rate;                 // million azimuths of nodes per second of wall-clock and of processor time
   double build_s, error_p50, error_p99;  // degrees
 };
 
@@ -313,7 +313,8 @@ void run_sky(const SkyOptions& options, const ReportOptions& report) {
   if (!options.programs.empty()) return run_programs(options, report);
 #endif
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{{"samples", "threads", "engine", "sky fraction s", "CPU s", "mean error"}};
+  std::vector<std::vector<std::string>> lines{
+      {"samples", "threads", "engine", "sky fraction s", "CPU s", "mean error"}};
   if (!options.maps)
     lines = {{"samples", "threads", "engine", "M node-azimuths/s", "per CPU s", "x faster Embree", "build s",
               "error p50", "p99 degrees"}};
@@ -331,14 +332,14 @@ void run_sky(const SkyOptions& options, const ReportOptions& report) {
       for (const SkyRow& one : found) {
         Json row;
         row["size"] = ground.field.cols(), row["field"] = ground.name, row["threads"] = threads;
-        row["engine"] = one.engine, row["mnodes_azimuths_per_s"] = one.rate, row["of_faster_embree"] = peer > 0 ? Json(one.rate / peer) : Json();
+        row["engine"] = one.engine, row["mnodes_azimuths_per_s"] = one.rate,
+        row["of_faster_embree"] = peer > 0 ? Json(one.rate / peer) : Json();
         row["mnodes_azimuths_per_cpu_s"] = one.cpu_rate;
         row["build_s"] = one.build_s, row["error_p50_deg"] = one.error_p50, row["error_p99_deg"] = one.error_p99;
         lines.push_back({fmt::format("{0} x {0}", ground.field.cols()), fmt::format("{}", threads), one.engine,
                          short_number(row["mnodes_azimuths_per_s"]), short_number(row["mnodes_azimuths_per_cpu_s"]),
-                         short_number(row["of_faster_embree"]),
-                         short_number(row["build_s"]), short_number(row["error_p50_deg"]),
-                         short_number(row["error_p99_deg"])});
+                         short_number(row["of_faster_embree"]), short_number(row["build_s"]),
+                         short_number(row["error_p50_deg"]), short_number(row["error_p99_deg"])});
         rows.push_back(std::move(row));
       }
     }

@@ -57,7 +57,8 @@ TEST(Comanche, ReportsBadInputInOneLineWithoutOutput) {
   };
   const std::vector<Case> cases{
       {{"--look", "comanchee"},
-       "--look 'comanchee': expected shaded, hillshade, height, steps, cost, error, comanche or level:N"},
+       "--look 'comanchee': expected shaded, hillshade, height, steps, cost, error, comanche, slope, aspect, "
+       "multidirectional or level:N"},
       {{"--look", "comanche", "--size", "640x480"}, "--lowres WIDTHxHEIGHT and --pixel-size PX"},
       {{"--look", "steps", "--lowres", "64x48"},
        "applies to the looks shaded, height and comanche, not to 'steps' (other"},
