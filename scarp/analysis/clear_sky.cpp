@@ -48,4 +48,14 @@ ClearSky clear_sky(double altitude, double height, double day_of_year, double li
           outside * diffuse_share(altitude, linke)};
 }
 
+ClearSky clear_sky(double altitude, double height, double day_of_year, double linke,
+                   std::optional<double> transmittance) {
+  if (!transmittance) return clear_sky(altitude, height, day_of_year, linke);
+  if (!(altitude > 0)) return {};
+  const double outside = extraterrestrial(day_of_year);
+  const double at_sea = std::pow(*transmittance, air_mass(altitude, 0));
+  return {outside * std::pow(*transmittance, air_mass(altitude, height)),
+          outside * std::sin(altitude) * (0.2710 - 0.2939 * at_sea)};
+}
+
 }  // namespace scarp

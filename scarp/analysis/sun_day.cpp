@@ -64,6 +64,8 @@ SunPlace::SunPlace(const HeightField& field, const SunPlaceSettings& settings) :
   if (!settings.energy) return;
   require_setting("sun energy", settings.linke >= 1 && settings.linke <= 8, "Linke turbidity", settings.linke,
                   "1 to 8");
+  const double through = settings.transmittance.value_or(1);
+  require_setting("sun energy", through > 0 && through <= 1, "transmittance", through, "above 0, at most 1");
   require_setting("sun energy", settings.albedo >= 0 && settings.albedo <= 1, "albedo", settings.albedo, "0 to 1");
   const dvec3 normal = upward_normal(ground, settings.col, settings.row);
   east_ = normal.x, north_ = normal.y, level_ = normal.z;
@@ -123,7 +125,7 @@ SunDay SunPlace::day(const UtcTime& midnight, double day_of_year) const {
     }
     if (!settings_.energy || end < dark_until) continue;
     const SunPosition middle = track.at((begin + end) / 2);
-    const ClearSky sky = clear_sky(middle.altitude, height_, day_of_year, settings_.linke);
+    const ClearSky sky = clear_sky(middle.altitude, height_, day_of_year, settings_.linke, settings_.transmittance);
     const double azimuth = middle.azimuth - settings_.grid_north, up = std::sin(middle.altitude);
     const double cosine =
         std::cos(middle.altitude) * (std::sin(azimuth) * east_ + std::cos(azimuth) * north_) + up * level_;

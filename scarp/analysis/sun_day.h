@@ -26,7 +26,8 @@ struct SunPlaceSettings {
   int step = 1;  ///< minutes, 1 to 1440
   // For energy only.
   bool energy = false;
-  double linke = 3, albedo = 0.2;  ///< as ClearSkyGround
+  double linke = 3, albedo = 0.2;         ///< as ClearSkyGround
+  std::optional<double> transmittance{};  ///< as ClearSkyGround
 };
 
 struct SunDay {

@@ -23,12 +23,14 @@ class BeamByHeight {
  public:
   static constexpr int kSteps = 32;
 
-  BeamByHeight(const HeightField& field, const SunMoment& moment, double linke)
+  BeamByHeight(const HeightField& field, const SunMoment& moment, const ClearSkyGround& ground)
       : lowest_(field.all_nodata() ? 0 : field.min_height()),
         step_(field.all_nodata() ? 1 : std::max((field.max_height() - field.min_height()) / kSteps, 0x1p-10)) {
     for (int i = 0; i <= kSteps + 1; ++i) {
       const double height = lowest_ + step_ * i;
-      beam_.push_back(static_cast<float>(clear_sky(moment.sun.altitude, height, moment.day_of_year, linke).beam));
+      const ClearSky sky =
+          clear_sky(moment.sun.altitude, height, moment.day_of_year, ground.linke, ground.transmittance);
+      beam_.push_back(static_cast<float>(sky.beam));
     }
   }
 
@@ -55,12 +57,12 @@ class EnergySums {
     const HeightField& field = state.field;
     const HorizonHeights& heights = state.relief->of_nodes();
     for (const SunMoment& moment : moments) {
-      beams_.emplace_back(field, moment, ground.linke);
+      beams_.emplace_back(field, moment, ground);
       const SunDirection& sun = moment.sun;
       towards_.push_back({static_cast<float>(std::sin(sun.azimuth) * std::cos(sun.altitude)),
                           static_cast<float>(std::cos(sun.azimuth) * std::cos(sun.altitude)),
                           static_cast<float>(std::sin(sun.altitude))});
-      const double diffuse = clear_sky(sun.altitude, 0, moment.day_of_year, ground.linke).diffuse;
+      const double diffuse = clear_sky(sun.altitude, 0, moment.day_of_year, ground.linke, ground.transmittance).diffuse;
       diffuse_ += moment.hours * diffuse / 1000;
     }
     for (int row = nodes.row_begin; row < nodes.row_end; ++row) {
@@ -115,6 +117,8 @@ class EnergySums {
 
 void validate(const ClearSkyGround& ground, std::size_t nodes) {
   require_setting("sun energy", ground.linke >= 1 && ground.linke <= 8, "Linke turbidity", ground.linke, "1 to 8");
+  const double through = ground.transmittance.value_or(1);
+  require_setting("sun energy", through > 0 && through <= 1, "transmittance", through, "above 0, at most 1");
   require_setting("sun energy", ground.albedo >= 0 && ground.albedo <= 1, "albedo", ground.albedo, "0 to 1");
   if (ground.sky_view_factor.size() != nodes) throw Error("sun energy: expected a sky view factor for each node");
 }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct ClearSkyGround {
   double linke = 3;                        ///< turbidity, 1 to 8
   double albedo = 0.2;                     ///< of the ground around, 0 to 1
   std::span<const float> sky_view_factor;  ///< SkyMeasure::sky_view_factor of the rows
+  std::optional<double> transmittance{};   ///< above 0, at most 1: instead of `linke` (clear_sky.h)
 };
 
 /// kWh per square metre of ground; NaN on holes.

@@ -81,6 +81,23 @@ TEST(ClearSky, IsDarkAtNight) {
   EXPECT_GT(clear_sky(0.5, 0, 100, 2).beam, clear_sky(0.5, 0, 100, 4).beam);
 }
 
+// Liu and Jordan 1960, with an air mass of 1 in the zenith and 1.995 at 30 degrees (Kasten and Young's table), on the
+// 94th day of a year, when the Earth is at its mean distance: 1367 W/m^2 to 0.1 %.
+TEST(ClearSky, OfATransmittance) {
+  const ClearSky zenith = clear_sky(kPi / 2, 0, 94, 3, 0.7), low = clear_sky(kPi / 6, 0, 94, 3, 0.7);
+  EXPECT_NEAR(zenith.beam, 0.7 * 1367, 2);
+  EXPECT_NEAR(zenith.diffuse, 1367 * (0.2710 - 0.2939 * 0.7), 1);
+  const double through = std::pow(0.7, 1.995);
+  EXPECT_NEAR(low.beam, 1367 * through, 2);
+  EXPECT_NEAR(low.diffuse, 1367 * 0.5 * (0.2710 - 0.2939 * through), 1);
+  // Half of the air is below 5.85 km; the sky is that above the sea.
+  const ClearSky high = clear_sky(kPi / 2, 8434.5 * std::log(2.0), 94, 3, 0.7);
+  EXPECT_NEAR(high.beam, 1367 * std::sqrt(0.7), 2);
+  EXPECT_EQ(high.diffuse, zenith.diffuse);
+  EXPECT_EQ(clear_sky(0, 0, 94, 3, 0.7).beam, 0);
+  EXPECT_EQ(clear_sky(0.5, 100, 94, 3, std::nullopt).beam, clear_sky(0.5, 100, 94, 3).beam);
+}
+
 constexpr int kSide = 41, kMiddle = kSide / 2;
 constexpr double kCell = 50;
 
@@ -135,6 +152,10 @@ TEST(SunEnergy, KeepsHolesAndRefusesSettings) {
   const std::vector<SunMoment> moments{{{1, 0.5}, 1, 10}};
   const std::vector<float> seen(6, 1.0f);
   const ClearSkyGround good{3, 0.2, seen};
+  for (const double none : {0.0, 1.1}) {
+    const ClearSkyGround bad{3, 0.2, seen, none};
+    EXPECT_THROW(sun_hours(horizons, moments, 0, 2, &bad), Error);
+  }
   const SunHours found = sun_hours(horizons, moments, 0, 2, &good);
   EXPECT_TRUE(std::isnan(found.energy.beam[2]) && std::isnan(found.energy.diffuse[2]) &&
               std::isnan(found.energy.reflected[2]));

@@ -245,6 +245,16 @@ TEST_F(SkyMaps, SweepsStateTheirError) {
                  "--engine cannot be combined with --at");
 }
 
+// 1,200 km near 60 degrees north in Mercator's projection: no metric plane fits to half a cell, which maps do not need.
+TEST_F(SkyMaps, SweepsWideRasters) {
+  std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 7800000\ncellsize 20000\n";
+  for (int i = 0; i < 60 * 60; ++i) text += fmt::format("{} ", 100 * (i % 7));
+  const std::string wide = scratch_.write("wide.asc", text);
+  const auto result = run({"skyview", wide, "--crs", "EPSG:3857", "--engine", "sweep", "-o", path("wide.tif")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("angles compared with exact ones"), std::string::npos) << result.out;
+}
+
 #ifdef SCARP_ERFA
 TEST_F(SkyMaps, EnergyIsTheSumOfItsParts) {
   const Names sun = on_dem("sunhours") + Names{"--date", "2026-06-21", "--step", "6", "--cc", "0", "--energy"};
@@ -278,6 +288,15 @@ TEST_F(SkyMaps, EnergyIsTheSumOfItsParts) {
   EXPECT_LT(hazy[2].at(20, 9), 0.8f * bands[2].at(20, 9));
   EXPECT_GT(hazy[3].at(20, 9), 1.2f * bands[3].at(20, 9));
   EXPECT_EQ(hazy[4].at(19, 9), 0);
+  // Half of the beam: half of that outside at the zenith, less below; and the sky is brighter.
+  const auto half = energy_of({"--transmittance", "0.5"});
+  EXPECT_LT(half[2].at(20, 9), 0.6f * bands[2].at(20, 9));
+  EXPECT_GT(half[3].at(20, 9), bands[3].at(20, 9));
+  EXPECT_STREQ(open(path("e.tif"))->GetMetadataItem("TRANSMITTANCE"), "0.5");
+  EXPECT_EQ(open(path("e.tif"))->GetMetadataItem("LINKE_TURBIDITY"), nullptr);
+  expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--energy", "--linke", "2", "--transmittance",
+                                            "0.5", "-o", path("x.tif")},
+                 "cannot be combined");
   expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--albedo", "0.5", "-o", path("x.tif")},
                  "--albedo has no effect without --energy");
 }
@@ -302,6 +321,42 @@ TEST_F(SkyMaps, SunHoursOfAPlainAreTheDay) {
   EXPECT_NEAR(last - first, day, 3.0 / 60);
   // Solar noon at 15 degrees east: the equation of time is 1.9 minutes, and each end is off by half a step at most.
   EXPECT_NEAR((first + last) / 2, 12, 3.0 / 60);
+}
+
+// The sum of masks is the hours of the same steps.
+TEST_F(SkyMaps, MasksOfStepsAddUpToHours) {
+  for (const char* engine : {"exact", "sweep"}) {
+    const Names sun = on_dem("sunhours") + Names{"--date", "2026-12-21", "--step", "30", "--engine", engine};
+    ASSERT_EQ(run(sun + Names{"-o", path("hours.tif")}).status, 0);
+    const auto result = run(sun + Names{"--masks", "-o", path("masks.tif")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto hours = open(path("hours.tif")), masks = open(path("masks.tif"));
+    EXPECT_NE(result.out.find(fmt::format("{} steps with the sun up", masks->GetRasterCount())), std::string::npos);
+    EXPECT_EQ(masks->GetRasterBand(1)->GetRasterDataType(), GDT_Byte);
+    // The day is 8.6 hours long and noon at 11:58.
+    EXPECT_STREQ(masks->GetRasterBand(1)->GetDescription(), "sun 2026-12-21 07:45");
+    EXPECT_EQ(masks->GetRasterCount(), 17);
+    const Pixels all = pixels_of(*hours);
+    std::vector<float> sum(all.samples.size());
+    for (int band = 1; band <= masks->GetRasterCount(); ++band) {
+      const Pixels mask = pixels_of(*masks, band);
+      EXPECT_EQ(mask.at(0, 0), 255);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += mask.samples[i] / 2;
+    }
+    for (std::size_t i = 1; i < sum.size(); ++i) ASSERT_EQ(sum[i], all.samples[i]) << i;
+    EXPECT_LT(all.at(19, 9), all.at(5, 9));
+  }
+  expect_refused(on_dem("sunhours") + Names{"--date", "2026-06-21", "--masks", "--energy", "-o", path("x.tif")},
+                 "--masks cannot be combined with --energy");
+  expect_refused({"sunhours", dem_, "--crs", "EPSG:32633", "--bounds=500000,8900000,500300,8900200", "--date",
+                  "2026-12-21", "--masks", "-o", path("x.tif")},
+                 "the sun does not rise on 2026-12-21");
+}
+
+TEST_F(SkyMaps, RefusesAMillionStepsWithTheirCost) {
+  expect_refused(
+      on_dem("sunhours") + Names{"--date", "2026-01-01", "--to", "2027-12-31", "--step", "1", "-o", path("x.tif")},
+      "1051200 positions of the sun would take about");
 }
 
 // Before anything is opened: there is no model.

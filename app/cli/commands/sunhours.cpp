@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -42,7 +44,8 @@ sky (ESRA model, Rigollier 2000): the sum, and its parts: beam, diffuse and refl
 The sun of each step is that in its middle, at the centre of the raster or, with --sun-per-cell, of
 each block. With --at or --points the output is CSV: date, first_sun, last_sun (local time, to the
 second), hours, and with --energy energy, beam, diffuse, reflected; with --sum month or range period
-instead of the first three. Or, of one point, a picture of the sun's path over the skyline.)";
+instead of the first three. Or, of one point, a picture of the sun's path over the skyline.
+With --masks, pixels are 1 in the sun, 0 in the shade and 255 without a sample, one band per step.)";
 
 // The moments of a period when the sun is up, and the time of day in the middle of each, in hours.
 struct Moments {
@@ -54,8 +57,16 @@ struct Moments {
 struct Step {
   SunAtTime sun;
   double hours, day_of_year;
-  float time;  // of day, in its middle, in hours
+  float time;        // of day, in its middle, in hours
+  std::string name;  // date and time of its middle
 };
+
+// " 09:15", with seconds if there are any.
+std::string clock_text(double minutes) {
+  const auto seconds = static_cast<int>(std::lround(minutes * 60));
+  return fmt::format(" {:02}:{:02}{}", seconds / 3600, seconds / 60 % 60,
+                     seconds % 60 == 0 ? "" : fmt::format(":{:02}", seconds % 60));
+}
 
 std::vector<Step> steps_of(const SunPeriod& period, const SunHoursOptions& options, int offset) {
   std::vector<Step> steps;
@@ -64,7 +75,7 @@ std::vector<Step> steps_of(const SunPeriod& period, const SunHoursOptions& optio
     for (int minute = 0; minute < kMinutesPerDay; minute += options.minutes()) {
       const double length = std::min(options.minutes(), kMinutesPerDay - minute), middle = minute + 0.5 * length;
       steps.push_back({SunAtTime({midnight.day, (middle - offset) / kMinutesPerDay}), length / 60, day_of_year(day),
-                       static_cast<float>(middle / 60)});
+                       static_cast<float>(middle / 60), date_text(day) + clock_text(middle)});
     }
   }
   return steps;
@@ -79,6 +90,39 @@ Moments moments_of(const std::vector<Step>& steps, const EarthPlace& place, bool
     up.time.push_back(step.time);
   }
   return up;
+}
+
+// How much the zenith turns between the centre of the raster and its corners, radians.
+double turn_of_zenith(const MapInput& input) {
+  const Georeference& geo = input.georeference();
+  return std::hypot(geo.cell_x_m * input.cols(), geo.cell_y_m * input.rows()) / input.curvature().diameter;
+}
+
+// The steps of --masks: those when the sun is up at the centre; with a sun per cell, or may be up somewhere. They
+// depend on nothing that differs between parts.
+std::vector<Step> masked_steps(const MapInput& input, const SunHoursOptions& options, int offset,
+                               const EarthPlace& centre) {
+  constexpr double kRefraction = 0.02;  // radians, more than the largest
+  const double lowest = options.per_cell ? -turn_of_zenith(input) - kRefraction : 0;
+  std::vector<Step> steps;
+  for (Step& step : steps_of(periods_of(options).front(), options, offset))
+    if (step.sun.at(centre, options.refraction).altitude > lowest) steps.push_back(std::move(step));
+  if (steps.empty()) throw Error(fmt::format("--masks: the sun does not rise on {}", periods_of(options).front().name));
+  return steps;
+}
+
+// Steps beyond this are taken for a mistake.
+void require_few_steps(const MapInput& input, const SunHoursOptions& options, const std::vector<SunPeriod>& periods) {
+  constexpr double kMost = 1e6, kHour = 3600;
+  const double steps = static_cast<double>((periods.back().last - periods.front().first).count() + 1) *
+                       std::ceil(static_cast<double>(kMinutesPerDay) / options.minutes());
+  if (steps <= kMost) return;
+  const double hours =
+      steps / 2 * input.cols() * input.rows() * options.horizon.node_azimuth_s() / std::thread::hardware_concurrency();
+  throw Error(
+      fmt::format("{:.0f} positions of the sun would take about {:.2g} hours; at most {:.0f} are allowed "
+                  "(choose fewer days, or a longer --step)",
+                  steps, hours / kHour, kMost));
 }
 
 // The pixels of a period. Times are in hours; NaN without sun.
@@ -129,6 +173,34 @@ void add_bands(std::vector<ComputedBand>& bands, const std::string& name, Period
   bands.push_back(number_band("last sun " + name, "h", std::move(found.last)));
 }
 
+// A band of each step: whether the sun shines.
+std::vector<ComputedBand> mask_bands(const Horizons& horizons, const std::vector<HorizonFrame>& blocks,
+                                     const std::vector<EarthPlace>& places, const std::vector<Step>& steps,
+                                     bool refraction, const RowBand& rows, int cols, const Progress& progress) {
+  constexpr std::uint8_t kHole = 255;
+  std::vector<ComputedBand> bands;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    std::vector<std::uint8_t> lit(static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(cols));
+    const auto add = [&](const HorizonFrame& block, const Progress& of_block) {
+      const Moments up = moments_of({steps[i]}, places[static_cast<std::size_t>(&block - blocks.data())], refraction,
+                                    block.grid_north);
+      const SunHours found =
+          sun_hours(horizons.with_cells(block.cells.x, block.cells.y), up.moments, block.nodes, nullptr, of_block);
+      std::vector<std::uint8_t> codes(found.hours.size());
+      std::transform(found.hours.begin(), found.hours.end(), codes.begin(),
+                     [](float hours) { return std::isnan(hours) ? kHole : static_cast<std::uint8_t>(hours > 0); });
+      paste(codes, block, rows, cols, lit);
+    };
+    for_each_frame(blocks, add, progress_part(progress, static_cast<double>(i), static_cast<double>(steps.size())));
+    bands.push_back({"sun " + steps[i].name,
+                     "",
+                     std::move(lit),
+                     kHole,
+                     {{0, "shade", {90, 90, 120, 255}}, {1, "sun", {255, 240, 190, 255}}}});
+  }
+  return bands;
+}
+
 EarthPlace place_of_sun(const MapInput& input, const dvec2& at, double height) {
   const auto lonlat = input.lonlat_of(at.x, at.y);
   if (!lonlat) throw Error(fmt::format("{}: the sun's position needs a raster with a CRS (give --crs)", input.path()));
@@ -138,13 +210,32 @@ EarthPlace place_of_sun(const MapInput& input, const dvec2& at, double height) {
 // Between the corners of a raster and its centre, the zenith turns by their distance.
 void note_one_sun(MapInput& input, const SunHoursOptions& options) {
   constexpr double kWorthANote = 0.05;  // degrees
-  const Georeference& geo = input.georeference();
-  const double across = std::hypot(geo.cell_x_m * input.cols(), geo.cell_y_m * input.rows());
-  const double off = across / input.curvature().diameter * kDegreesPerRadian;
+  const double off = turn_of_zenith(input) * kDegreesPerRadian;
   if (options.per_cell || off <= kWorthANote) return;
   input.notes.push_back(
       fmt::format("one sun for the whole raster, that at its centre; it is up to {:.2g} degrees off in the corners{}",
                   off, options.horizon.swept() ? "" : " (--sun-per-cell)"));
+}
+
+Metadata sun_metadata(const SunHoursOptions& options, const MapInput& input, const HorizonFrames& frames,
+                      const std::vector<SunPeriod>& periods, int offset) {
+  Metadata metadata = horizon_metadata(options.horizon, input);
+  for (auto& pair : frames.metadata()) metadata.push_back(std::move(pair));
+  metadata.emplace_back("SUN", options.per_cell ? "at the middle of each block" : "at the centre of the raster");
+  metadata.emplace_back("STEP", fmt::format("{} minutes", options.minutes()));
+  metadata.emplace_back("UTC_OFFSET", offset_text(offset));
+  metadata.emplace_back("DATES", dates_text(periods.front().first, periods.back().last));
+  metadata.emplace_back("REFRACTION", options.refraction ? "standard atmosphere" : "none");
+  if (!options.energy) return metadata;
+  if (options.transmittance) {
+    metadata.emplace_back("ENERGY", "beam by transmittance^(air mass), diffuse by Liu and Jordan 1960");
+    metadata.emplace_back("TRANSMITTANCE", fmt::format("{:.10g}", *options.transmittance));
+  } else {
+    metadata.emplace_back("ENERGY", "clear sky of the European Solar Radiation Atlas (Rigollier 2000)");
+    metadata.emplace_back("LINKE_TURBIDITY", fmt::format("{:.10g}", options.linke));
+  }
+  metadata.emplace_back("ALBEDO", fmt::format("{:.10g}", options.albedo));
+  return metadata;
 }
 
 void run(SunHoursOptions options, const Command& command) {
@@ -154,8 +245,9 @@ void run(SunHoursOptions options, const Command& command) {
   const chrono::sys_days from = periods.front().first, to = periods.back().last;
   const auto count = static_cast<double>(periods.size()), days = static_cast<double>((to - from).count() + 1);
   const std::optional<int> typed_offset = offset_of(options.offset);
-  MapRun run(options, command, "Float32");
+  MapRun run(options, command, options.masks ? "Byte" : "Float32");
   MapInput& input = run.input();
+  require_few_steps(input, options, periods);
   const double longitude = place_of_sun(input, input.centre(), 0).longitude * kDegreesPerRadian;
   const HorizonFrames frames(input, options.horizon, options.plane_error,
                              options.per_cell ? FrameUse::suns : FrameUse::lengths);
@@ -167,22 +259,13 @@ void run(SunHoursOptions options, const Command& command) {
   run.set_reach(options.horizon.reach());
   // Not from the samples of a part: all parts have the same sun.
   const double height = options.raster_output.dry_run ? 0 : input.height_at_centre().value_or(0);
-  const int bands_per_period = 1 + (options.energy ? 4 : 0) + (options.first_last ? 2 : 0);
-  const double suns = days * kMinutesPerDay / options.minutes() / 2 + (options.energy ? kSkyAzimuths : 0);
-  if (!run.begin(29 + 4 * count * bands_per_period, suns * options.horizon.node_azimuth_s())) return;
   const EarthPlace place = place_of_sun(input, input.centre(), height);
-  Metadata metadata = horizon_metadata(options.horizon, input);
-  for (auto& pair : frames.metadata()) metadata.push_back(std::move(pair));
-  metadata.emplace_back("SUN", options.per_cell ? "at the middle of each block" : "at the centre of the raster");
-  metadata.emplace_back("STEP", fmt::format("{} minutes", options.minutes()));
-  metadata.emplace_back("UTC_OFFSET", offset_text(offset));
-  metadata.emplace_back("DATES", dates_text(from, to));
-  metadata.emplace_back("REFRACTION", options.refraction ? "standard atmosphere" : "none");
-  if (options.energy) {
-    metadata.emplace_back("ENERGY", "clear sky of the European Solar Radiation Atlas (Rigollier 2000)");
-    metadata.emplace_back("LINKE_TURBIDITY", fmt::format("{:.10g}", options.linke));
-    metadata.emplace_back("ALBEDO", fmt::format("{:.10g}", options.albedo));
-  }
+  std::vector<Step> masked;
+  if (options.masks) masked = masked_steps(input, options, offset, place);
+  const int bands_per_period = 1 + (options.energy ? 4 : 0) + (options.first_last ? 2 : 0);
+  const double bytes = options.masks ? static_cast<double>(masked.size()) : 4 * count * bands_per_period;
+  const double suns = days * kMinutesPerDay / options.minutes() / 2 + (options.energy ? kSkyAzimuths : 0);
+  if (!run.begin(29 + bytes, suns * options.horizon.node_azimuth_s())) return;
   double longest = 0;
   std::optional<Horizons> horizons;
   std::optional<SkyView> sky;
@@ -204,8 +287,16 @@ void run(SunHoursOptions options, const Command& command) {
     };
     if (sky) for_each_frame(blocks, see, terminal_progress("sky view"));
     const int cols = input.part().cols;
-    const std::vector<float> nothing(static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(cols));
     azimuths.clear();
+    const auto remember = [&](const std::vector<Step>& steps) {
+      for (const SunMoment& moment : moments_of(steps, place, options.refraction, 0).moments)
+        azimuths.push_back(moment.sun.azimuth);
+    };
+    if (options.masks) {
+      remember(masked);
+      return mask_bands(*horizons, blocks, places, masked, options.refraction, rows, cols, progress);
+    }
+    const std::vector<float> nothing(static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(cols));
     std::vector<ComputedBand> bands;
     for (std::size_t i = 0; i < periods.size(); ++i) {
       const std::vector<Step> steps = steps_of(periods[i], options, offset);
@@ -214,16 +305,14 @@ void run(SunHoursOptions options, const Command& command) {
       if (options.energy) pixels.energy = {nothing, nothing, nothing};
       const auto add = [&](const HorizonFrame& block, const Progress& of_block) {
         const std::size_t number = number_of(block);
-        const ClearSkyGround ground{options.linke, options.albedo, seen[number]};
+        const ClearSkyGround ground{options.linke, options.albedo, seen[number], options.transmittance};
         const Moments up = moments_of(steps, places[number], options.refraction, block.grid_north);
         SunHours found = sun_hours(horizons->with_cells(block.cells.x, block.cells.y), up.moments, block.nodes,
                                    options.energy ? &ground : nullptr, of_block);
         paste_pixels(pixels_of(std::move(found), up, options.first_last), block, rows, cols, pixels);
       };
       for_each_frame(blocks, add, progress_part(progress, static_cast<double>(i), count));
-      if (options.horizon.swept())
-        for (const SunMoment& moment : moments_of(steps, place, options.refraction, 0).moments)
-          azimuths.push_back(moment.sun.azimuth);
+      remember(steps);
       for (const float hours : pixels.hours) longest = std::fmax(longest, static_cast<double>(hours));
       add_bands(bands, periods[i].name, std::move(pixels), options);
     }
@@ -231,11 +320,13 @@ void run(SunHoursOptions options, const Command& command) {
   };
   const auto summary = [&] {
     const std::string errors = horizon_errors_text(options.horizon, input, azimuths, run.rows());
-    return fmt::format("{} {}, at most {:.4g} hours of sun; {}{}", periods.size(),
-                       periods.size() == 1 ? "period" : "periods", longest, input.curvature_text(), errors);
+    const std::string what = options.masks ? fmt::format("{} steps with the sun up", masked.size())
+                                           : fmt::format("{} {}, at most {:.4g} hours of sun", periods.size(),
+                                                         periods.size() == 1 ? "period" : "periods", longest);
+    return fmt::format("{}; {}{}", what, input.curvature_text(), errors);
   };
   run.write({horizon_method(options.horizon) + kSunHoursMethod,
-             metadata,
+             sun_metadata(options, input, frames, periods, offset),
              "viridis",
              compute,
              summary,
@@ -297,6 +388,10 @@ void add_sunhours(Program& program) {
                               .rules = {needs("--sum day, or a single day",
                                               [&o] { return o.period() == "day" || o.to.empty() || o.to == o.from; })},
                               .excludes = of_maps});
+  command.add(&o.masks, {.names = "--masks",
+                         .help = "instead of hours: a band per step with the sun up, 1 in the sun, 0 in the shade",
+                         .common = true,
+                         .excludes = {"--at", "--points", "--sum", "--first-last", "--energy"}});
   command.add(&o.energy, {.names = "--energy",
                           .help = "additional bands or columns: energy under a clear sky",
                           .common = true,
@@ -308,6 +403,15 @@ void add_sunhours(Program& program) {
                          .range = {1, 8},
                          .common = true,
                          .rules = {with_energy}});
+  command.add(&o.transmittance, {.names = "--transmittance",
+                                 .value = "T",
+                                 .help = "share of the sun's beam that comes down to the sea from the zenith",
+                                 .range = {0.1, 1},
+                                 .note = "instead of --linke; clear sky 0.6 to 0.7",
+                                 .fallback = "none",
+                                 .common = true,
+                                 .rules = {with_energy},
+                                 .excludes = {"--linke"}});
   command.add(&o.albedo, {.names = "--albedo",
                           .value = "A",
                           .help = "share of light that the ground reflects; snow 0.8",

@@ -66,6 +66,7 @@ PointOfSun point_of(const SunHoursOptions& options, MapInput& input, const Horiz
   settings.horizon = point.horizon;
   settings.step = options.minutes();
   settings.energy = options.energy, settings.linke = options.linke, settings.albedo = options.albedo;
+  settings.transmittance = options.transmittance;
   return point;
 }
 

@@ -17,8 +17,9 @@ struct SunHoursOptions : MapCommand {
   std::string from, to, offset, sum, at, size;
   PlaceFile points;
   std::optional<int> step;
-  bool refraction = false, first_last = false, energy = false, per_cell = false;
+  bool refraction = false, first_last = false, energy = false, per_cell = false, masks = false;
   double linke = 3, albedo = 0.2;
+  std::optional<double> transmittance;
   HorizonInput horizon;
 
   bool at_points() const { return !at.empty() || !points.path.empty(); }

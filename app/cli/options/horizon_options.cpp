@@ -51,9 +51,8 @@ std::string horizon_method(const HorizonInput& horizon) {
 std::string horizon_errors_text(const HorizonInput& horizon, MapInput& input, std::span<const double> azimuths,
                                 const RowBand& rows) {
   if (!horizon.swept()) return "";
-  const dvec2 at = input.centre();
-  const HeightField field = input.field_at(at.x, at.y, HUGE_VAL);
-  const double grid_north = input.grid_north_at(at.x, at.y, HUGE_VAL);
+  const HeightField field = input.whole_field(HUGE_VAL);
+  const double grid_north = input.whole_grid_north();
   std::vector<double> directions;
   for (const double azimuth : azimuths) directions.push_back(azimuth - grid_north);
   const HorizonErrors errors = sampled_horizon_errors(field, horizon_settings(horizon, input), directions, rows);
