@@ -117,6 +117,19 @@ Content content_of(const std::string& path) {
   return content;
 }
 
+// Horizons, sky views and hours of sun, by both engines.
+std::vector<Names> sky_maps() {
+  std::vector<Names> kinds;
+  for (const char* engine : {"exact", "sweep"}) {
+    kinds.push_back({"horizon", "--azimuths", "3", "--distance", "--farthest", "--engine", engine});
+    kinds.push_back({"skyview", "--azimuths", "6", "--measure", "sky-view-factor", "--engine", engine});
+#ifdef SCARP_ERFA
+    kinds.push_back({"sunhours", "--date", "2026-06-21", "--step", "240", "--first-last", "--engine", engine});
+#endif
+  }
+  return kinds;
+}
+
 // Every kind of map, of an observer or a sun near the model's middle.
 std::vector<Names> kinds_of_maps() {
   const Names seen{"viewshed", "--observer", "500200,4996000,9"};
@@ -127,14 +140,12 @@ std::vector<Names> kinds_of_maps() {
                            seen + Names{"--max-distance", "1500", "--out-of-range-value", "9"},
                            {"shadow", "--sun", "135,20", "--sun", "10,6"},
                            {"shadow", "--sun", "271,30", "--fraction", "--surface", "bilinear"},
-                           {"horizon", "--azimuths", "3", "--distance", "--farthest"},
-                           {"horizon", "--azimuths", "3", "--max-distance", "700", "--pack"},
-                           {"skyview", "--azimuths", "6", "--measure", "sky-view-factor"},
-                           {"skyview", "--azimuths", "6", "--engine", "sweep"}};
+                           {"horizon", "--azimuths", "3", "--max-distance", "700", "--pack"}};
+  for (Names& sky : sky_maps()) kinds.push_back(std::move(sky));
 #ifdef SCARP_ERFA
   kinds.push_back({"shadow", "--time", "2026-06-21T09:00+02:00"});
   kinds.push_back({"shadow", "--time", "2026-12-21T10:00+02:00", "--sun-per-cell"});
-  kinds.push_back({"sunhours", "--date", "2026-06-21", "--step", "240", "--first-last"});
+  kinds.push_back({"sunhours", "--date", "2026-06-21", "--step", "240", "--masks", "--sun-per-cell"});
 #endif
   return kinds;
 }
@@ -153,6 +164,8 @@ TEST_F(MapLimits, IsTheSameInPartsAndStrips) {
     EXPECT_TRUE(written(words + Names{"--resume"}, "strips.tif") == all);
     EXPECT_FALSE(fs::exists(path("strips.tif.resume")));
     EXPECT_TRUE(written(words + Names{"--memory", "256M"}, "files.tif") == all);
+    EXPECT_TRUE(written(words + Names{"--threads", "1"}, "one.tif") == all);
+    EXPECT_TRUE(written(words + Names{"--threads", "2"}, "two.tif") == all);
     const int parts = whole(2, 5);
     std::vector<std::string> names;
     for (int part = 1; part <= parts; ++part) {
@@ -163,6 +176,17 @@ TEST_F(MapLimits, IsTheSameInPartsAndStrips) {
     std::shuffle(names.begin(), names.end(), random_);
     written(Names{"merge"} + names, "merged.tif");
     EXPECT_TRUE(content_of(path("merged.tif")) == content_of(path("all.tif")));
+  }
+}
+
+// Heights, horizons and results take more than the 40 MB that this limit keeps in memory.
+TEST_F(MapLimits, SkyMapsAreTheSameInFiles) {
+  const std::string dem = model("dem.tif", 1500, 1600, GDT_Int16);
+  for (Names words : sky_maps()) {
+    words.insert(words.begin() + 1, dem);
+    SCOPED_TRACE(fmt::format("{}", fmt::join(words, " ")));
+    const std::string all = written(words, "all.tif");
+    EXPECT_TRUE(written(words + Names{"--memory", "256M", "--threads", "1"}, "files.tif") == all);
   }
 }
 
@@ -202,23 +226,31 @@ TEST_F(MapLimits, PutsArraysBeyondTheLimitIntoFiles) {
 TEST_F(MapLimits, GoesOnAfterAKill) {
   using namespace std::chrono_literals;
   const std::string dem = model("dem.tif", 300, 2600, GDT_Float32);
-  const Names words{"skyview", dem, "--azimuths", "24", "--threads", "1"};
-  const std::string all = written(words, "all.tif"), output = path("killed.tif"), journal = output + ".resume";
-  const Names resumed = words + Names{"--resume", "-o", output};
-  constexpr std::uintmax_t kAStrip = 300 * 256 * sizeof(float);
-  {
-    Program program(resumed);
-    // Ends with the first strip on the disk, or in the middle of writing another one.
-    for (std::error_code none; !fs::exists(output) && !(fs::file_size(journal, none) > kAStrip && !none);)
-      std::this_thread::sleep_for(1ms);
+  const std::string output = path("killed.tif"), journal = output + ".resume";
+  Names resumed;
+  for (Names words : sky_maps()) {
+    // One thread has more time to be killed in.
+    words.insert(words.begin() + 1, {dem, "--threads", "1"});
+    SCOPED_TRACE(fmt::format("{}", fmt::join(words, " ")));
+    const std::string all = written(words, "all.tif");
+    resumed = words + Names{"--resume", "-o", output};
+    const auto map = GDALDatasetUniquePtr(GDALDataset::Open(path("all.tif").c_str(), GDAL_OF_RASTER));
+    const auto a_strip = static_cast<std::uintmax_t>(map->GetRasterCount()) * 300 * 261 * sizeof(float);
+    {
+      Program program(resumed);
+      // Ends with the first strip on the disk, or in the middle of writing another one.
+      for (std::error_code none; !fs::exists(output) && !(fs::file_size(journal, none) > a_strip && !none);)
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_FALSE(fs::exists(output));
+    expect_refused({"skyview", dem, "--azimuths", "25", "--resume", "-o", output}, "was begun by another command");
+    const Result result = run(resumed);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find("of 2600 rows were done"), std::string::npos) << result.err;
+    EXPECT_TRUE(text_of(output) == all);
+    EXPECT_FALSE(fs::exists(journal));
+    fs::remove(output);
   }
-  EXPECT_FALSE(fs::exists(output));
-  expect_refused({"skyview", dem, "--azimuths", "25", "--resume", "-o", output}, "was begun by another command");
-  const Result result = run(resumed);
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("of 2600 rows were done"), std::string::npos) << result.err;
-  EXPECT_TRUE(text_of(output) == all);
-  EXPECT_FALSE(fs::exists(journal));
   // Another input under the same name.
   { MapJournal(output, "of another run"); }
   expect_refused(resumed, "was begun by another command");
