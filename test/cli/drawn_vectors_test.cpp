@@ -126,8 +126,7 @@ TEST_F(DrawnVectors, RejectsWhatCannotBeDrawn) {
   const Names map{"render", dem_, "--crs", "EPSG:32633", "--top", "-o", path("a.png")};
   const std::string file = shapes();
   expect_refused(map + Names{"--draw", path("no.gpkg")}, "no.gpkg");
-  expect_refused(map + Names{"--draw", file, "--draw-label", "height"},
-                 "no column 'height' for --draw-label (columns: ");
+  expect_refused(map + Names{"--draw", file, "--draw-label", "height"}, "--draw-label 'height': no such column in ");
   expect_refused(map + Names{"--draw-label", "name"}, "--draw-label has no effect without --draw FILE");
   expect_refused({"render", dem_, "-o", path("a.png"), "--draw", file}, "--draw has no effect without --top");
   expect_refused(on_dem("viewshed") + Names{"--observer", "500055,5000055", "--draw", file, "-o", path("a.tif")},
