@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Vectors and observers on maps: `render --top --draw`, and previews.
 #include <fmt/format.h>
-#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "cli/maps_cli.h"
+#include "cli/vector_package.h"
 #include "output/read_png.h"
 
 namespace scarp::test {
@@ -25,28 +25,12 @@ class DrawnVectors : public MapsCli {
  protected:
   // A line to the east, a square with a hole, and a point.
   std::string shapes() const {
-    GDALAllRegister();
-    const GDALDatasetUniquePtr file(GetGDALDriverManager()->GetDriverByName("GPKG")->Create(
-        path("shapes.gpkg").c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    OGRSpatialReference utm;
-    utm.importFromEPSG(32633);
-    OGRLayer* layer = file->CreateLayer("shapes", &utm, wkbUnknown, nullptr);
-    OGRFieldDefn name("name", OFTString);
-    EXPECT_EQ(layer->CreateField(&name), OGRERR_NONE);
-    const auto add = [&](const char* called, const char* wkt) {
-      OGRFeature feature(layer->GetLayerDefn());
-      OGRGeometry* geometry = nullptr;
-      OGRGeometryFactory::createFromWkt(wkt, &utm, &geometry);
-      feature.SetGeometryDirectly(geometry);
-      feature.SetField("name", called);
-      EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
-    };
-    add("road", "LINESTRING (500025 5000185, 500125 5000185)");
-    add("park",
-        "POLYGON ((500155 5000045, 500255 5000045, 500255 5000145, 500155 5000145, 500155 5000045),"
-        "(500185 5000075, 500225 5000075, 500225 5000115, 500185 5000115, 500185 5000075))");
-    add("mast", "POINT (500055 5000055)");
-    return path("shapes.gpkg");
+    return vector_package(path("shapes.gpkg"),
+                          {{"shapes", "road", "LINESTRING (500025 5000185, 500125 5000185)"},
+                           {"shapes", "park",
+                            "POLYGON ((500155 5000045, 500255 5000045, 500255 5000145, 500155 5000145, 500155 5000045),"
+                            "(500185 5000075, 500225 5000075, 500225 5000115, 500185 5000115, 500185 5000075))"},
+                           {"shapes", "mast", "POINT (500055 5000055)"}});
   }
   // A picture with 3 x 3 pixels per metre.
   Rgb render(const Names& options) const {

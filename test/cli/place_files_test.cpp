@@ -4,7 +4,6 @@
 #include <gdal_alg.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
-#include <ogrsf_frmts.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -13,6 +12,7 @@
 
 #include "cli/csv_rows.h"
 #include "cli/program.h"
+#include "cli/vector_package.h"
 
 namespace scarp::test {
 namespace {
@@ -51,22 +51,9 @@ class PlaceFiles : public testing::Test {
 
   // A GeoPackage with the layers roads, of a line, and towers and masts, of a point each.
   std::string layers() const {
-    const GDALDatasetUniquePtr file(
-        GetGDALDriverManager()->GetDriverByName("GPKG")->Create(path("a.gpkg").c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    OGRSpatialReference utm;
-    utm.importFromEPSG(32633);
-    const auto add = [&](const char* name, OGRwkbGeometryType type, const char* wkt) {
-      OGRLayer* layer = file->CreateLayer(name, &utm, type, nullptr);
-      OGRFeature feature(layer->GetLayerDefn());
-      OGRGeometry* geometry = nullptr;
-      OGRGeometryFactory::createFromWkt(wkt, &utm, &geometry);
-      feature.SetGeometryDirectly(geometry);
-      EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
-    };
-    add("roads", wkbLineString, "LINESTRING (500105 5000105, 500185 5000105)");
-    add("towers", wkbPoint, "POINT (500105 5000105)");
-    add("masts", wkbPoint, "POINT (500275 5000105)");
-    return path("a.gpkg");
+    return vector_package(path("a.gpkg"), {{"roads", "road", "LINESTRING (500105 5000105, 500185 5000105)"},
+                                           {"towers", "tower", "POINT (500105 5000105)"},
+                                           {"masts", "mast", "POINT (500275 5000105)"}});
   }
 
   Scratch scratch_;

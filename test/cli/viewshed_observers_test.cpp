@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
-#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <cmath>
-
 #include <set>
 #include <string>
 #include <vector>
 
 #include "cli/csv_rows.h"
 #include "cli/maps_cli.h"
+#include "cli/vector_package.h"
 
 namespace scarp::test {
 namespace {
@@ -173,29 +172,13 @@ TEST_F(ViewshedObservers, ObserversStandBeyondTheBorderOfAWidenedRaster) {
 
 // A line, a square with a hole, a polygon smaller than the spacing, and one that leaves the raster.
 std::string shapes_file(const std::string& path) {
-  GDALAllRegister();
-  const GDALDatasetUniquePtr file(
-      GetGDALDriverManager()->GetDriverByName("GPKG")->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  OGRSpatialReference utm;
-  utm.importFromEPSG(32633);
-  OGRLayer* layer = file->CreateLayer("shapes", &utm, wkbUnknown, nullptr);
-  OGRFieldDefn name("name", OFTString);
-  EXPECT_EQ(layer->CreateField(&name), OGRERR_NONE);
-  const auto add = [&](const char* called, const char* wkt) {
-    OGRFeature feature(layer->GetLayerDefn());
-    OGRGeometry* geometry = nullptr;
-    OGRGeometryFactory::createFromWkt(wkt, &utm, &geometry);
-    feature.SetGeometryDirectly(geometry);
-    feature.SetField("name", called);
-    EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
-  };
-  add("road", "LINESTRING (500015 5000015, 500055 5000015)");
-  add("park",
-      "POLYGON ((500095 5000045, 500195 5000045, 500195 5000105, 500095 5000105, 500095 5000045),"
-      "(500135 5000065, 500155 5000065, 500155 5000085, 500135 5000085, 500135 5000065))");
-  add("hut", "MULTIPOLYGON (((500254 5000154, 500256 5000154, 500255 5000157, 500254 5000154)))");
-  add("far", "POLYGON ((500254 5000154, 500256 5000154, 600255 5000156, 500254 5000154))");
-  return path;
+  return vector_package(
+      path, {{"shapes", "road", "LINESTRING (500015 5000015, 500055 5000015)"},
+             {"shapes", "park",
+              "POLYGON ((500095 5000045, 500195 5000045, 500195 5000105, 500095 5000105, 500095 5000045),"
+              "(500135 5000065, 500155 5000065, 500155 5000085, 500135 5000085, 500135 5000065))"},
+             {"shapes", "hut", "MULTIPOLYGON (((500254 5000154, 500256 5000154, 500255 5000157, 500254 5000154)))"},
+             {"shapes", "far", "POLYGON ((500254 5000154, 500256 5000154, 600255 5000156, 500254 5000154))"}});
 }
 
 TEST_F(ViewshedObservers, ObserversStandAlongLinesAndOverPolygons) {
