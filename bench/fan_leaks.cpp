@@ -65,7 +65,8 @@ dvec3 make_eye(const HeightField& f, Random& random) {
       case 1:
         return static_cast<double>(random.below(cells + 1));
       case 2:
-        return random.uniform() * cells * 1000;
+        // Rays along lines visit each cell of the copies between.
+        return random.uniform() * cells * (f.wraps() ? 10 : 1000);
       default:
         return random.uniform() * cells;
     }
@@ -251,7 +252,9 @@ class FanLeaks {
       if (!is_followable(ray)) ray.direction = {0, 0, -1}, sights[i] = {-std::numeric_limits<float>::infinity(), 0};
       // Changed by less than half a unit of the last digit.
       for (int axis = 0; axis < 3; ++axis) ray.direction[axis] *= 1 + random.uniform(-0.99, 0.99) * 0x1p-25;
-      if (random.below(4) == 0) ray.t_max = 2 * random.uniform() * std::max(ground.field.width(), 1.0);
+      // Distances, as aimed rays are as long as the way to their node.
+      if (random.below(4) == 0)
+        ray.t_max = 2 * random.uniform() * std::max(ground.field.width(), 1.0) / length(ray.direction);
       precise.push_back(ray);
     }
     std::vector<Hit> hits(kPiece);

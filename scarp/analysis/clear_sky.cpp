@@ -55,7 +55,7 @@ ClearSky clear_sky(double altitude, double height, double day_of_year, double li
   const double outside = extraterrestrial(day_of_year);
   const double at_sea = std::pow(*transmittance, air_mass(altitude, 0));
   return {outside * std::pow(*transmittance, air_mass(altitude, height)),
-          outside * std::sin(altitude) * (0.2710 - 0.2939 * at_sea)};
+          outside * std::sin(altitude) * std::max(0.0, 0.2710 - 0.2939 * at_sea)};
 }
 
 }  // namespace scarp

@@ -12,7 +12,7 @@
 
 namespace scarp {
 
-/// Watts per square metre.
+/// Watts per square metre, 0 or more.
 struct ClearSky {
   double beam = 0;     ///< on a plane that faces the sun
   double diffuse = 0;  ///< of the whole sky, on a horizontal plane
@@ -22,9 +22,10 @@ struct ClearSky {
 /// `day_of_year`: 1 to 366. `linke`: turbidity of Linke for an air mass of 2, 1 (clean and dry) to 8 (polluted).
 ClearSky clear_sky(double altitude, double height, double day_of_year, double linke);
 
-/// With a transmittance, 0 to 1, that of the beam from the zenith down to the sea, instead of `linke`: the beam is
-/// transmittance^(air mass) of that outside the atmosphere, and the diffuse 0.2710 - 0.2939 transmittance^(air mass
-/// above the sea) of what falls on a horizontal plane there. nullopt: by `linke`.
+/// With a transmittance, above 0, at most 1, that of the beam from the zenith down to the sea, instead of `linke`: the
+/// beam is transmittance^(air mass) of that outside the atmosphere, and the diffuse 0.2710 - 0.2939 transmittance^(air
+/// mass above the sea) of what falls on a horizontal plane there; 0 where that is negative, in air clearer than the
+/// formula's. nullopt: by `linke`.
 ClearSky clear_sky(double altitude, double height, double day_of_year, double linke,
                    std::optional<double> transmittance);
 

@@ -65,7 +65,8 @@ class Horizons {
   /// for rows outside the field and for none; Interrupted.
   HorizonRows rows(double azimuth, int first, int last, bool distances = false, const Progress& progress = {}) const;
 
-  /// The same of a block of nodes, at least one. The engine sweep sweeps whole lines.
+  /// The same of a block of nodes, in rows of the block. The engine sweep sweeps whole lines. Throws Error for an empty
+  /// block and for nodes outside the field; Interrupted.
   HorizonRows block(double azimuth, const NodeRect& nodes, bool distances = false, const Progress& progress = {}) const;
 
   /// The same heights, shared, with cells of other lengths in metres: for nodes in a part of a field whose cells vary.

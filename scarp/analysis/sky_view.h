@@ -42,8 +42,10 @@ class SkyView {
   /// Horizons::rows() does.
   std::vector<std::vector<float>> rows(int first, int last, const Progress& progress = {}) const;
 
-  /// As Horizons has them.
+  /// The same of a block of nodes, at least one: nodes.count() values of each measure, in rows of the block. Throws as
+  /// Horizons::block() does.
   std::vector<std::vector<float>> block(const NodeRect& nodes, const Progress& progress = {}) const;
+  /// The same heights with cells of other lengths, as Horizons::with_cells().
   SkyView with_cells(double cell_x, double cell_y) const;
 
  private:

@@ -51,7 +51,7 @@ struct SunHours {
 SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, int first, int last,
                    const ClearSkyGround* ground = nullptr, const Progress& progress = {});
 
-/// The same of a block of nodes, at least one.
+/// The same of a block of nodes, in rows of the block. Throws Error for an empty block and for nodes outside the field.
 SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments, const NodeRect& nodes,
                    const ClearSkyGround* ground = nullptr, const Progress& progress = {});
 

@@ -187,7 +187,7 @@ TEST(Viewshed, RejectsBadInput) {
   EXPECT_THROW(viewshed(field, {0, 0}, {.observer_z = 0.5}), Error);
   EXPECT_THROW(viewshed(field, {0, 0}, {.observer_height = -1}), Error);
   EXPECT_THROW(viewshed(field, {0, 0}, {.target_height = std::nan("")}), Error);
-  EXPECT_THROW(viewshed(field, {0, 0}, {.curvature = {.coefficient = 2}}), Error);
+  EXPECT_THROW(viewshed(field, {0, 0}, {.curvature = {.coefficient = 11}}), Error);
   EXPECT_THROW(viewshed(field, {0, 0}, {.min_distance = 5, .max_distance = 1}), Error);
   EXPECT_THROW(viewshed(field, {0, 0}, {.first_azimuth = 7}), Error);
   EXPECT_THROW(shadow(field, {.altitude = 0}), Error);

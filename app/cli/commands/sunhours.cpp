@@ -98,8 +98,8 @@ double turn_of_zenith(const MapInput& input) {
   return std::hypot(geo.cell_x_m * input.cols(), geo.cell_y_m * input.rows()) / input.curvature().diameter;
 }
 
-// The steps of --masks: those when the sun is up at the centre; with a sun per cell, or may be up somewhere. They
-// depend on nothing that differs between parts.
+// The steps of --masks: those when the sun is up at the centre; with a sun per cell, those when it may be up anywhere.
+// They depend on nothing that differs between parts.
 std::vector<Step> masked_steps(const MapInput& input, const SunHoursOptions& options, int offset,
                                const EarthPlace& centre) {
   constexpr double kRefraction = 0.02;  // radians, more than the largest
@@ -117,12 +117,12 @@ void require_few_steps(const MapInput& input, const SunHoursOptions& options, co
   const double steps = static_cast<double>((periods.back().last - periods.front().first).count() + 1) *
                        std::ceil(static_cast<double>(kMinutesPerDay) / options.minutes());
   if (steps <= kMost) return;
-  const double hours =
+  const double seconds =
       steps / 2 * input.cols() * input.rows() * options.horizon.node_azimuth_s() / std::thread::hardware_concurrency();
   throw Error(
       fmt::format("{:.0f} positions of the sun would take about {:.2g} hours; at most {:.0f} are allowed "
                   "(choose fewer days, or a longer --step)",
-                  steps, hours / kHour, kMost));
+                  steps, seconds / kHour, kMost));
 }
 
 // The pixels of a period. Times are in hours; NaN without sun.

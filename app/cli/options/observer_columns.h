@@ -36,8 +36,8 @@ class ObserverColumns {
 
   bool has(ObserverColumn column) const { return at(column).has_value(); }
   /// Returns nullopt without the column, and for an empty cell. Throws Error naming the row if the cell is not a finite
-  /// number, or negative for a height above ground or a distance. Negative radii of ArcGIS are horizontal distances, as
-  /// all distances here.
+  /// number, or negative for a height above ground. Negative radii of ArcGIS are horizontal distances, as all distances
+  /// here.
   std::optional<double> number(std::size_t row, ObserverColumn column) const;
   /// Returns the name in a row; empty without one.
   std::string name(std::size_t row) const;

@@ -3,10 +3,10 @@
 // and its eight neighbours, as gdaldem computes them. Where a hit is not on a height field, its normal is used.
 //
 //   slope             degrees, 0 to 90
-//   aspect            azimuth of the steepest descent in degrees clockwise from grid north, 0 up to 360; none where
-//   flat multidirectional  grey levels 1 to 255 of light from 225, 270, 315 and 360 degrees, 45 degrees high, each
-//   weighted
-//                     by the cosine squared of its angle to the aspect, as gdaldem does; sin 45 degrees where flat
+//   aspect            azimuth of the steepest descent in degrees clockwise from grid north, 0 up to 360; none if flat
+//
+//   multidirectional  grey levels 1 to 255 of light from 225, 270, 315 and 360 degrees, 45 degrees high, each weighted
+//                     by the cosine squared of its angle to the aspect, as gdaldem does; sin 45 degrees if flat
 //
 // Sources: B. K. P. Horn, "Hill shading and the reflectance map", Proceedings of the IEEE 69, 1981 (the gradient);
 // R. K. Mark, "Multidirectional, oblique-weighted, shaded-relief image of the Island of Hawaii", USGS OFR 92-422, 1992.
@@ -25,7 +25,7 @@
 
 namespace scarp {
 
-/// Returns the rise per metre to the east and to the north at a sample; nullopt at the border and beside holes.
+/// Returns the rise to the east and to the north at a sample, metres per metre; nullopt at the border and beside holes.
 std::optional<dvec2> horn_gradient(const HeightField& field, int col, int row);
 
 float slope_of(const dvec2& gradient);                  ///< degrees

@@ -45,8 +45,7 @@ struct BandSamples {
 
 /// Reads a window, which must lie inside the band; rows as stored. `nodata` overrides the band's own. With `decimation`
 /// a large window is reduced. Throws Error without the file's name: unreadable, complex, infinite, too large for the
-/// free memory
-/// unless `memory` bytes may be used at once (RasterOptions::memory), blocks too large for these.
+/// free memory (unless `memory` bytes are given, RasterOptions::memory), blocks too large for `memory`.
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
                       const std::optional<Decimation>& decimation, std::optional<double> memory, GdalSession& session,
                       const Progress& progress);
