@@ -200,7 +200,7 @@ TEST_F(ViewshedObservers, ObserversStandAlongLinesAndOverPolygons) {
                  "more than 1000000 observers");
 }
 
-TEST_F(ViewshedObservers, RejectsMapsAndTablesThatCannotBe) {
+TEST_F(ViewshedObservers, RejectsInvalidOutputsAndTables) {
   const auto refused = [&](const Names& options, const std::string& what) {
     expect_refused(on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("a.tif")} + options, what);
   };

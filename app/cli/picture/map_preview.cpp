@@ -88,7 +88,7 @@ std::pair<double, double> range_of(std::vector<Sample> numbers, bool whole_numbe
 
 template <class Sample>
 Paint paint_of_numbers(const MapBand& band, std::span<const Sample> samples, const std::string& ramp) {
-  // Nothing is to be seen where nothing is counted.
+  // Counts of 0 are transparent.
   const bool whole_numbers = std::is_integral_v<Sample> && band.scale == 1, counts = whole_numbers && band.unit.empty();
   const auto is_hole = [nodata = band.nodata, counts = counts](Sample sample) {
     return (nodata && static_cast<double>(sample) == *nodata) || (counts && sample == Sample{});
