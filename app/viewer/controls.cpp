@@ -26,7 +26,7 @@ constexpr double kMostCount = 100;  // of integers without a limit
 // Larger ranges have no slider.
 constexpr double kWidest = 1e5;
 // Options without a control: the window has its own way to set them, or they choose the input or a preset.
-constexpr std::array<std::string_view, 4> kNone = {"--size", "--preset", "--function", "--lowres"};
+constexpr std::array<std::string_view, 5> kNone = {"--size", "--preset", "--function", "--lowres", "--no-water"};
 constexpr std::array<cli::Topic, 9> kShown = {cli::Topic::picture, cli::Topic::light,     cli::Topic::surface,
                                               cli::Topic::ground,  cli::Topic::water,     cli::Topic::fog,
                                               cli::Topic::voxels,  cli::Topic::functions, cli::Topic::march};
@@ -42,6 +42,13 @@ std::optional<double> number_from(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || rest != text.data() + text.size()) return {};
   return number;
+}
+
+constexpr const char* kDegrees = "\u00b0";
+std::string unit_of(const cli::Option& option) {
+  if (option.unit == "metres") return "m";
+  if (option.unit == "degrees") return kDegrees;
+  return option.unit;
 }
 
 // As short as the slider shows it: mouse input is no more precise.
@@ -67,6 +74,7 @@ class Maker {
     control.label = declared.name.substr(2);
     control.help = declared.meaning();
     control.topic = option.topic, control.common = option.common;
+    control.unit = unit_of(option);
     if (declared.name == "--march") {
       if (scales_.marches.size() < 2) return {};
       control.kind = ControlKind::choice;
@@ -78,7 +86,7 @@ class Maker {
     } else if (option.value == "LOW,HIGH") {
       make_pair(declared, control);
     } else if (option.value == "AZ,ALT") {
-      control.kind = ControlKind::angles;
+      control.kind = ControlKind::angles, control.unit = kDegrees;
       const std::vector<double> angles = cli::numbers_from(now(declared), ',', 2, 2, declared.name, option.value);
       control.numbers = {angles[0], angles[1]};
     } else if (option.value == "RRGGBB") {
@@ -98,7 +106,12 @@ class Maker {
   // The current value, as text.
   std::string now(const cli::Declared& declared) const {
     std::string text = declared.option.now ? declared.option.now() : typed(declared);
-    return text.empty() ? first_default(declared) : text;
+    return text.empty() ? unset(declared) : text;
+  }
+  // The value of an option that was not given, as text.
+  std::string unset(const cli::Declared& declared) const {
+    const auto found = scales_.in_force.find(declared.name);
+    return found == scales_.in_force.end() ? first_default(declared) : found->second;
   }
 
   static void make_flag(const cli::Declared& declared, bool value, Control& control) {
@@ -117,7 +130,7 @@ class Maker {
     }
     const auto* text = std::get_if<std::string*>(&declared.to);
     control.choice = text ? **text : now(declared);
-    if (control.choice.empty()) control.choice = first_default(declared);
+    if (control.choice.empty()) control.choice = unset(declared);
   }
 
   void make_pair(const cli::Declared& declared, Control& control) const {
@@ -144,7 +157,7 @@ class Maker {
 
   bool make_number(const cli::Declared& declared, Control& control) const {
     control.kind = ControlKind::number;
-    const std::optional<double> usual = number_from(first_default(declared));
+    const std::optional<double> usual = number_from(unset(declared));
     double& value = control.numbers[0];
     if (const auto* whole = std::get_if<int*>(&declared.to)) {
       control.whole = true;
@@ -171,7 +184,10 @@ class Maker {
     }
     set_ends(declared.option, usual, control);
     const bool given = opening_.command().given(declared.name);
-    control.rests = control.may_rest && !given && (!std::isfinite(value) || !usual);
+    // An optional number without a default has a value only if it was given, or by the input itself.
+    const bool optional = std::holds_alternative<std::optional<double>*>(declared.to);
+    control.rests = control.may_rest && !given && !(optional && std::isfinite(value));
+    if (declared.name == "--water" && scales_.own_water) control.rest_change = {"--no-water", "true"};
     if (!std::isfinite(value))
       value = control.logarithmic ? std::sqrt(control.least * control.most)
                                   : control.least + (control.most - control.least) / 4;
@@ -221,9 +237,23 @@ std::vector<Control> controls_of(const Opening& opening, const ControlScales& sc
   return controls;
 }
 
+std::optional<double> typed_number(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  std::string number(text);
+  if (const std::size_t comma = number.find(','); comma != std::string::npos) {
+    // "1.234,5" and "1,234,5" may mean anything.
+    if (number.find_first_of(".,", comma + 1) != std::string::npos || number.find('.') < comma) return {};
+    number[comma] = '.';
+  }
+  const std::optional<double> value = number_from(number);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 OptionChange change_of(const Control& control) {
   const auto& n = control.numbers;
-  if (control.rests) return {control.option, {}};
+  if (control.rests) return control.rest_change.value_or(OptionChange{control.option, {}});
   switch (control.kind) {
     case ControlKind::flag:
       if (control.worded) return {control.option, control.on ? "true" : "false"};

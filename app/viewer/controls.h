@@ -5,7 +5,10 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/viewer/opening.h"
@@ -39,6 +42,9 @@ struct Control {
   std::array<double, 3> numbers{};
   std::vector<std::string> choices{};
   std::string choice{};
+  std::string unit{};  ///< "m", "\u00b0"; empty: none
+  /// The change that unsets it, if that is more than to omit the option.
+  std::optional<OptionChange> rest_change{};
 };
 
 /// Properties of an input that controls depend on.
@@ -49,7 +55,13 @@ struct ControlScales {
   double exaggeration = 1;
   std::vector<std::string> marches{};  ///< available for the input; empty: no choice
   std::string march{};                 ///< current march
+  bool own_water = false;              ///< whether the input has its own water
+  /// Values of options that were not given, where they depend on the input or the look: "--ramp", "viridis".
+  std::map<std::string, std::string, std::less<>> in_force{};
 };
+
+/// Returns the number that a user typed, with a decimal point or comma; nullopt for any other text.
+std::optional<double> typed_number(std::string_view text);
 
 /// The controls of the options that have an effect, in the order of their declarations.
 std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales);

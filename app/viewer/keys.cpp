@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <utility>
 
 namespace scarp::viewer {
@@ -17,7 +18,7 @@ std::optional<Value> find(const std::array<std::pair<int, Value>, Count>& table,
   return found == table.end() ? std::nullopt : std::optional(found->second);
 }
 
-constexpr std::array<std::pair<int, WindowAction>, 13> kActions = {{
+constexpr std::array<std::pair<int, WindowAction>, 14> kActions = {{
     {GLFW_KEY_O, WindowAction::orbit},
     {GLFW_KEY_F, WindowAction::fly},
     {GLFW_KEY_G, WindowAction::walk},
@@ -27,6 +28,7 @@ constexpr std::array<std::pair<int, WindowAction>, 13> kActions = {{
     {GLFW_KEY_K, WindowAction::keep_in_path},
     {GLFW_KEY_C, WindowAction::copy},
     {GLFW_KEY_P, WindowAction::save},
+    {GLFW_KEY_X, WindowAction::through_ground},
     {GLFW_KEY_F5, WindowAction::reopen},
     {GLFW_KEY_TAB, WindowAction::panel},
     {GLFW_KEY_F1, WindowAction::help},
@@ -44,30 +46,52 @@ constexpr std::array<std::pair<int, MoveKey>, 8> kMoves = {{
     {GLFW_KEY_RIGHT_SHIFT, MoveKey::fast},
 }};
 
-constexpr std::array<HelpLine, 17> kHelp = {{
-    {"left drag", "turn, look around; top: shift"},
-    {"right or middle drag", "shift"},
-    {"Ctrl and left drag", "move the sun"},
-    {"drag of the line", "compared pictures: show more of one of them"},
-    {"wheel", "nearer; fly and walk: speed"},
-    {"double click", "go there"},
-    {"W A S D, Q E, Shift", "fly and walk: move; down and up; faster"},
-    {"O, F, G, T", "orbit, fly, walk, top (a map)"},
-    {"H", "the first view"},
-    {"Ctrl 1 to 9, 1 to 9", "keep a view, return to it"},
-    {"M", "measure between two clicks"},
-    {"K", "add the view to scarp-path.csv, for scarp render --path"},
-    {"C", "copy the command that makes the picture again"},
-    {"P", "save the picture"},
-    {"F5", "open the input again"},
-    {"Tab", "hide the panel"},
-    {"F1, Esc", "this list; close"},
-}};
+// The label of a position, in capitals: "Z" for W on an AZERTY keyboard. Before there is a window, the US label.
+std::string label_of(int key) {
+  const char* const name = glfwGetKeyName(key, 0);
+  std::string label = name && *name ? name : std::string(1, static_cast<char>(key));
+  if (label.size() == 1) label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
+  return label;
+}
 
 }  // namespace
 
-std::optional<WindowAction> action_of(int key) { return find(kActions, key); }
+int letter_of(int key, int scancode) {
+  if (key != GLFW_KEY_UNKNOWN && (key < GLFW_KEY_SPACE || key > GLFW_KEY_WORLD_2)) return key;
+  const char* const name = glfwGetKeyName(key, scancode);
+  if (!name || !name[0] || name[1]) return key;
+  const int capital = std::toupper(static_cast<unsigned char>(name[0]));
+  return capital >= GLFW_KEY_A && capital <= GLFW_KEY_Z ? capital : key;
+}
+
+std::optional<WindowAction> action_of(int letter) { return find(kActions, letter); }
 std::optional<MoveKey> move_key_of(int key) { return find(kMoves, key); }
-std::span<const HelpLine> help_lines() { return kHelp; }
+
+std::vector<HelpLine> help_lines() {
+  std::string moves;
+  for (const int key : {GLFW_KEY_W, GLFW_KEY_A, GLFW_KEY_S, GLFW_KEY_D}) moves += label_of(key) + ' ';
+  moves.back() = ',';
+  moves += ' ' + label_of(GLFW_KEY_Q) + ' ' + label_of(GLFW_KEY_E) + ", Shift";
+  return {{"left drag", "turn, look around; top: shift"},
+          {"right or middle drag", "shift"},
+          {"Ctrl and left drag", "move the sun"},
+          {"drag of the line", "compared pictures: show more of one of them"},
+          {"wheel", "towards the cursor; fly and walk: speed"},
+          {"double click", "go there"},
+          {moves, "fly and walk: move; down and up; faster"},
+          {"O, F, G, T", "orbit, fly, walk, top (a map of everything)"},
+          {"X", "let the eye go through the ground, or not"},
+          {"H", "the first view"},
+          {"Ctrl 1 to 9, 1 to 9", "keep a view, return to it"},
+          {"M", "measure between two clicks"},
+          {"K", "add the view to a path, for scarp render --path"},
+          {"C", "copy the command that makes the picture again"},
+          {"P", "save the picture"},
+          {"F5", "open the input again"},
+          {"Tab", "hide the panel"},
+          {"F1", "this list"},
+          {"Esc", "end measuring, close lists; without any, the window"},
+          {"Ctrl Q", "close the window"}};
+}
 
 }  // namespace scarp::viewer

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Bindings of mouse and keys: one table for the window and for its help.
+// Bindings of mouse and keys: one table for the window and for its help. Actions have the letters of the user's layout,
+// movements the positions of W A S D Q E on a US keyboard.
 #pragma once
 
 #include <optional>
-#include <span>
+#include <string>
+#include <vector>
 
 #include "app/viewer/navigation.h"
 
@@ -22,18 +24,23 @@ enum class WindowAction {
   reopen,
   panel,
   help,
+  through_ground,
   escape
 };
 
 struct HelpLine {
-  const char* input;   ///< "left drag"
+  std::string input;   ///< "left drag"
   const char* effect;  ///< "turn, look around; top: shift"
 };
 
-/// The action of a key press, by GLFW's number.
-std::optional<WindowAction> action_of(int key);
-/// The movement of a key while it is held.
+/// The key that the user's layout labels with the same letter as GLFW's number of a key does on a US keyboard; that
+/// key itself without a Latin letter.
+int letter_of(int key, int scancode);
+/// The action of a key press, by GLFW's number of its letter.
+std::optional<WindowAction> action_of(int letter);
+/// The movement of a key while it is held, by GLFW's number of its position.
 std::optional<MoveKey> move_key_of(int key);
-std::span<const HelpLine> help_lines();
+/// Bindings, with the labels that the user's layout gives to positions.
+std::vector<HelpLine> help_lines();
 
 }  // namespace scarp::viewer

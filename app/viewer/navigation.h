@@ -2,10 +2,12 @@
 // Navigation in a scene by mouse and keys: takes events and time, and returns cameras. Independent of window and
 // device.
 //
-//   orbit  around a point; left drag turns, right or middle drag pans, the wheel moves closer
-//   fly    W A S D Q E move, a drag looks around, the wheel changes the speed
+//   orbit  around a point; left drag turns, right or middle drag pans, the wheel moves towards the cursor
+//   fly    W A S D Q E move, a drag looks around, the wheel changes the speed, which grows with the height above ground
 //   walk   as fly, 1.7 m above the ground; exact rays detect obstacles, so walls are never crossed
 //   top    a map, straight down; a drag pans, the wheel zooms towards the cursor
+//
+// In orbit and fly, exact rays keep the eye above the ground, unless it starts below.
 #pragma once
 
 #include <array>
@@ -51,11 +53,22 @@ class Navigator {
   /// The camera of the pose for a picture of this size.
   Camera camera(int width, int height) const;
   const Pose& pose() const { return pose_; }
+  /// The pose of a perspective camera: in `top` straight down, from where the picture shows the same width of the
+  /// ground in its middle.
+  Pose perspective(const dvec2& size) const;
   /// Sets the pose; a walker is placed on the ground.
   void set_pose(const Pose& pose);
-  void set_mode(MoveMode mode);
+  /// Changes the mode in a picture of this size: a walker starts on the ground at the point that orbit turns around,
+  /// or below the eye, and looks ahead; a map shows the whole scene. Returns false, without a change, if there is no
+  /// ground to walk on.
+  bool set_mode(MoveMode mode, const dvec2& size);
   /// Metres per second of fly and walk.
-  double speed() const { return speed_; }
+  double speed() const;
+  /// The vertical field of view in degrees, 1 to 170.
+  void set_fov(double degrees);
+  /// Whether exact rays keep the eye above the ground; they do at first.
+  void keep_above_ground(bool keep) { above_ground_ = keep; }
+  bool keeps_above_ground() const { return above_ground_; }
 
   // Events. `size` is that of the picture; drags and positions are in its pixels, y down.
   void key(MoveKey key, bool down) { keys_[static_cast<std::size_t>(key)] = down; }
@@ -69,19 +82,29 @@ class Navigator {
   /// Applies the held keys for `seconds`. Returns whether the pose changed since the last call.
   bool advance(double seconds);
   bool moving() const;
+  /// Whether the mode has movements by held keys.
+  bool moves_by_keys() const { return pose_.mode == MoveMode::fly || pose_.mode == MoveMode::walk; }
 
  private:
   dvec3 point() const { return pose_.eye + pose_.distance * forward_of(pose_); }
   double high() const;  // above everything
   std::optional<double> ground_below(const dvec3& at) const;
   void walk(const dvec3& step);
-  void stand();
+  bool stand();
+  void look_at_middle();
+  bool is_free(const dvec3& from, const dvec3& to) const;
+  void move_eye(const Pose& to);
+  std::optional<dvec3> point_under(const dvec2& at, const dvec2& size) const;
+  Pose whole_map(const dvec2& size) const;
 
   const Scene& scene_;
   WorldBox box_;  // area of a map; empty: unbounded
   Pose pose_;
   dvec3 first_eye_{0.0};
-  double across_, speed_;
+  double across_;
+  double haste_ = 1;          // factor of the speed, by the wheel
+  double usual_fov_deg_ = 0;  // of the other modes, while walking
+  bool above_ground_ = true;
   std::array<bool, kMoveKeys> keys_{};
   bool changed_ = true;
 };

@@ -83,8 +83,8 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
   return {std::move(program), std::move(options), kind, std::move(given)};
 }
 
-Opening opening_of(const std::string& file) {
-  const Parsed parsed({{"IN", {file}}});
+Opening opening_of(const std::vector<std::string>& files) {
+  const Parsed parsed({{"IN", files}});
   return settle_opening(parsed.program, parsed.options, parsed.command);
 }
 

@@ -35,8 +35,8 @@ struct Opening {
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
                        const cli::Command& command);
 
-/// Opens a file without any options. Throws Error and WrongUsage.
-Opening opening_of(const std::string& file);
+/// Opens files without any options, as the arguments of a command. Throws Error and WrongUsage.
+Opening opening_of(const std::vector<std::string>& files);
 
 /// Changes the value of an option; nullopt removes it. Flags have the value "true".
 struct OptionChange {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "app/viewer/keys.h"
 #include "app/viewer/verdict_text.h"
@@ -33,7 +34,7 @@ void draw_help(bool& open) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Appearing, {1, 0});
   if (ImGui::Begin("Mouse and keys", &open, ImGuiWindowFlags_AlwaysAutoResize)) {
     for (const HelpLine& line : help_lines()) {
-      ImGui::TextUnformatted(line.input);
+      ImGui::TextUnformatted(line.input.c_str());
       ImGui::SameLine(scaled(kControlWidth));
       ImGui::TextUnformatted(line.effect);
     }
@@ -50,27 +51,84 @@ bool applies(const Control& control, bool moved, const Reopens& reopens) {
   return (moved || released) && (reopens(change_of(control)) ? released : moved);
 }
 
-// A slider for a number; returns whether to apply it.
-bool draw_slider(const char* label, Control& control, double& value, double least, double most, bool whole,
-                 const Reopens& reopens) {
-  const ImGuiSliderFlags flags =
-      ImGuiSliderFlags_AlwaysClamp | (control.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
-  bool moved;
-  if (whole) {
-    int number = static_cast<int>(std::lround(value));
-    moved = ImGui::SliderInt(label, &number, static_cast<int>(least), static_cast<int>(most), "%d", flags);
-    if (moved) value = number;
-  } else {
-    auto number = static_cast<float>(value);
-    moved = ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most), "%.4g", flags);
-    if (moved) value = number;
-  }
-  return applies(control, moved, reopens);
-}
+// Sliders whose value may be typed, after Ctrl and click or a double click.
+class Sliders {
+ public:
+  Sliders(PanelState& state, PanelActions& actions) : state_(state), actions_(actions) {}
 
-bool draw_choice(Control& control) {
+  // Returns whether to apply the value.
+  bool draw(const char* label, Control& control, double& value, double least, double most) {
+    TypedValue& typed = state_.typed;
+    const std::string id = control.option + label;
+    if (typed.id != id && clicked_to_type()) begin(id, number_text(control, value));
+    if (typed.id == id) return draw_field(label, control, value);
+    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput |
+                                   (control.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+    bool moved;
+    const std::string unit = control.unit.empty() ? "" : (control.unit == "\u00b0" ? "" : " ") + control.unit;
+    if (control.whole) {
+      int number = static_cast<int>(std::lround(value));
+      moved = ImGui::SliderInt(label, &number, static_cast<int>(least), static_cast<int>(most), ("%d" + unit).c_str(),
+                               flags);
+      if (moved) value = number;
+    } else {
+      auto number = static_cast<float>(value);
+      moved = ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most),
+                                 ("%.4g" + unit).c_str(), flags);
+      if (moved) value = number;
+    }
+    return applies(control, moved, state_.reopens);
+  }
+
+ private:
+  static std::string number_text(const Control& control, double value) {
+    return control.whole ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+  }
+
+  void begin(const std::string& id, const std::string& text) { state_.typed = {id, text, text}; }
+
+  // Of the slider that is drawn next.
+  static bool clicked_to_type() {
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const ImVec2 to{from.x + ImGui::CalcItemWidth(), from.y + ImGui::GetFrameHeight()};
+    if (!ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(from, to)) return false;
+    return ImGui::IsMouseDoubleClicked(0) || (ImGui::IsMouseClicked(0) && ImGui::GetIO().KeyCtrl);
+  }
+
+  // The click that began it activates the field. A wrong text leaves the value as it was.
+  bool draw_field(const char* label, const Control& control, double& value) {
+    TypedValue& typed = state_.typed;
+    std::array<char, 32> text{};
+    std::copy_n(typed.text.begin(), std::min(typed.text.size(), text.size() - 1), text.begin());
+    const bool entered = ImGui::InputText(label, text.data(), text.size(),
+                                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    typed.text = text.data();
+    const bool left = ImGui::IsItemDeactivated();
+    if (state_.close_lists || ((left || entered) && typed.text == typed.was)) {
+      typed = {};
+      return false;
+    }
+    if (!entered && !left) return false;
+    const std::optional<double> number = typed_number(typed.text);
+    const bool good = number && (!control.whole || *number == std::round(*number));
+    if (good) {
+      value = *number;
+    } else {
+      actions_.error = fmt::format("{} '{}': expected {}", control.option, typed.text,
+                                   control.whole ? "a whole number" : "a number such as 1.5 or 1,5");
+    }
+    typed = {};
+    return good;
+  }
+
+  PanelState& state_;
+  PanelActions& actions_;
+};
+
+bool draw_choice(Control& control, bool close) {
   bool changed = false;
   if (!ImGui::BeginCombo(control.label.c_str(), control.choice.c_str())) return false;
+  if (close) ImGui::CloseCurrentPopup();
   for (const std::string& choice : control.choices) {
     if (ImGui::Selectable(choice.c_str(), choice == control.choice) && choice != control.choice) {
       control.choice = choice;
@@ -92,23 +150,20 @@ bool draw_pair(Control& control, const Reopens& reopens) {
 }
 
 // Returns whether the option's value changed.
-bool draw_value(Control& control, const Reopens& reopens) {
+bool draw_value(Control& control, const PanelState& state, Sliders& sliders) {
   switch (control.kind) {
     case ControlKind::flag:
       return ImGui::Checkbox(control.label.c_str(), &control.on);
     case ControlKind::choice:
-      return draw_choice(control);
+      return draw_choice(control, state.close_lists);
     case ControlKind::number:
-      return draw_slider(control.label.c_str(), control, control.numbers[0], control.least, control.most, control.whole,
-                         reopens);
+      return sliders.draw(control.label.c_str(), control, control.numbers[0], control.least, control.most);
     case ControlKind::pair:
-      return draw_pair(control, reopens);
+      return draw_pair(control, state.reopens);
     case ControlKind::angles: {
-      const bool azimuth =
-          draw_slider((control.label + " azimuth").c_str(), control, control.numbers[0], 0, 360, false, reopens);
+      const bool azimuth = sliders.draw((control.label + " azimuth").c_str(), control, control.numbers[0], 0, 360);
       ImGui::SetNextItemWidth(scaled(kControlWidth));
-      const bool altitude =
-          draw_slider((control.label + " altitude").c_str(), control, control.numbers[1], 0, 90, false, reopens);
+      const bool altitude = sliders.draw((control.label + " altitude").c_str(), control, control.numbers[1], 0, 90);
       return azimuth || altitude;
     }
     case ControlKind::colour:
@@ -118,10 +173,10 @@ bool draw_value(Control& control, const Reopens& reopens) {
   std::copy(control.numbers.begin(), control.numbers.end(), rgb);
   const bool moved = ImGui::ColorEdit3(control.label.c_str(), rgb, ImGuiColorEditFlags_NoInputs);
   if (moved) std::copy_n(rgb, 3, control.numbers.begin());
-  return applies(control, moved, reopens);
+  return applies(control, moved, state.reopens);
 }
 
-bool draw_control(Control& control, const Reopens& reopens) {
+bool draw_control(Control& control, const PanelState& state, Sliders& sliders) {
   ImGui::PushID(control.option.c_str());
   bool changed = false;
   if (control.may_rest) {
@@ -135,7 +190,7 @@ bool draw_control(Control& control, const Reopens& reopens) {
   if (!control.rests) {
     const float box = control.may_rest ? ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x : 0;
     ImGui::SetNextItemWidth(scaled(kControlWidth) - box);
-    changed |= draw_value(control, reopens);
+    changed |= draw_value(control, state, sliders);
   }
   if (ImGui::IsItemHovered()) {
     ImGui::BeginTooltip();
@@ -147,10 +202,11 @@ bool draw_control(Control& control, const Reopens& reopens) {
 }
 
 // The common options, then the others under the headings of their topics.
-std::optional<OptionChange> draw_controls(std::vector<Control>& controls, const Reopens& reopens) {
+std::optional<OptionChange> draw_controls(PanelState& state, Sliders& sliders) {
+  std::vector<Control>& controls = state.controls;
   std::optional<OptionChange> change;
   const auto draw = [&](Control& control) {
-    if (draw_control(control, reopens)) change = change_of(control);
+    if (draw_control(control, state, sliders)) change = change_of(control);
   };
   for (Control& control : controls) {
     if (control.common) draw(control);
@@ -169,11 +225,22 @@ std::optional<OptionChange> draw_controls(std::vector<Control>& controls, const 
   return change;
 }
 
+// Of all modes but the map.
+void draw_fov(const PanelState& state, Sliders& sliders, PanelActions& actions) {
+  constexpr double kLeast = 10, kMost = 120;  // of the slider
+  if (state.mode == MoveMode::top) return;
+  Control control{.option = "--fov", .label = "field of view", .unit = "\u00b0"};
+  double fov = state.fov_deg;
+  ImGui::SetNextItemWidth(scaled(kControlWidth));
+  if (sliders.draw(control.label.c_str(), control, fov, kLeast, kMost)) actions.fov_deg = fov;
+}
+
 std::optional<std::string> draw_comparisons(const PanelState& state) {
   constexpr const char* kNothing = "nothing";
   std::optional<std::string> chosen;
   ImGui::SetNextItemWidth(scaled(kControlWidth));
   if (!ImGui::BeginCombo("compare with", state.compared.empty() ? kNothing : state.compared.c_str())) return {};
+  if (state.close_lists) ImGui::CloseCurrentPopup();
   if (ImGui::Selectable(kNothing, state.compared.empty())) chosen = "";
   for (const std::string& with : state.comparisons) {
     if (ImGui::Selectable(with.c_str(), with == state.compared)) chosen = with;
@@ -237,7 +304,9 @@ PanelActions draw_panel(PanelState& state) {
       const auto mode = static_cast<MoveMode>(i);
       if (ImGui::RadioButton(kModes[i], state.mode == mode)) actions.mode = mode;
     }
-    actions.change = draw_controls(state.controls, state.reopens);
+    Sliders sliders(state, actions);
+    draw_fov(state, sliders, actions);
+    actions.change = draw_controls(state, sliders);
     actions.compare = draw_comparisons(state);
     if (state.mode == MoveMode::fly || state.mode == MoveMode::walk) ImGui::Text("%.1f m/s", state.speed);
     ImGui::Separator();
@@ -250,11 +319,26 @@ PanelActions draw_panel(PanelState& state) {
     actions.copy = ImGui::Button("Copy command (C)");
     ImGui::SameLine();
     if (ImGui::Button("Help (F1)")) state.help = !state.help;
-    if (!state.message.empty()) draw_wrapped(state.message);
+    if (!state.message.text.empty()) draw_wrapped(state.message.text);
   }
   ImGui::End();
   draw_help(state.help);
+  state.close_lists = false;
   return actions;
+}
+
+void draw_toast(const Toast& toast) {
+  constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255), kBlack = IM_COL32(0, 0, 0, 200),
+                  kRed = IM_COL32(160, 20, 20, 230);
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  const float margin = scaled(kMargin), wrap = std::max(window.x - 4 * margin, 1.0f);
+  const char *begin = toast.text.c_str(), *end = begin + toast.text.size();
+  const ImVec2 text = ImGui::CalcTextSize(begin, end, false, wrap);
+  const ImVec2 at{(window.x - text.x) / 2, window.y - text.y - 3 * margin};
+  list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + text.x + margin, at.y + text.y + margin / 2},
+                     toast.is_error ? kRed : kBlack, margin / 2);
+  list.AddText(nullptr, 0, at, kWhite, begin, end, wrap);
 }
 
 void draw_split(double x, const std::vector<std::string>& names) {

@@ -14,6 +14,19 @@
 
 namespace scarp::viewer {
 
+/// A message over the picture.
+struct Toast {
+  std::string text{};
+  bool is_error = false;
+  double until = 0;  ///< seconds since the window opened
+};
+
+/// A slider whose value is typed.
+struct TypedValue {
+  std::string id{};           ///< of the slider; empty: none
+  std::string text{}, was{};  ///< now, and at first
+};
+
 /// The state that the panel shows and changes.
 struct PanelState {
   std::vector<Control> controls{};  ///< sliders change the numbers here; a completed change is an action
@@ -23,6 +36,7 @@ struct PanelState {
   std::string compared{};                  ///< current comparison; empty: none
   MoveMode mode = MoveMode::orbit;         ///< a change is an action
   double speed = 0;                        ///< metres per second
+  double fov_deg = 30;                     ///< a change is an action
   std::string device{};                    ///< device that traces rays
   const WorkedPicture* shown = nullptr;    ///< the picture in the window
   const WorkedVerdict* verdict = nullptr;  ///< verdict on that picture
@@ -33,7 +47,10 @@ struct PanelState {
   std::optional<MeasuredLine> line{};
   bool measures = false;  ///< clicks set the ends of a line
   bool help = false;
-  std::string message{};  ///< the last message: saved, copied, failed
+  bool lists_open = false;   ///< of the last frame
+  bool close_lists = false;  ///< closes open lists and text fields; draw_panel() resets it
+  Toast message{};           ///< the last message: saved, copied, failed
+  TypedValue typed{};        ///< the number that is being typed
 };
 
 struct PanelActions {
@@ -41,10 +58,15 @@ struct PanelActions {
   std::optional<OptionChange> change{};
   std::optional<std::string> compare{};  ///< empty: nothing
   std::optional<MoveMode> mode{};
+  std::optional<double> fov_deg{};
+  std::string error{};  ///< of typed text
 };
 
 /// Draws the panel between ImGui::NewFrame() and ImGui::Render().
 PanelActions draw_panel(PanelState& state);
+
+/// Draws a message at the lower edge, errors in red.
+void draw_toast(const Toast& toast);
 
 /// Draws the line between two pictures over a window of this size, and the names of its sides.
 void draw_split(double x, const std::vector<std::string>& names);

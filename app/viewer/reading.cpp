@@ -27,6 +27,12 @@ std::unique_ptr<CoordinateFrame> frame_of(const cli::PlaceRaster& raster, Coordi
   }
 }
 
+// "EPSG:32610" of "WGS 84 / UTM zone 10N (EPSG:32610)"; names without a code in full.
+std::string short_name(const std::string& name) {
+  const std::size_t open = name.rfind('(');
+  return name.ends_with(')') && open != std::string::npos ? name.substr(open + 1, name.size() - open - 2) : name;
+}
+
 std::optional<dvec3> place_in(const std::unique_ptr<CoordinateFrame>& frame, const dvec3& point) {
   if (!frame) return {};
   std::array<dvec3, 1> points{point};
@@ -40,6 +46,7 @@ ReadingFrames::ReadingFrames(const cli::PlaceRaster& raster) {
   if (!raster.georeference.present) return;
   map = frame_of(raster, Coordinates::map);
   lonlat = frame_of(raster, Coordinates::lonlat);
+  crs = short_name(raster.georeference.crs_name);
 }
 
 std::optional<Reading> read_under(const Scene& scene, const Camera& camera, const dvec2& at,
@@ -52,8 +59,9 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
   const dvec3& p = reading.point = surface.position;
   reading.lines.push_back(fmt::format("x {:.2f}  y {:.2f} m, height {:.2f} m", p.x, p.y, p.z / exaggeration));
   const auto map = place_in(frames.map, p), lonlat = place_in(frames.lonlat, p);
-  if (map && map != lonlat) reading.lines.push_back(fmt::format("map {:.2f}, {:.2f}", map->x, map->y));
-  if (lonlat) reading.lines.push_back(fmt::format("lon {:.6f}, lat {:.6f} degrees", lonlat->x, lonlat->y));
+  if (map && map != lonlat)
+    reading.lines.push_back(fmt::format("{} {:.2f}, {:.2f}", frames.crs.empty() ? "map" : frames.crs, map->x, map->y));
+  if (lonlat) reading.lines.push_back(fmt::format("lon {:.6f}, lat {:.6f} degrees (WGS 84)", lonlat->x, lonlat->y));
   if (const double size = length(surface.normal); size > 0) {
     const dvec3 flat(surface.normal.x / exaggeration, surface.normal.y / exaggeration, surface.normal.z);
     const double slope = std::atan2(std::hypot(flat.x, flat.y), std::abs(flat.z));

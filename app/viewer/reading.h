@@ -17,6 +17,7 @@ namespace scarp::viewer {
 struct ReadingFrames {
   explicit ReadingFrames(const cli::PlaceRaster& raster);
   std::unique_ptr<CoordinateFrame> map{}, lonlat{};  ///< null: not georeferenced
+  std::string crs{};                                 ///< short name for display: "EPSG:32610"; empty: none
 };
 
 struct Reading {

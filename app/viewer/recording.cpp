@@ -16,7 +16,7 @@ namespace scarp::viewer {
 namespace {
 
 constexpr std::string_view kFirst = "scarp-view";
-constexpr std::array<std::string_view, 6> kKinds = {"move", "button", "key", "wheel", "option", "compare"};
+constexpr std::array<std::string_view, 7> kKinds = {"move", "button", "key", "wheel", "text", "option", "compare"};
 constexpr int kLongestSide = 16384;
 constexpr double kMostPlace = 1e6;  // pixels or steps: limit of the cursor position
 
@@ -67,6 +67,12 @@ Recording read_recording(const std::string& file) {
     } else if (kind == "button" || kind == "key") {
       event.kind = kind == "button" ? WindowEvent::Kind::button : WindowEvent::Kind::key;
       good = static_cast<bool>(words >> event.code >> event.down >> event.modifiers);
+      if (int letter = 0; good && kind == "key" && words >> letter) event.letter = letter;
+    } else if (kind == "text") {
+      event.kind = WindowEvent::Kind::text;
+      words.get();  // the space
+      std::getline(words, event.text);
+      good = !event.text.empty();
     } else if (kind == "option" || kind == "compare") {
       event.kind = kind == "option" ? WindowEvent::Kind::option : WindowEvent::Kind::compare;
       std::getline(words >> std::ws, event.text);
@@ -76,8 +82,8 @@ Recording read_recording(const std::string& file) {
     }
     if (!good) {
       fail(
-          "'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS', 'option --NAME [VALUE]' "
-          "or 'compare [march NAME | look NAME]' after the time");
+          "'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS [LETTER]', 'text TYPED', "
+          "'option --NAME [VALUE]' or 'compare [march NAME | look NAME]' after the time");
     }
     recording.events.push_back(event);
   }
@@ -98,8 +104,11 @@ void write_recording(const std::string& file, const Recording& recording) {
         break;
       case WindowEvent::Kind::button:
       case WindowEvent::Kind::key:
-        out << fmt::format("{} {:d} {}\n", event.code, event.down, event.modifiers);
+        out << fmt::format("{} {:d} {}", event.code, event.down, event.modifiers);
+        if (event.letter != 0 && event.letter != event.code) out << ' ' << event.letter;
+        out << '\n';
         break;
+      case WindowEvent::Kind::text:
       case WindowEvent::Kind::option:
       case WindowEvent::Kind::compare:
         out << event.text << '\n';

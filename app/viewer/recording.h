@@ -10,14 +10,16 @@
 namespace scarp::viewer {
 
 struct WindowEvent {
-  enum class Kind { move, button, key, wheel, option, compare };
+  enum class Kind { move, button, key, wheel, text, option, compare };
   double seconds = 0;  ///< since the window opened
   Kind kind = Kind::move;
-  int code = 0;         ///< GLFW's number of the button or key
+  int code = 0;         ///< GLFW's number of the button, or of the key's position on a US keyboard
+  int letter = 0;       ///< keys: GLFW's number of the letter that the user's layout has there; 0: as `code`
   bool down = false;    ///< pressed
   int modifiers = 0;    ///< GLFW's bits
   double x = 0, y = 0;  ///< move: the cursor, in pixels; wheel: y is the steps
-  std::string text{};   ///< option: "--water 120", or "--water" to remove it; compare: "march naive"
+  std::string text{};   ///< text: what was typed, UTF-8; option: "--water 120", or "--water" to remove it; compare:
+                        ///< "march naive"
   int line = 0;         ///< line number in the file
 };
 

@@ -193,6 +193,11 @@ std::vector<Control> Subject::controls(const std::optional<StepScale>& steps) co
   if (steps) scales.steps_low = steps->low, scales.steps_high = steps->high;
   scales.marches = marches_for(opening().kind);
   scales.march = prepared().given_scene().marches();
+  scales.own_water = input.subject.own.water_level.has_value();
+  const PictureSettings& settings = main_.settings;
+  scales.in_force = {{"--ramp", std::string(ramp_of(settings))},
+                     {"--haze", fmt::format("{:.4g}", settings.haze)},
+                     {"--detail", fmt::format("{:.4g}", settings.ground.detail)}};
   return controls_of(opening(), scales);
 }
 

@@ -17,7 +17,12 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr const char* kPathFile = "scarp-path.csv";
+// The first free name of BEGIN1END, BEGIN2END, ...
+std::string first_free(std::string_view begin, std::string_view end) {
+  std::string name;
+  for (int i = 1; name.empty() || std::filesystem::exists(name); ++i) name = fmt::format("{}{}{}", begin, i, end);
+  return name;
+}
 
 }  // namespace
 
@@ -46,20 +51,21 @@ std::string render_command(const Opening& opening, const cli::Places& places, co
 }
 
 std::string save_numbered(const Image& image) {
-  std::string name;
-  for (int i = 1; name.empty() || std::filesystem::exists(name); ++i) name = fmt::format("scarp-view-{}.png", i);
+  const std::string name = first_free("scarp-view-", ".png");
   write_png(name, {image.rgb.data(), image.width, image.height});
   return name;
 }
 
-std::string add_to_path(const Pose& pose) {
+std::string next_path() { return first_free("scarp-path-", ".csv"); }
+
+void add_to_path(const std::string& file, const Pose& pose) {
   const dvec3 target = pose.eye + forward_of(pose);
-  ReplaceFile replace(kPathFile);
+  ReplaceFile replace(file);
   std::string text;
-  if (std::filesystem::exists(kPathFile)) {
-    std::ifstream before(kPathFile, std::ios::binary);
+  if (std::filesystem::exists(file)) {
+    std::ifstream before(file, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(before), {});
-    if (!before) throw Error(fmt::format("'{}' cannot be read", kPathFile));
+    if (!before) throw Error(fmt::format("'{}' cannot be read", file));
   }
   if (text.empty()) text = "x,y,z,tx,ty,tz\n";
   text += fmt::format("{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", pose.eye.x, pose.eye.y, pose.eye.z, target.x,
@@ -67,9 +73,8 @@ std::string add_to_path(const Pose& pose) {
   std::ofstream out(replace.temporary_path(), std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw Error(fmt::format("'{}' cannot be written; is the disk full?", kPathFile));
+  if (!out) throw Error(fmt::format("'{}' cannot be written; is the disk full?", file));
   replace.commit();
-  return kPathFile;
 }
 
 }  // namespace scarp::viewer

@@ -20,8 +20,10 @@ std::string render_command(const Opening& opening, const cli::Places& places, co
 /// if it cannot be written.
 std::string save_numbered(const Image& image);
 
-/// Adds the pose to scarp-path.csv, for `scarp render --path`, and returns the file's name. Throws Error if the file
-/// cannot be written; then it stays as it was.
-std::string add_to_path(const Pose& pose);
+/// Adds the pose of a perspective camera to a file for `scarp render --path`. Throws Error if it cannot be written;
+/// then it stays as it was.
+void add_to_path(const std::string& file, const Pose& pose);
+/// The first free name of scarp-path-1.csv, scarp-path-2.csv, ...
+std::string next_path();
 
 }  // namespace scarp::viewer

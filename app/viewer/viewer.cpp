@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -44,6 +45,7 @@ constexpr double kPlayStep = 1.0 / 60;  // seconds of a recording's own time per
 constexpr double kSignalWait = 0.5;     // seconds between two checks for Ctrl-C
 constexpr int kRedraws = 3;             // frames that Dear ImGui needs to settle after an event
 constexpr int kBookmarks = 9;
+constexpr double kToast = 3, kErrorToast = 10;  // seconds that a message is over the picture
 
 // The object that a drag with the left button moves.
 enum class Dragged { view, sun, line };
@@ -137,6 +139,7 @@ class Viewer {
 
   // If it fails, for example because the file is gone, the window keeps its current state.
   void change(const OptionChange& change) {
+    worked_ = true;
     attempt([&] { return subject_->change(change); });
   }
   // Errors are shown when the change is made.
@@ -162,7 +165,7 @@ class Viewer {
         navigate(subject_->first_camera());
         navigator_->set_pose(with_heights_times(pose, subject_->prepared().exaggeration() / height));
       }
-      panel_.message.clear();
+      panel_.message = {};
     } catch (const std::exception& error) {
       fail(error.what(), played_line_);
     }
@@ -187,32 +190,10 @@ class Viewer {
   // --- events -------------------------------------------------------------------------------------------------------
 
   void listen() {
-    GLFWwindow* const window = glfw_->get();
-    glfwSetWindowUserPointer(window, this);
-    const auto of = [](GLFWwindow* from) { return static_cast<Viewer*>(glfwGetWindowUserPointer(from)); };
-    static const auto self = of;
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-      self(w)->note({.kind = WindowEvent::Kind::move, .x = x, .y = y});
-    });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
-      self(w)->note(
-          {.kind = WindowEvent::Kind::button, .code = button, .down = action == GLFW_PRESS, .modifiers = modifiers});
-    });
-    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
-      if (action != GLFW_REPEAT)
-        self(w)->note(
-            {.kind = WindowEvent::Kind::key, .code = key, .down = action == GLFW_PRESS, .modifiers = modifiers});
-    });
-    glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
-      self(w)->note({.kind = WindowEvent::Kind::wheel, .x = x, .y = y});
-    });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { self(w)->redraws_ = kRedraws; });
-    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
-      if (count > 0) self(w)->open_file(files[0]);
-    });
-    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
-      if (!focused) self(w)->navigator_->release_keys();
-    });
+    viewer::listen(glfw_->get(), {.event = [this](const WindowEvent& event) { note(event); },
+                                  .refreshed = [this] { redraws_ = kRedraws; },
+                                  .dropped = [this](const std::vector<std::string>& files) { open_files(files); },
+                                  .left = [this] { navigator_->release_keys(); }});
   }
 
   void note(WindowEvent event) {
@@ -245,6 +226,8 @@ class Viewer {
         return;
       case WindowEvent::Kind::key:
         if (!io.WantTextInput || !event.down) take_key(event);
+        return;
+      case WindowEvent::Kind::text:
         return;
       case WindowEvent::Kind::option: {
         const std::size_t space = event.text.find(' ');
@@ -304,39 +287,58 @@ class Viewer {
     panel_.line = measure_line(prepared.given_scene(), *line_from_, point, kAbove, prepared.exaggeration());
     line_from_.reset();
     panel_.measures = false;
+    worked_ = true;
   }
 
   void take_key(const WindowEvent& event) {
-    if (const auto key = move_key_of(event.code)) return navigator_->key(*key, event.down);
+    const int letter = event.letter != 0 ? event.letter : event.code;
+    if (event.down && letter == GLFW_KEY_Q && (event.modifiers & GLFW_MOD_CONTROL) != 0)
+      return glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
+    if (const auto key = move_key_of(event.code)) {
+      navigator_->key(*key, event.down);
+      // Some layouts have the letter of an action there.
+      if (navigator_->moves_by_keys()) return;
+    }
     if (!event.down) return;
     if (event.code >= GLFW_KEY_1 && event.code < GLFW_KEY_1 + kBookmarks) {
       std::optional<Pose>& bookmark = bookmarks_[static_cast<std::size_t>(event.code - GLFW_KEY_1)];
+      const int number = event.code - GLFW_KEY_0;
       if ((event.modifiers & GLFW_MOD_CONTROL) != 0) {
         bookmark = navigator_->pose();
+        worked_ = true;
+        say(fmt::format("the view is kept: {} returns to it", number));
       } else if (bookmark) {
         navigator_->set_pose(*bookmark);
+      } else {
+        say(fmt::format("no view is kept there (Ctrl {} keeps one)", number));
       }
       return;
     }
-    if (const auto action = action_of(event.code)) act(*action);
+    if (const auto action = action_of(letter)) act(*action);
   }
 
   void act(WindowAction action) {
     switch (action) {
       case WindowAction::orbit:
-        return navigator_->set_mode(MoveMode::orbit);
+        return set_mode(MoveMode::orbit);
       case WindowAction::fly:
-        return navigator_->set_mode(MoveMode::fly);
+        return set_mode(MoveMode::fly);
       case WindowAction::walk:
-        return navigator_->set_mode(MoveMode::walk);
+        return set_mode(MoveMode::walk);
       case WindowAction::top:
-        return navigator_->set_mode(MoveMode::top);
+        return set_mode(MoveMode::top);
       case WindowAction::first_view:
         return navigator_->set_pose(first_);
       case WindowAction::measure:
         panel_.measures = !panel_.measures;
         line_from_.reset();
+        if (panel_.measures) say("click both ends of a line");
         return;
+      case WindowAction::through_ground: {
+        const bool keeps = !navigator_->keeps_above_ground();
+        navigator_->keep_above_ground(keeps);
+        return say(keeps ? "the eye stays above the ground" : "the eye goes through the ground");
+      }
       case WindowAction::keep_in_path:
         return keep_in_path();
       case WindowAction::copy:
@@ -354,11 +356,25 @@ class Viewer {
         panel_.help = !panel_.help;
         return;
       case WindowAction::escape:
-        if (panel_.measures || panel_.help) {
-          panel_.measures = panel_.help = false;
-        } else {
-          glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
-        }
+        return escape();
+    }
+  }
+
+  void set_mode(MoveMode mode) {
+    if (!navigator_->set_mode(mode, size())) return say("there is no ground to walk on here");
+    if (mode == MoveMode::fly || mode == MoveMode::walk) say(fmt::format("{:.3g} m/s (wheel)", navigator_->speed()));
+  }
+
+  // Ends the last thing that was begun. A window with work in it is not closed by mistake.
+  void escape() {
+    if (panel_.lists_open) {
+      panel_.close_lists = true;
+    } else if (panel_.measures || panel_.help) {
+      panel_.measures = panel_.help = false;
+    } else if (worked_) {
+      say("Ctrl Q closes the window");
+    } else {
+      glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
     }
   }
 
@@ -479,6 +495,7 @@ class Viewer {
       ImGuiIO& io = ImGui::GetIO();
       io.DeltaTime = static_cast<float>(kPlayStep);
       io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
+      std::copy(played_buttons_.begin(), played_buttons_.end(), std::begin(io.MouseDown));
     }
     ImGui::NewFrame();
     if (compares()) draw_split(line_.share() * ImGui::GetIO().DisplaySize.x, panel_.names);
@@ -486,6 +503,7 @@ class Viewer {
     if (shows_panel_) {
       panel_.mode = navigator_->pose().mode;
       panel_.speed = navigator_->speed();
+      panel_.fov_deg = navigator_->pose().fov_deg;
       panel_.shown = shown_ ? &*shown_ : nullptr;
       panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
       panel_.times = !played_;  // times differ from run to run
@@ -493,6 +511,8 @@ class Viewer {
       panel_.reading = reading_at(cursor_);
       actions = draw_panel(panel_);
     }
+    if (!panel_.message.text.empty() && seconds() < panel_.message.until) draw_toast(panel_.message);
+    panel_.lists_open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     ImGui::Render();
     if (presenter_->present(seen)) {
       if (std::exchange(unpresented_, false)) timings_.present(*shown_);
@@ -503,7 +523,9 @@ class Viewer {
   }
 
   void act(const PanelActions& actions) {
-    if (actions.mode) navigator_->set_mode(*actions.mode);
+    if (actions.mode) set_mode(*actions.mode);
+    if (actions.fov_deg) navigator_->set_fov(*actions.fov_deg);
+    if (!actions.error.empty()) fail(actions.error, 0);
     if (actions.copy) copy_command();
     if (actions.save) saves_ = true, save_line_ = 0;
     if (saves_ && is_complete()) save_picture();
@@ -511,26 +533,32 @@ class Viewer {
     if (actions.compare) compare(*actions.compare);
   }
 
-  // Switches to a file that was dropped on the window, if it can be opened.
-  void open_file(const std::string& file) {
+  // Switches to files that were dropped on the window, if they can be opened together.
+  void open_files(const std::vector<std::string>& files) {
     redraws_ = kRedraws;
     try {
-      show_first_view(std::make_unique<Subject>(opening_of(file), width_, height_));
+      show_first_view(std::make_unique<Subject>(opening_of(files), width_, height_));
       bookmarks_ = {};
+      path_.clear();
+      worked_ = false;
       panel_.line.reset();
-      panel_.message.clear();
+      panel_.message = {};
       glfwSetWindowTitle(glfw_->get(), title().c_str());
     } catch (const std::exception& error) {
       fail(error.what(), played_line_);
     }
   }
 
-  // Errors are shown even if the panel was hidden; the last good picture stays. `line` is the line of a recording that
+  void say(const std::string& message) {
+    panel_.message = {message, false, seconds() + kToast};
+    redraws_ = kRedraws;
+  }
+
+  // The last good picture stays. `line` is the line of a recording that
   // caused the error; 0: none. Recordings end there.
   void fail(const std::string& message, int line) {
     if (line > 0) throw Error(fmt::format("'{}', line {}: {}", options_.play, line, message));
-    panel_.message = message;
-    shows_panel_ = true;
+    panel_.message = {message, true, seconds() + kErrorToast};
     redraws_ = kRedraws;
   }
 
@@ -547,7 +575,7 @@ class Viewer {
         names += (names.empty() ? "" : " and ") + name;
         fmt::print("{}: {}\n", name, command(i, name));
       }
-      panel_.message = names + (shown_->sides.size() > 1 ? " are saved" : " is saved");
+      say(names + (shown_->sides.size() > 1 ? " are saved" : " is saved"));
       std::fflush(stdout);
     } catch (const Error& error) {
       fail(error.what(), save_line_);
@@ -564,14 +592,17 @@ class Viewer {
     std::string text = command(0, two ? "left.png" : "picture.png");
     if (two) text += "\n" + command(1, "right.png");
     glfwSetClipboardString(glfw_->get(), text.c_str());
-    panel_.message = two ? "the commands are copied" : "the command is copied";
+    say(two ? "the commands are copied" : "the command is copied");
     fmt::print("{}\n", text);
     std::fflush(stdout);
   }
 
   void keep_in_path() {
     try {
-      panel_.message = "the view is in " + add_to_path(navigator_->pose());
+      if (path_.empty()) path_ = next_path();
+      const Pose pose = navigator_->perspective(size());
+      add_to_path(path_, pose);
+      say(fmt::format("the view is in {}, for scarp render --path --fov {:.4g}", path_, pose.fov_deg));
     } catch (const Error& error) {
       fail(error.what(), played_line_);
     }
@@ -598,9 +629,10 @@ class Viewer {
       play_seconds_ += kPlayStep;
       step(play_seconds_, kPlayStep, kPlayStep);
       draw(nullptr);
-      if (render_failed_ && !worker_->busy()) throw Error(panel_.message);
+      if (render_failed_ && !worker_->busy()) throw Error(panel_.message.text);
     }
     step(play_seconds_, kPlayStep, 0);  // takes the verdict, which the worker produces last
+    if (!panel_.message.is_error) play_seconds_ += kToast;
     Image seen;
     for (int i = 0; i < kRedraws; ++i) draw(&seen);
     if (!options_.screenshot.empty()) write_png(options_.screenshot, {seen.rgb.data(), seen.width, seen.height});
@@ -608,9 +640,14 @@ class Viewer {
 
   void take_played(const WindowEvent& event) {
     ImGuiIO& io = ImGui::GetIO();
-    if (event.kind == WindowEvent::Kind::button && event.code >= 0 && event.code < IM_ARRAYSIZE(io.MouseDown))
-      io.MouseDown[event.code] = event.down;
+    if (event.kind == WindowEvent::Kind::button && event.code >= 0 && event.code < ImGuiMouseButton_COUNT)
+      played_buttons_[static_cast<std::size_t>(event.code)] = event.down;
     // A drag or a click may have had no effect when it was recorded.
+    if (event.kind == WindowEvent::Kind::key && event.code >= 0 && event.code < IM_ARRAYSIZE(io.KeysDown)) {
+      io.KeysDown[event.code] = event.down;
+      io.KeyCtrl = (event.modifiers & GLFW_MOD_CONTROL) != 0, io.KeyShift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+    }
+    if (event.kind == WindowEvent::Kind::text) io.AddInputCharactersUTF8(event.text.c_str());
     const bool may_fail = event.kind == WindowEvent::Kind::move || event.kind == WindowEvent::Kind::button;
     played_line_ = may_fail ? 0 : event.line;
     take(event);
@@ -621,12 +658,15 @@ class Viewer {
   Timings timings_;
   int width_ = 0, height_ = 0;
   std::optional<Recording> played_;
+  std::array<bool, ImGuiMouseButton_COUNT> played_buttons_{};
   Recording recorded_;
   std::unique_ptr<Subject> subject_;
   std::unique_ptr<ReadingFrames> frames_;
   std::unique_ptr<Navigator> navigator_;
   Pose first_;
   std::array<std::optional<Pose>, kBookmarks> bookmarks_;
+  std::string path_{};   // file that K adds to; empty: none yet
+  bool worked_ = false;  // something would be lost with the window
   std::unique_ptr<Glfw> glfw_;
   std::unique_ptr<Imgui> imgui_;
   std::unique_ptr<Presenter> presenter_;

@@ -5,10 +5,14 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "app/viewer/keys.h"
 #include "scarp/base/error.h"
 
 namespace scarp::viewer {
@@ -35,6 +39,40 @@ Glfw::Glfw(int width, int height, const std::string& title) {
 Glfw::~Glfw() {
   glfwDestroyWindow(window_);
   glfwTerminate();
+}
+
+void listen(GLFWwindow* window, WindowListener listener) {
+  static WindowListener kept;
+  kept = std::move(listener);
+  glfwSetCursorPosCallback(
+      window, [](GLFWwindow*, double x, double y) { kept.event({.kind = WindowEvent::Kind::move, .x = x, .y = y}); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow*, int button, int action, int modifiers) {
+    kept.event(
+        {.kind = WindowEvent::Kind::button, .code = button, .down = action == GLFW_PRESS, .modifiers = modifiers});
+  });
+  glfwSetKeyCallback(window, [](GLFWwindow*, int key, int scancode, int action, int modifiers) {
+    if (action == GLFW_REPEAT) return;
+    kept.event({.kind = WindowEvent::Kind::key,
+                .code = key,
+                .letter = letter_of(key, scancode),
+                .down = action == GLFW_PRESS,
+                .modifiers = modifiers});
+  });
+  glfwSetCharCallback(window, [](GLFWwindow*, unsigned code) {
+    if (!ImGui::GetIO().WantTextInput) return;
+    std::array<char, 5> text{};
+    ImTextCharToUtf8(text.data(), code);
+    kept.event({.kind = WindowEvent::Kind::text, .text = text.data()});
+  });
+  glfwSetScrollCallback(
+      window, [](GLFWwindow*, double x, double y) { kept.event({.kind = WindowEvent::Kind::wheel, .x = x, .y = y}); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow*) { kept.refreshed(); });
+  glfwSetDropCallback(window, [](GLFWwindow*, int count, const char** files) {
+    if (count > 0) kept.dropped({files, files + count});
+  });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow*, int focused) {
+    if (!focused) kept.left();
+  });
 }
 
 Imgui::Imgui(GLFWwindow* window, bool listens) {

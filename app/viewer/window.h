@@ -2,7 +2,11 @@
 // Owners of GLFW's window and Dear ImGui's state.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
+
+#include "app/viewer/recording.h"
 
 struct GLFWwindow;
 
@@ -20,6 +24,16 @@ class Glfw {
  private:
   GLFWwindow* window_ = nullptr;
 };
+
+/// What a window tells.
+struct WindowListener {
+  std::function<void(const WindowEvent&)> event;
+  std::function<void()> refreshed;
+  std::function<void(const std::vector<std::string>&)> dropped;
+  std::function<void()> left;  ///< the keyboard is another window's
+};
+/// The window keeps the listener. Called once.
+void listen(GLFWwindow* window, WindowListener listener);
 
 /// Must be destroyed before the window.
 class Imgui {

@@ -65,6 +65,137 @@ TEST_F(Navigation, OrbitDoesNotFlip) {
   EXPECT_NO_THROW(navigator.camera(80, 60));
 }
 
+// Ground with a round hill: rays decide where eyes may be.
+Terrain hill() {
+  std::vector<float> samples;
+  for (int row = 0; row < 101; ++row) {
+    for (int col = 0; col < 101; ++col)
+      samples.push_back(static_cast<float>(40 * std::exp(-(std::pow(col - 50, 2) + std::pow(row - 50, 2)) / 200.0)));
+  }
+  return Terrain::own(std::move(samples), 101, 101);
+}
+
+TEST(NavigationOnAHill, EyesStayAboveTheGround) {
+  const Terrain terrain = hill();
+  const Scene scene(terrain);
+  const auto above = [&](const Navigator& navigator) {
+    const dvec3 eye = navigator.pose().eye;
+    const auto ground = scene.height(eye.x, eye.y);
+    return !ground || eye.z > *ground;
+  };
+  Navigator orbits = at(scene, {50, 5, 30}, {50, 40, 20});
+  for (int i = 0; i < 400; ++i) {
+    const double step = i % 3 == 0 ? 15 : 3;
+    switch (i % 5) {
+      case 0:
+        orbits.wheel(i % 2 ? 2 : -1, {300.0 + i, 350}, kSize);
+        break;
+      case 1:
+        orbits.shift({step, -40}, kSize);
+        break;
+      default:
+        orbits.turn({step, -40}, kSize);
+    }
+    ASSERT_TRUE(above(orbits)) << i;
+  }
+  Navigator flies = at(scene, {50, 5, 3}, {50, 50, 3});
+  EXPECT_TRUE(flies.set_mode(MoveMode::fly, kSize));
+  hold(flies, MoveKey::forward, 60);
+  EXPECT_TRUE(above(flies));
+  EXPECT_LT(flies.pose().eye.y, 50) << "through the hill";
+  flies.keep_above_ground(false);
+  hold(flies, MoveKey::forward, 60);
+  EXPECT_GT(flies.pose().eye.y, 50);
+  // Eyes below the ground get out.
+  Navigator buried = at(scene, {50, 50, 10}, {50, 90, 10});
+  EXPECT_TRUE(buried.set_mode(MoveMode::fly, kSize));
+  hold(buried, MoveKey::up, 60);
+  EXPECT_TRUE(above(buried));
+}
+
+TEST(NavigationOnAHill, WheelKeepsThePointUnderTheCursor) {
+  const Terrain terrain = hill();
+  const Scene scene(terrain);
+  Navigator navigator = at(scene, {50, -60, 50}, {50, 50, 10});
+  const dvec2 cursor(520, 330);
+  const auto under = [&] {
+    const Ray ray = navigator.camera(800, 600).ray(cursor.x, cursor.y);
+    return ray.at(scene.closest_hit(ray).t);
+  };
+  const dvec3 before = under(), eye = navigator.pose().eye;
+  for (const double steps : {2.0, 3.0, -4.0}) navigator.wheel(steps, cursor, kSize);
+  EXPECT_LT(length(navigator.pose().eye - before), length(eye - before));
+  // Coordinates below 128 m; each step rounds some tens of times.
+  EXPECT_LT(length(under() - before), 256 * 0x1p-46);
+}
+
+TEST(NavigationOnAHill, WalkersStartAtTheOrbitsPoint) {
+  const Terrain terrain = hill();
+  const Scene scene(terrain);
+  Navigator navigator = at(scene, {50, -60, 50}, {50, 30, 0});
+  const Pose before = navigator.pose();
+  const dvec3 point = before.eye + before.distance * forward_of(before);
+  EXPECT_TRUE(navigator.set_mode(MoveMode::walk, kSize));
+  const Pose& pose = navigator.pose();
+  EXPECT_EQ(dvec2(pose.eye), dvec2(point));
+  EXPECT_NEAR(pose.eye.z, *scene.height(point.x, point.y) + Navigator::kEyeHeight, 8 * 0x1p-46);
+  EXPECT_EQ(pose.altitude, 0);
+  EXPECT_EQ(pose.fov_deg, 60);
+  EXPECT_TRUE(navigator.set_mode(MoveMode::orbit, kSize));
+  EXPECT_EQ(pose.fov_deg, before.fov_deg);
+  // Without ground there, nothing changes.
+  Navigator away = at(scene, {50, -60, 50}, {50, -160, 60});
+  const Pose stays = away.pose();
+  EXPECT_FALSE(away.set_mode(MoveMode::walk, kSize));
+  EXPECT_EQ(away.pose().mode, MoveMode::orbit);
+  EXPECT_EQ(away.pose().eye, stays.eye);
+  EXPECT_EQ(away.pose().fov_deg, stays.fov_deg);
+}
+
+TEST(NavigationOnAHill, SpeedGrowsWithTheHeightAboveGround) {
+  const Terrain terrain = hill();
+  const Scene scene(terrain);
+  double before = 0;
+  for (const double z : {40.1, 42.0, 50.0}) {
+    Navigator navigator = at(scene, {50, 50, z}, {50, 90, z});
+    EXPECT_TRUE(navigator.set_mode(MoveMode::fly, kSize));
+    EXPECT_GT(navigator.speed(), before);
+    before = navigator.speed();
+    navigator.wheel(1, {400, 300}, kSize);
+    EXPECT_GT(navigator.speed(), before);
+  }
+}
+
+TEST(NavigationOnAHill, MapsShowEverything) {
+  const Terrain terrain = hill();
+  const Scene scene(terrain);
+  for (const dvec2 size : {dvec2(800, 600), dvec2(300, 900)}) {
+    Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+    EXPECT_TRUE(navigator.set_mode(MoveMode::top, size));
+    const auto [low, high] = map_corners(navigator.pose(), static_cast<int>(size.x), static_cast<int>(size.y));
+    EXPECT_TRUE(low.x <= 0 && low.y <= 0 && high.x >= 100 && high.y >= 100);
+    EXPECT_TRUE(std::min(high.x - low.x, high.y - low.y) == 100) << "no more than needed";
+  }
+}
+
+TEST(NavigationOnAHill, PathsLookDownOnWhatTheMapShows) {
+  const Terrain terrain = ground_with_wall();
+  const Scene scene(terrain);
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  EXPECT_TRUE(navigator.set_mode(MoveMode::top, kSize));
+  navigator.shift({-50, 30}, kSize);
+  navigator.wheel(4, {400, 300}, kSize);
+  const Pose pose = navigator.perspective(kSize);
+  const Camera camera = Camera::look_at(pose.eye, pose.eye + forward_of(pose), pose.fov_deg, 800, 600);
+  const Camera map = navigator.camera(800, 600);
+  for (const dvec2 pixel : {dvec2(0, 300), dvec2(800, 300), dvec2(400, 0), dvec2(400, 600)}) {
+    const Ray ray = camera.ray(pixel.x, pixel.y);
+    const Hit hit = scene.closest_hit(ray);
+    ASSERT_TRUE(hit);
+    EXPECT_LT(length(dvec2(ray.at(hit.t)) - dvec2(map.ray(pixel.x, pixel.y).origin)), 64 * 0x1p-46);
+  }
+}
+
 TEST_F(Navigation, WheelApproachesAndPanKeepsTheDistance) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
   const double before = navigator.pose().distance;
@@ -77,7 +208,7 @@ TEST_F(Navigation, WheelApproachesAndPanKeepsTheDistance) {
 
 TEST_F(Navigation, MapZoomsTowardsTheCursor) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
-  navigator.set_mode(MoveMode::top);
+  EXPECT_TRUE(navigator.set_mode(MoveMode::top, kSize));
   const dvec2 cursor(700, 100);
   const auto under = [&] { return navigator.camera(800, 600).ray(cursor.x, cursor.y).origin; };
   const dvec3 before = under();
@@ -94,7 +225,7 @@ TEST_F(Navigation, MapZoomsTowardsTheCursor) {
 
 TEST_F(Navigation, FlightDistanceFollowsTheSpeed) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 30});
-  navigator.set_mode(MoveMode::fly);
+  EXPECT_TRUE(navigator.set_mode(MoveMode::fly, kSize));
   hold(navigator, MoveKey::forward, kSecond);
   EXPECT_NEAR(navigator.pose().eye.y, 5 + navigator.speed() * kSecond, navigator.speed() * 2 * kFrame);
   EXPECT_FALSE(navigator.moving());
@@ -103,7 +234,7 @@ TEST_F(Navigation, FlightDistanceFollowsTheSpeed) {
 
 TEST_F(Navigation, WalkerStandsOnTheGroundAndStopsAtWalls) {
   Navigator navigator = at(scene, {10, 20, 30}, {90, 20, 30});
-  navigator.set_mode(MoveMode::walk);
+  EXPECT_TRUE(navigator.set_mode(MoveMode::walk, kSize));
   EXPECT_NEAR(navigator.pose().eye.z, Navigator::kEyeHeight, 1e-6);
   // At any speed, and in steps of any length.
   for (const double step : {kFrame, 1.0, 30.0}) {
@@ -136,7 +267,7 @@ TEST_F(Navigation, DoubleClickMovesToThatPoint) {
 
 TEST_F(Navigation, MapMatchesItsCorners) {
   Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
-  navigator.set_mode(MoveMode::top);
+  EXPECT_TRUE(navigator.set_mode(MoveMode::top, kSize));
   navigator.wheel(3, {200, 100}, kSize);
   navigator.shift({31, -7}, kSize);
   const auto [low, high] = map_corners(navigator.pose(), 800, 600);

@@ -37,20 +37,22 @@ TEST_F(Recordings, RoundTrip) {
   recording.events.push_back(
       {.seconds = 0.5, .kind = WindowEvent::Kind::button, .code = 1, .down = true, .modifiers = 2});
   recording.events.push_back({.seconds = 0.5, .kind = WindowEvent::Kind::key, .code = 87, .down = false});
+  recording.events.push_back({.seconds = 1, .kind = WindowEvent::Kind::key, .code = 59, .letter = 77, .down = true});
+  recording.events.push_back({.seconds = 1, .kind = WindowEvent::Kind::text, .text = " 1,5"});
   recording.events.push_back({.seconds = 2, .kind = WindowEvent::Kind::wheel, .x = 0, .y = -1});
   recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::option, .text = "--sun 300,20"});
   recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::compare, .text = "march naive"});
   recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::compare});
   write_recording(file, recording);
   const Recording read = read_recording(file);
-  EXPECT_EQ(read.events.back().line, 8);
+  EXPECT_EQ(read.events.back().line, 10);
   EXPECT_EQ(read.width, 640);
   EXPECT_EQ(read.height, 480);
   ASSERT_EQ(read.events.size(), recording.events.size());
   for (std::size_t i = 0; i < read.events.size(); ++i) {
     const WindowEvent &a = read.events[i], &b = recording.events[i];
-    EXPECT_TRUE(a.seconds == b.seconds && a.kind == b.kind && a.code == b.code && a.down == b.down &&
-                a.modifiers == b.modifiers && a.x == b.x && a.y == b.y && a.text == b.text)
+    EXPECT_TRUE(a.seconds == b.seconds && a.kind == b.kind && a.code == b.code && a.letter == b.letter &&
+                a.down == b.down && a.modifiers == b.modifiers && a.x == b.x && a.y == b.y && a.text == b.text)
         << i;
   }
 }
@@ -76,7 +78,8 @@ TEST_F(Recordings, ReportErrors) {
   EXPECT_EQ(why_not("scarp-view 9x9\n1 move 1 1\n0.5 move 1 1\n"),
             ", line 3: expected a time no earlier than the last, and an event");
   const char* kWords =
-      ", line 2: expected 'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS', 'option "
+      ", line 2: expected 'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS [LETTER]', "
+      "'text TYPED', 'option "
       "--NAME [VALUE]' or 'compare [march NAME | look NAME]' after the time";
   EXPECT_EQ(why_not("scarp-view 9x9\n1 option water\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 compare foo bar\n"), kWords);

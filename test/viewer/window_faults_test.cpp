@@ -85,16 +85,17 @@ TEST_F(WindowFaults, ReportsMissingOrInvalidInputInOneLine) {
 
 TEST_F(WindowFaults, FullDiskLeavesNoPartialPicture) {
   // A limit on the size of files, in KiB, simulates a full disk: writing fails in the same way.
-  std::ofstream(folder_ / "scarp-path.csv") << "x,y,z,tx,ty,tz\n" << std::string(1020, '#');
-  const std::string before = bytes_of("scarp-path.csv");
   ASSERT_EQ(use("dem.tif --size 320x240",
                 "prlimit --fsize=1024: --pid $pid\n"
-                "xdotool key k sleep 0.2 key p sleep 0.5 key c sleep 0.2\n"
+                "for i in {1..20}; do xdotool key k sleep 0.1; done\n"
+                "xdotool key p sleep 0.5 key c sleep 0.2\n"
                 "prlimit --fsize=unlimited: --pid $pid\n"
                 "xdotool key p sleep 0.5 key Escape"),
             0)
       << output_;
-  EXPECT_TRUE(bytes_of("scarp-path.csv") == before);
+  const std::string path = bytes_of("scarp-path-1.csv");
+  EXPECT_TRUE(path.starts_with("x,y,z,tx,ty,tz\n") && path.ends_with('\n')) << path;
+  EXPECT_TRUE(path.size() > 700 && path.size() <= 1024) << path.size();
   // The first picture that could be saved has the first name, and no other file is left.
   EXPECT_EQ(files_like("scarp-view"), 1);
   EXPECT_EQ(files_like(".png"), 1);
@@ -119,7 +120,7 @@ TEST_F(WindowFaults, MissingFileKeepsTheLastPicture) {
           "xdotool key Escape"),
       0)
       << output_;
-  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 1\n");
+  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 0\n");
   const std::string first = bytes_of("scarp-view-1.png");
   EXPECT_TRUE(bytes_of("scarp-view-2.png") == first) << "without the file";
   EXPECT_TRUE(bytes_of("scarp-view-3.png") == first) << "with half of the file";
@@ -138,7 +139,7 @@ TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
                 "sed -i s/radius/rade/ scene.json; xdotool key F5 sleep 0.5 key p sleep 0.5 key Escape"),
             0)
       << output_;
-  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 1\n");
+  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 0\n");
   std::ofstream(folder_ / "scene.json") << scene;
   ASSERT_EQ(run(printed_command("again.png")), 0) << output_;
   EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));

@@ -66,7 +66,7 @@ struct WindowOptions : testing::Test {
 };
 
 TEST_F(WindowOptions, AreSuspendedWithoutEffect) {
-  const Opening plain = opening_of(file);
+  const Opening plain = opening_of({file});
   EXPECT_EQ(words_of(plain), "");
   const Opening wavy = with(plain, {{"--water", "10"}, {"--waves", "0.1"}});
   EXPECT_EQ(words_of(wavy), " --water=10 --waves=0.1");
@@ -85,7 +85,7 @@ TEST_F(WindowOptions, AreSuspendedWithoutEffect) {
 }
 
 TEST_F(WindowOptions, ReportErrors) {
-  const Opening plain = opening_of(file);
+  const Opening plain = opening_of({file});
   EXPECT_THROW(changed(plain, {"--nothing", "1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--samples", "-1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--waves", "0.1"}), Error);  // there is no water
@@ -98,14 +98,14 @@ TEST_F(WindowOptions, ReportErrors) {
 }
 
 TEST_F(WindowOptions, ScreenshotsAreNamedPng) {
-  const Opening played = with(opening_of(file), {{"--play", "events"}});
+  const Opening played = with(opening_of({file}), {{"--play", "events"}});
   EXPECT_NO_THROW(changed(played, {"--screenshot", "window.PNG"}));
   for (const char* name : {"window.bmp", "window", "png"})
     EXPECT_THROW(changed(played, {"--screenshot", name}), Error) << name;
 }
 
 TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
-  Subject subject(opening_of(file), 64, 48);
+  Subject subject(opening_of({file}), 64, 48);
   std::vector<Control> controls = subject.controls({});
   const Control samples = control(controls, "--samples");
   EXPECT_EQ(samples.kind, ControlKind::number);
@@ -138,10 +138,52 @@ TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
   EXPECT_FALSE(has_control(controls, "--water"));
 }
 
+TEST_F(WindowOptions, ControlsShowWhatIsInForce) {
+  const Subject steps(with(opening_of({file}), {{"--look", "steps"}}), 16, 12);
+  EXPECT_EQ(control(steps.controls({}), "--ramp").choice, "viridis");
+  const Subject own(with(opening_of({file}), {{"--look", "steps"}, {"--ramp", "grey"}}), 16, 12);
+  EXPECT_EQ(control(own.controls({}), "--ramp").choice, "grey");
+  // A scene's own water can be drained.
+  const std::string scene = file + ".json";
+  std::ofstream(scene) << R"({"water": {"level": 15}, "objects": [{"heights": {"file": ")"
+                       << std::filesystem::path(file).filename().string() << "\"}}]}";
+  Subject lake(opening_of({scene}), 64, 48);
+  Control water = control(lake.controls({}), "--water");
+  EXPECT_FALSE(water.rests);
+  EXPECT_EQ(water.numbers[0], 15);
+  EXPECT_EQ(water.unit, "m");
+  const std::vector<std::uint8_t> wet = picture_of(lake);
+  water.rests = true;
+  lake.change(change_of(water));
+  EXPECT_TRUE(control(lake.controls({}), "--water").rests);
+  EXPECT_NE(picture_of(lake), wet);
+  EXPECT_EQ(words_of(lake.opening()), " --no-water");
+  water.rests = false;
+  lake.change(change_of(water));
+  EXPECT_EQ(picture_of(lake), wet);
+  std::filesystem::remove(scene);
+}
+
+TEST(TypedNumbers, HaveAPointOrAComma) {
+  const std::pair<const char*, double> kGood[] = {{"1.5", 1.5}, {"1,5", 1.5},    {" 12 ", 12}, {"-3,25", -3.25},
+                                                  {"+4", 4},    {"1e3", 1000.0}, {",5", 0.5}};
+  for (const auto& [text, number] : kGood) EXPECT_EQ(typed_number(text), number) << text;
+  for (const char* text : {"", " ", "1,234.5", "1.234,5", "1,2,3", "1.5.2", "1.5 m", "nan", "inf", "--1", "one", "1 5"})
+    EXPECT_FALSE(typed_number(text)) << text;
+}
+
+// As arguments of a command.
+TEST_F(WindowOptions, SeveralFilesAreOneInput) {
+  const std::string other = file + ".npy";
+  std::filesystem::copy_file(file, other);
+  EXPECT_EQ(opening_of({file, other}).options->inputs, (std::vector<std::string>{file, other}));
+  std::filesystem::remove(other);
+}
+
 // Every change of a control is an option with a value in range, and the control then shows it.
 TEST_F(WindowOptions, EveryControlChangesItsOption) {
   for (const char* look : {"shaded", "steps", "height", "error", "hillshade"}) {
-    Subject subject(with(opening_of(file), {{"--look", look}}), 16, 12);
+    Subject subject(with(opening_of({file}), {{"--look", look}}), 16, 12);
     for (Control moved : subject.controls({})) {
       if (moved.option == "--march" || moved.option == "--look") continue;
       moved.rests = false;
@@ -174,8 +216,8 @@ TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
   const std::vector<OptionChange> changes = {{"--water", "8"},      {"--fog", "height"}, {"--fog-base", "4"},
                                              {"--ramp", "viridis"}, {"--sun", "100,20"}, {"--sky", "scattering"},
                                              {"--haze", "0.4"},     {"--contours", "3"}, {"--look", "height"}};
-  Subject subject(opening_of(file), 64, 48);
-  Opening opening = opening_of(file);
+  Subject subject(opening_of({file}), 64, 48);
+  Opening opening = opening_of({file});
   std::vector<std::uint8_t> before = picture_of(subject);
   for (const OptionChange& change : changes) {
     if (change.option == "--haze") {
@@ -196,8 +238,8 @@ TEST_F(WindowOptions, ImmediateChangesMatchAReload) {
 
 // Sliders of these options take effect when the mouse is released.
 TEST_F(WindowOptions, ReopenIfTheInputDependsOnThem) {
-  const Subject ground(opening_of(file), 16, 12), holes(with(opening_of(file), {{"--nodata", "nan"}}), 16, 12),
-      large(with(opening_of(file), {{"--look", "comanche"}}), 16, 12);
+  const Subject ground(opening_of({file}), 16, 12), holes(with(opening_of({file}), {{"--nodata", "nan"}}), 16, 12),
+      large(with(opening_of({file}), {{"--look", "comanche"}}), 16, 12);
   for (const OptionChange& change : {OptionChange{"--samples", "8"},
                                      {"--water", "7"},
                                      {"--contours", "3"},
@@ -236,7 +278,7 @@ TEST_F(WindowOptions, ReopenIfTheInputDependsOnThem) {
 }
 
 TEST_F(WindowOptions, SidesDifferInOneOption) {
-  Subject subject(opening_of(file), 64, 48);
+  Subject subject(opening_of({file}), 64, 48);
   const auto with = subject.comparisons();
   EXPECT_NE(std::find(with.begin(), with.end(), "march fixed-step"), with.end());
   EXPECT_NE(std::find(with.begin(), with.end(), "look steps"), with.end());
@@ -275,7 +317,7 @@ TEST_F(WindowOptions, SidesDifferInOneOption) {
 }
 
 TEST_F(WindowOptions, CommandContainsTheSettings) {
-  const Opening opening = with(opening_of(file), {{"--sun", "100,20"}, {"--no-shadows", "true"}, {"--top", "true"}});
+  const Opening opening = with(opening_of({file}), {{"--sun", "100,20"}, {"--no-shadows", "true"}, {"--top", "true"}});
   const cli::Places local({}, Coordinates::local, 1);
   Pose pose;
   pose.mode = MoveMode::top;
@@ -294,7 +336,7 @@ TEST_F(WindowOptions, SingleRaysUseTheCpu) {
   // symbol.
   static const Subject* subject = nullptr;
   try {
-    subject = new Subject(with(opening_of(file), {{"--device", "auto"}}), 64, 48);
+    subject = new Subject(with(opening_of({file}), {{"--device", "auto"}}), 64, 48);
   } catch (const Error& error) {
     if (!std::string_view(error.what()).starts_with("Vulkan: no ")) throw;
     GTEST_SKIP() << error.what();
@@ -335,7 +377,7 @@ TEST_F(WindowOptions, LargePixelsFillTheWindow) {
       {{{"--look", "height"}, {"--lowres", "300x200"}}, " --look=height -o a.png --lowres 21x16 --eye=", 21, 16, 3},
       {{{"--look", "height"}}, " --look=height -o a.png --size 64x48 --eye=", 64, 48, 1}};
   for (const Case& one : cases) {
-    const Subject subject(with(opening_of(file), one.changes), 64, 48);
+    const Subject subject(with(opening_of({file}), one.changes), 64, 48);
     const PictureSettings settings = subject.sides(64, 48).front().settings;
     EXPECT_EQ(settings.width, one.width) << one.size;
     EXPECT_EQ(settings.height, one.height) << one.size;
@@ -347,7 +389,7 @@ TEST_F(WindowOptions, LargePixelsFillTheWindow) {
 }
 
 TEST_F(WindowOptions, CompareOtherLooksWithLargePixels) {
-  Subject subject(with(opening_of(file), {{"--look", "comanche"}, {"--pixel-size", "4"}}), 64, 48);
+  Subject subject(with(opening_of({file}), {{"--look", "comanche"}, {"--pixel-size", "4"}}), 64, 48);
   for (const std::string& comparison : subject.comparisons()) {
     ASSERT_NO_THROW(subject.compare(comparison)) << comparison;
     const bool look = comparison.starts_with("look");
@@ -370,7 +412,7 @@ TEST_F(WindowOptions, CommandContainsTheMeshPosition) {
   std::ofstream triangle(mesh);
   triangle << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   triangle.close();
-  Subject subject(with(opening_of(map), {{"--mesh", mesh}, {"--mesh-at", "1004,2002"}, {"--coords", "map"}}), 64, 48);
+  Subject subject(with(opening_of({map}), {{"--mesh", mesh}, {"--mesh-at", "1004,2002"}, {"--coords", "map"}}), 64, 48);
   const auto command = [&] {
     return render_command(subject.opening(), subject.prepared().places(), Pose{}, 80, 40, "a.png");
   };

@@ -201,6 +201,67 @@ TEST_F(Window, HandlesRealPressesAndDrags) {
     EXPECT_NE(events.find(event), std::string::npos) << event << '\n' << events;
 }
 
+TEST_F(Window, TypedNumbersMayHaveAComma) {
+  // Into the first slider of the panel, the field of view, after Ctrl and a click; 257 is Enter.
+  const auto typed = [&](const std::string& text) {
+    EXPECT_EQ(view("0.1 move 60 70\n0.2 key 341 1 2\n0.3 button 0 1 2\n0.4 button 0 0 2\n0.5 key 341 0 0\n0.7 text " +
+                       text + "\n0.9 key 257 1 0\n1 key 257 0 0\n1.2 key 67 1 0\n",
+                   "dem.tif --screenshot window.png"),
+              0)
+        << output_;
+    const std::size_t at = output_.find(" --fov ");
+    return at == std::string::npos ? output_ : output_.substr(at + 7, output_.find('\n', at) - at - 7);
+  };
+  EXPECT_EQ(typed("45.5"), "45.5");
+  EXPECT_EQ(typed("45,5"), "45.5");
+  const std::string usual = typed("4,5.5");
+  EXPECT_EQ(typed("many"), usual);
+  EXPECT_NE(usual, "45.5");
+}
+
+TEST_F(Window, KeysFollowTheLayout) {
+  ASSERT_EQ(use("dem.tif --size 320x240 --record events",
+                "setxkbmap fr\n"
+                "xdotool key m sleep 0.1 key z sleep 0.1 key m sleep 0.1 key Escape\n"
+                "setxkbmap us"),
+            0)
+      << output_;
+  const std::string events = bytes_of("events");
+  // M is right of L, and Z where W is on a US keyboard.
+  for (const char* event : {" key 59 1 0 77\n", " key 87 1 0 90\n"})
+    EXPECT_NE(events.find(event), std::string::npos) << event << events;
+}
+
+TEST_F(Window, WorkIsNotClosedByMistake) {
+  ASSERT_EQ(use("dem.tif --size 320x240",
+                "xdotool key ctrl+2 sleep 0.2 key Escape sleep 0.5\n"
+                "kill -0 $pid || exit 7\n"
+                "xdotool key ctrl+q"),
+            0)
+      << output_;
+  // Esc closes a list first: that of the looks.
+  ASSERT_EQ(use("dem.tif --size 320x240",
+                "xdotool mousemove 100 93 sleep 0.2 click 1 sleep 0.5 key Escape sleep 0.5\n"
+                "kill -0 $pid || exit 7\n"
+                "xdotool key Escape"),
+            0)
+      << output_;
+}
+
+TEST_F(Window, EachInputHasItsOwnPath) {
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(view("1 key 75 1 0\n1.1 key 75 0 0\n1.2 key 75 1 0\n", "dem.tif"), 0);
+  for (const char* name : {"scarp-path-1.csv", "scarp-path-2.csv"}) {
+    const std::string text = bytes_of(name);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << text;
+  }
+  // A map is an eye that looks straight down.
+  ASSERT_EQ(view("1 key 84 1 0\n1.1 key 84 0 0\n1.2 key 75 1 0\n", "dem.tif"), 0) << output_;
+  std::istringstream row(bytes_of("scarp-path-3.csv").substr(std::string("x,y,z,tx,ty,tz\n").size()));
+  double place[6];
+  for (double& number : place) row >> number, row.get();
+  EXPECT_TRUE(place[0] == place[3] && place[1] == place[4] && place[2] == place[5] + 1);
+}
+
 TEST_F(Window, SurvivesResizing) {
   ASSERT_EQ(use("dem.tif --size 320x240",
                 "for size in '400 300' '100 90' '1 1' '639 31' '320 400'; do xdotool windowsize $window $size; done\n"

@@ -171,6 +171,10 @@ void add_water_options(Command& command, PictureRequest& o) {
                          .unit = "metres",
                          .note = "water covers all ground below it",
                          .common = true});
+  water(&o.no_water, {.names = "--no-water",
+                      .help = "without the water of the scene file",
+                      .inputs = {kScene, "only scene files have their own water"},
+                      .excludes = {"--water"}});
   water([&o](const std::string& text) { o.water_srgb = colour_from(text, "--water-colour"); },
         {.names = "--water-colour",
          .value = "RRGGBB",

@@ -116,7 +116,8 @@ PictureRequest merged(PictureRequest r, const PictureRequest& own) {
   take(r.haze, own.haze);
   take(r.samples, own.samples), take(r.ao_distance, own.ao_distance), take(r.seed, own.seed);
   if (r.materials.empty()) r.materials = own.materials;
-  take(r.water_level, own.water_level), take(r.water_srgb, own.water_srgb);
+  if (!r.no_water) take(r.water_level, own.water_level);
+  take(r.water_srgb, own.water_srgb);
   take(r.water_turbidity, own.water_turbidity), take(r.waves, own.waves), take(r.wavelength, own.wavelength);
   take(r.reflection, own.reflection), take(r.refraction, own.refraction);
   if (!r.fog) {

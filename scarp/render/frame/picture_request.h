@@ -57,6 +57,7 @@ struct PictureRequest {
 
   // Water, enabled by `water_level`.
   std::optional<double> water_level{};
+  bool no_water = false;  ///< without the water of the input's own request
   std::optional<vec3> water_srgb{};
   std::optional<double> water_turbidity{}, waves{}, wavelength{};
   std::optional<bool> reflection{}, refraction{};
