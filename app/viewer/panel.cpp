@@ -87,7 +87,7 @@ class Sliders {
 
   void begin(const std::string& id, const std::string& text) { state_.typed = {id, text, text}; }
 
-  // Of the slider that is drawn next.
+  // Whether the slider that is drawn next was clicked for typing.
   static bool clicked_to_type() {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const ImVec2 to{from.x + ImGui::CalcItemWidth(), from.y + ImGui::GetFrameHeight()};
@@ -225,7 +225,7 @@ std::optional<OptionChange> draw_controls(PanelState& state, Sliders& sliders) {
   return change;
 }
 
-// Of all modes but the map.
+// All modes but the map have a field of view.
 void draw_fov(const PanelState& state, Sliders& sliders, PanelActions& actions) {
   constexpr double kLeast = 10, kMost = 120;  // of the slider
   if (state.mode == MoveMode::top) return;

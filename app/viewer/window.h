@@ -25,7 +25,7 @@ class Glfw {
   GLFWwindow* window_ = nullptr;
 };
 
-/// What a window tells.
+/// Called for the events of a window.
 struct WindowListener {
   std::function<void(const WindowEvent&)> event;
   std::function<void()> refreshed;

@@ -17,8 +17,8 @@ struct VectorShape {
   const char *layer, *name, *wkt;
 };
 
-// In EPSG:32633, with a column "name". Layers come in the order of their first shapes, and have the type of all of
-// theirs.
+// In EPSG:32633, with a column "name". Layers come in the order of their first shapes, and have the type of their
+// shapes, if that is one.
 inline std::string vector_package(const std::string& path, const std::vector<VectorShape>& shapes) {
   GDALAllRegister();
   const GDALDatasetUniquePtr file(
