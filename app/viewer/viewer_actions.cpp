@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// Changes of settings and inputs; what the window writes and says.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app/viewer/view_output.h"
+#include "app/viewer/viewer_window.h"
+#include "scarp/base/error.h"
+
+namespace scarp::viewer {
+namespace {
+
+constexpr double kErrorToast = 10;  // seconds that an error is over the picture
+
+}  // namespace
+
+void Viewer::change(const OptionChange& change) {
+  worked_ = true;
+  attempt([&] { return subject_->change(change); });
+}
+
+// Errors are shown when the change is made.
+bool Viewer::reopens(const OptionChange& change) const {
+  try {
+    return subject_->reopens(change);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+void Viewer::reopen() {
+  attempt([&] {
+    subject_->reopen();
+    return true;
+  });
+}
+
+// `changed` returns whether the input was reopened; the view stays.
+void Viewer::attempt(const std::function<bool()>& changed) {
+  const double height = subject_->prepared().exaggeration();
+  const Pose pose = navigator_->pose();
+  try {
+    if (changed()) {
+      navigate(subject_->first_camera());
+      navigator_->set_pose(with_heights_times(pose, subject_->prepared().exaggeration() / height));
+    }
+    panel_.message = {};
+  } catch (const std::exception& error) {
+    fail(error.what(), played_line_);
+  }
+  note_change();
+}
+
+void Viewer::compare(const std::string& with) {
+  try {
+    subject_->compare(with);
+  } catch (const std::exception& error) {
+    fail(error.what(), played_line_);
+  }
+  note_change();
+}
+
+void Viewer::drag_sun(const dvec2& drag) {
+  const SunSettings sun = subject_->settings().sun;
+  const dvec2 to = dragged_sun({sun.azimuth_deg, sun.altitude_deg}, drag, size());
+  change({"--sun", fmt::format("{:.2f},{:.2f}", to.x, to.y)});
+}
+
+// Switches to files that were dropped on the window, if they can be opened together.
+void Viewer::open_files(const std::vector<std::string>& files) {
+  redraws_ = kRedraws;
+  try {
+    show_first_view(std::make_unique<Subject>(opening_of(files), width_, height_));
+    bookmarks_ = {};
+    path_.clear();
+    worked_ = false;
+    panel_.line.reset();
+    panel_.message = {};
+    glfwSetWindowTitle(glfw_->get(), title().c_str());
+  } catch (const std::exception& error) {
+    fail(error.what(), played_line_);
+  }
+}
+
+void Viewer::say(const std::string& message) {
+  panel_.message = {message, false, seconds() + kToast};
+  redraws_ = kRedraws;
+}
+
+std::string Viewer::command(std::size_t side, const std::string& output) const {
+  return render_command(*subject_->openings()[side], subject_->prepared().places(), navigator_->pose(), width_, height_,
+                        output);
+}
+
+// The last good picture stays. `line` is the line of a recording that
+// caused the error; 0: none. Recordings end there.
+void Viewer::fail(const std::string& message, int line) {
+  if (line > 0) throw Error(fmt::format("'{}', line {}: {}", options_.play, line, message));
+  panel_.message = {message, true, seconds() + kErrorToast};
+  redraws_ = kRedraws;
+}
+
+// Saves both sides if there are two.
+void Viewer::save_picture() {
+  saves_ = false;
+  redraws_ = kRedraws;
+  try {
+    std::string names;
+    for (std::size_t i = 0; i < shown_->sides.size(); ++i) {
+      const std::string name = save_numbered(shown_->sides[i].image);
+      names += (names.empty() ? "" : " and ") + name;
+      fmt::print("{}: {}\n", name, command(i, name));
+    }
+    say(names + (shown_->sides.size() > 1 ? " are saved" : " is saved"));
+    std::fflush(stdout);
+  } catch (const Error& error) {
+    fail(error.what(), save_line_);
+  }
+}
+
+void Viewer::copy_command() {
+  const bool two = subject_->openings().size() > 1;
+  std::string text = command(0, two ? "left.png" : "picture.png");
+  if (two) text += "\n" + command(1, "right.png");
+  glfwSetClipboardString(glfw_->get(), text.c_str());
+  say(two ? "the commands are copied" : "the command is copied");
+  fmt::print("{}\n", text);
+  std::fflush(stdout);
+}
+
+void Viewer::keep_in_path() {
+  try {
+    if (path_.empty()) path_ = next_path();
+    const Pose pose = navigator_->perspective(size());
+    add_to_path(path_, pose);
+    say(fmt::format("the view is in {}, for scarp render --path --fov {:.4g}", path_, pose.fov_deg));
+  } catch (const Error& error) {
+    fail(error.what(), played_line_);
+  }
+}
+
+}  // namespace scarp::viewer
