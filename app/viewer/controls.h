@@ -36,6 +36,7 @@ struct Control {
   bool on = false;        ///< flags
   bool may_rest = false;  ///< may be unset, with an effect that no value has: no water
   bool rests = false;     ///< currently unset
+  bool reset = false;     ///< to be unset: a double click
   bool whole = false;     ///< whole numbers
   bool logarithmic = false;
   double least = 0, most = 1;  ///< ends of the slider

@@ -18,21 +18,19 @@ std::optional<Value> find(const std::array<std::pair<int, Value>, Count>& table,
   return found == table.end() ? std::nullopt : std::optional(found->second);
 }
 
-constexpr std::array<std::pair<int, WindowAction>, 14> kActions = {{
-    {GLFW_KEY_O, WindowAction::orbit},
-    {GLFW_KEY_F, WindowAction::fly},
-    {GLFW_KEY_G, WindowAction::walk},
-    {GLFW_KEY_T, WindowAction::top},
-    {GLFW_KEY_H, WindowAction::first_view},
-    {GLFW_KEY_M, WindowAction::measure},
-    {GLFW_KEY_K, WindowAction::keep_in_path},
-    {GLFW_KEY_C, WindowAction::copy},
-    {GLFW_KEY_P, WindowAction::save},
-    {GLFW_KEY_X, WindowAction::through_ground},
-    {GLFW_KEY_F5, WindowAction::reopen},
-    {GLFW_KEY_TAB, WindowAction::panel},
-    {GLFW_KEY_F1, WindowAction::help},
-    {GLFW_KEY_ESCAPE, WindowAction::escape},
+constexpr std::array<std::pair<int, WindowAction>, 24> kActions = {{
+    {GLFW_KEY_O, WindowAction::orbit},        {GLFW_KEY_F, WindowAction::fly},
+    {GLFW_KEY_G, WindowAction::walk},         {GLFW_KEY_T, WindowAction::top},
+    {GLFW_KEY_H, WindowAction::first_view},   {GLFW_KEY_M, WindowAction::measure},
+    {GLFW_KEY_K, WindowAction::keep_in_path}, {GLFW_KEY_C, WindowAction::copy},
+    {GLFW_KEY_P, WindowAction::save},         {GLFW_KEY_X, WindowAction::through_ground},
+    {GLFW_KEY_R, WindowAction::copy_reading}, {GLFW_KEY_F11, WindowAction::full_screen},
+    {GLFW_KEY_EQUAL, WindowAction::nearer},   {GLFW_KEY_KP_ADD, WindowAction::nearer},
+    {GLFW_KEY_MINUS, WindowAction::farther},  {GLFW_KEY_KP_SUBTRACT, WindowAction::farther},
+    {GLFW_KEY_LEFT, WindowAction::look_left}, {GLFW_KEY_RIGHT, WindowAction::look_right},
+    {GLFW_KEY_UP, WindowAction::look_up},     {GLFW_KEY_DOWN, WindowAction::look_down},
+    {GLFW_KEY_F5, WindowAction::reopen},      {GLFW_KEY_TAB, WindowAction::panel},
+    {GLFW_KEY_F1, WindowAction::help},        {GLFW_KEY_ESCAPE, WindowAction::escape},
 }};
 
 constexpr std::array<std::pair<int, MoveKey>, 8> kMoves = {{
@@ -60,8 +58,15 @@ int letter_of(int key, int scancode) {
   if (key != GLFW_KEY_UNKNOWN && (key < GLFW_KEY_SPACE || key > GLFW_KEY_WORLD_2)) return key;
   const char* const name = glfwGetKeyName(key, scancode);
   if (!name || !name[0] || name[1]) return key;
+  if (name[0] == '+') return GLFW_KEY_EQUAL;
+  if (name[0] == '-') return GLFW_KEY_MINUS;
   const int capital = std::toupper(static_cast<unsigned char>(name[0]));
   return capital >= GLFW_KEY_A && capital <= GLFW_KEY_Z ? capital : key;
+}
+
+bool repeats(int letter) {
+  const auto action = action_of(letter);
+  return action && *action >= WindowAction::nearer && *action <= WindowAction::look_down;
 }
 
 std::optional<WindowAction> action_of(int letter) { return find(kActions, letter); }
@@ -76,6 +81,7 @@ std::vector<HelpLine> help_lines() {
           {"right or middle drag", "shift"},
           {"Ctrl and left drag", "move the sun"},
           {"drag of the line", "compared pictures: show more of one of them"},
+          {"arrows, +, -", "as a drag, as the wheel"},
           {"wheel", "towards the cursor; fly and walk: speed"},
           {"double click", "go there"},
           {moves, "fly and walk: move; down and up; faster"},
@@ -87,8 +93,10 @@ std::vector<HelpLine> help_lines() {
           {"K", "add the view to a path, for scarp render --path"},
           {"C", "copy the command that makes the picture again"},
           {"P", "save the picture"},
+          {"R", "copy the coordinates under the cursor"},
+          {"Ctrl Z, Ctrl Y", "take a change of the panel back, make it again"},
           {"F5", "open the input again"},
-          {"Tab", "hide the panel"},
+          {"Tab, F11", "hide the panel; full screen"},
           {"F1", "this list"},
           {"Esc", "end measuring, close lists; without any, the window"},
           {"Ctrl Q", "close the window"}};

@@ -25,6 +25,14 @@ enum class WindowAction {
   panel,
   help,
   through_ground,
+  copy_reading,
+  full_screen,
+  nearer,
+  farther,
+  look_left,
+  look_right,
+  look_up,
+  look_down,
   escape
 };
 
@@ -36,6 +44,8 @@ struct HelpLine {
 /// The key that the user's layout labels with the same letter as GLFW's number of a key does on a US keyboard; that
 /// key itself without a Latin letter.
 int letter_of(int key, int scancode);
+/// Whether a held key acts again and again.
+bool repeats(int letter);
 /// The action of a key press, by GLFW's number of its letter.
 std::optional<WindowAction> action_of(int letter);
 /// The movement of a key while it is held, by GLFW's number of its position.

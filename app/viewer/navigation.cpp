@@ -43,6 +43,7 @@ dvec3 forward_of(const Pose& pose) {
 
 Pose with_heights_times(const Pose& pose, double factor) {
   Pose there = pose;
+  if (factor == 1) return there;  // to the bit
   // Modes that turn around a point keep turning around it.
   const dvec3 way = pose.mode == MoveMode::orbit ? pose.distance * forward_of(pose) : dvec3(0.0);
   there.eye = pose.eye + way;
@@ -72,7 +73,7 @@ WorldBox box_of_map(const Scene& scene) {
 
 Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, double across)
     : scene_(scene), box_(box_of_map(scene)), across_(across > 0 ? across : 1) {
-  pose_.fov_deg = fov_deg;
+  pose_.fov_deg = usual_fov_deg_ = fov_deg;
   first_eye_ = pose_.eye = first.eye();
   const dvec3 forward = first.forward();
   pose_.azimuth = std::atan2(forward.y, forward.x);
@@ -81,7 +82,7 @@ Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, do
   const dvec2 size = first.size();
   const Ray middle = first.ray(size.x / 2, size.y / 2);
   const Hit hit = scene_.closest_hit(middle);
-  pose_.distance = hit ? hit.t : across_;
+  pose_.distance = hit ? std::max(hit.t, kLeastMap * across_) : across_;
   if (first.orthographic()) pose_.mode = MoveMode::top;
 }
 
@@ -170,8 +171,7 @@ double Navigator::speed() const {
 }
 
 void Navigator::set_fov(double degrees) {
-  constexpr double kLeast = 1, kMost = 170;
-  pose_.fov_deg = std::clamp(degrees, kLeast, kMost);
+  pose_.fov_deg = std::clamp(degrees, kLeastFov, kMostFov);
   changed_ = true;
 }
 
@@ -232,7 +232,7 @@ void Navigator::go_to(const dvec3& at) {
   } else {
     const dvec3 way = at - pose_.eye;
     pose_.azimuth = std::atan2(way.y, way.x);
-    pose_.distance = kGoTo * length(way);
+    pose_.distance = std::max(kGoTo * length(way), kLeastMap * across_);
     pose_.altitude = std::clamp(std::atan2(way.z, std::hypot(way.x, way.y)), -kSteepest, kSteepest);
     pose_.eye = at - pose_.distance * forward_of(pose_);
   }
@@ -300,7 +300,8 @@ std::optional<dvec3> Navigator::point_under(const dvec2& at, const dvec2& size) 
 
 // Orbit turns around what the middle of the picture shows.
 void Navigator::look_at_middle() {
-  if (const auto seen = point_under({0.5, 0.5}, {1, 1})) pose_.distance = length(*seen - pose_.eye);
+  if (const auto seen = point_under({0.5, 0.5}, {1, 1}))
+    pose_.distance = std::max(length(*seen - pose_.eye), kLeastMap * across_);
 }
 
 // Whether an eye may move so. Below the ground and inside of objects all ways are free, so that it gets out.

@@ -45,7 +45,8 @@ constexpr std::size_t kMoveKeys = 7;
 
 class Navigator {
  public:
-  static constexpr double kEyeHeight = 1.7;  ///< of a walker, in metres above the ground
+  static constexpr double kEyeHeight = 1.7;               ///< of a walker, in metres above the ground
+  static constexpr double kLeastFov = 1, kMostFov = 150;  ///< degrees
 
   /// `scene` is queried for walkers, and must outlive the navigator; `across` is the extent of the scene in metres.
   Navigator(const Scene& scene, const Camera& first, double fov_deg, double across);
@@ -64,7 +65,7 @@ class Navigator {
   bool set_mode(MoveMode mode, const dvec2& size);
   /// Metres per second of fly and walk.
   double speed() const;
-  /// The vertical field of view in degrees, 1 to 170.
+  /// Sets the vertical field of view in degrees, limited to kLeastFov .. kMostFov.
   void set_fov(double degrees);
   /// Whether exact rays keep the eye above the ground; they do at first.
   void keep_above_ground(bool keep) { above_ground_ = keep; }

@@ -88,18 +88,16 @@ Opening opening_of(const std::vector<std::string>& files) {
   return settle_opening(parsed.program, parsed.options, parsed.command);
 }
 
-Opening changed(const Opening& before, const OptionChange& change) {
-  if (!before.command().find(change.option)) throw cli::WrongUsage(fmt::format("unknown option '{}'", change.option));
-  std::vector<GivenOption> given = before.given;
-  std::erase_if(given, [&](const GivenOption& one) { return one.name == change.option; });
-  if (change.text) given.push_back({change.option, {*change.text}});
+namespace {
+
+// `set` may not be suspended; empty: all may be.
+Opening opened_with(const Opening& before, std::vector<GivenOption> given, const std::string& set) {
   std::vector<GivenOption> used = combinable(before.command(), given);
   for (;;) {
     const Parsed parsed(used);
     const cli::Use use = use_of(cli::kind_of_input(parsed.command, *parsed.options), *parsed.options);
     const std::vector<std::string> idle = parsed.command.without_effect(use);
-    if (change.text && contains(idle, change.option))
-      cli::require_effect(*parsed.command.find(change.option), use);  // throws
+    if (contains(idle, set)) cli::require_effect(*parsed.command.find(set), use);  // throws
     if (idle.empty()) {
       Opening opening = settle_opening(parsed.program, parsed.options, parsed.command);
       opening.given = std::move(given);
@@ -107,6 +105,20 @@ Opening changed(const Opening& before, const OptionChange& change) {
     }
     std::erase_if(used, [&](const GivenOption& one) { return contains(idle, one.name); });
   }
+}
+
+}  // namespace
+
+Opening changed(const Opening& before, const OptionChange& change) {
+  if (!before.command().find(change.option)) throw cli::WrongUsage(fmt::format("unknown option '{}'", change.option));
+  std::vector<GivenOption> given = before.given;
+  std::erase_if(given, [&](const GivenOption& one) { return one.name == change.option; });
+  if (change.text) given.push_back({change.option, {*change.text}});
+  return opened_with(before, std::move(given), change.text ? change.option : std::string());
+}
+
+Opening with_options(const Opening& before, std::vector<GivenOption> given) {
+  return opened_with(before, std::move(given), {});
 }
 
 }  // namespace scarp::viewer

@@ -48,5 +48,7 @@ struct OptionChange {
 /// until they apply again. Throws Error and WrongUsage for an unknown option, a wrong value, or an option without
 /// effect.
 Opening changed(const Opening& before, const OptionChange& change);
+/// The same input with these options, some of which may be suspended. Throws Error and WrongUsage.
+Opening with_options(const Opening& before, std::vector<GivenOption> given);
 
 }  // namespace scarp::viewer

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/viewer/keys.h"
+#include "app/viewer/scaled.h"
 #include "app/viewer/verdict_text.h"
 
 namespace scarp::viewer {
@@ -18,9 +19,7 @@ namespace {
 constexpr std::array<const char*, 4> kModes = {"orbit", "fly", "walk", "top"};
 constexpr std::array<const char*, 4> kPasses = {"moving", "full resolution", "refining", "complete"};
 // Pixels at a scale of 1.
-constexpr float kControlWidth = 160, kTextWidth = 350, kProfileHeight = 70, kMargin = 10;
-
-float scaled(float pixels) { return pixels * ImGui::GetFontSize() / 13; }
+constexpr float kControlWidth = 160, kTextWidth = 350, kProfileHeight = 70;
 
 void draw_wrapped(const std::string& text) {
   ImGui::PushTextWrapPos(scaled(kTextWidth));
@@ -51,7 +50,10 @@ bool applies(const Control& control, bool moved, const Reopens& reopens) {
   return (moved || released) && (reopens(change_of(control)) ? released : moved);
 }
 
-// Sliders whose value may be typed, after Ctrl and click or a double click.
+// Whether the item that was drawn last shall have its default again.
+bool is_reset() { return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0) && !ImGui::GetIO().KeyCtrl; }
+
+// Sliders whose value may be typed, after Ctrl and click.
 class Sliders {
  public:
   Sliders(PanelState& state, PanelActions& actions) : state_(state), actions_(actions) {}
@@ -92,7 +94,7 @@ class Sliders {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const ImVec2 to{from.x + ImGui::CalcItemWidth(), from.y + ImGui::GetFrameHeight()};
     if (!ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(from, to)) return false;
-    return ImGui::IsMouseDoubleClicked(0) || (ImGui::IsMouseClicked(0) && ImGui::GetIO().KeyCtrl);
+    return ImGui::IsMouseClicked(0) && ImGui::GetIO().KeyCtrl;
   }
 
   // The click that began it activates the field. A wrong text leaves the value as it was.
@@ -191,6 +193,7 @@ bool draw_control(Control& control, const PanelState& state, Sliders& sliders) {
     const float box = control.may_rest ? ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x : 0;
     ImGui::SetNextItemWidth(scaled(kControlWidth) - box);
     changed |= draw_value(control, state, sliders);
+    control.reset = control.kind != ControlKind::flag && control.kind != ControlKind::choice && is_reset();
   }
   if (ImGui::IsItemHovered()) {
     ImGui::BeginTooltip();
@@ -207,6 +210,7 @@ std::optional<OptionChange> draw_controls(PanelState& state, Sliders& sliders) {
   std::optional<OptionChange> change;
   const auto draw = [&](Control& control) {
     if (draw_control(control, state, sliders)) change = change_of(control);
+    if (control.reset) change = OptionChange{control.option, {}};
   };
   for (Control& control : controls) {
     if (control.common) draw(control);
@@ -233,6 +237,7 @@ void draw_fov(const PanelState& state, Sliders& sliders, PanelActions& actions) 
   double fov = state.fov_deg;
   ImGui::SetNextItemWidth(scaled(kControlWidth));
   if (sliders.draw(control.label.c_str(), control, fov, kLeast, kMost)) actions.fov_deg = fov;
+  if (is_reset()) actions.fov_deg = state.first_fov_deg;
 }
 
 std::optional<std::string> draw_comparisons(const PanelState& state) {
@@ -325,35 +330,6 @@ PanelActions draw_panel(PanelState& state) {
   draw_help(state.help);
   state.close_lists = false;
   return actions;
-}
-
-void draw_toast(const Toast& toast) {
-  constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255), kBlack = IM_COL32(0, 0, 0, 200),
-                  kRed = IM_COL32(160, 20, 20, 230);
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  const float margin = scaled(kMargin), wrap = std::max(window.x - 4 * margin, 1.0f);
-  const char *begin = toast.text.c_str(), *end = begin + toast.text.size();
-  const ImVec2 text = ImGui::CalcTextSize(begin, end, false, wrap);
-  const ImVec2 at{(window.x - text.x) / 2, window.y - text.y - 3 * margin};
-  list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + text.x + margin, at.y + text.y + margin / 2},
-                     toast.is_error ? kRed : kBlack, margin / 2);
-  list.AddText(nullptr, 0, at, kWhite, begin, end, wrap);
-}
-
-void draw_split(double x, const std::vector<std::string>& names) {
-  constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 220), kBlack = IM_COL32(0, 0, 0, 160);
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float height = ImGui::GetIO().DisplaySize.y, at = static_cast<float>(x), margin = scaled(kMargin);
-  list.AddLine({at, 0}, {at, height}, kBlack, 3);
-  list.AddLine({at, 0}, {at, height}, kWhite, 1);
-  // The left name ends at the divider, and the right name starts there.
-  for (std::size_t i = 0; i < names.size() && i < 2; ++i) {
-    const ImVec2 size = ImGui::CalcTextSize(names[i].c_str());
-    const ImVec2 place{i == 0 ? at - margin - size.x : at + margin, height - margin - size.y};
-    list.AddRectFilled({place.x - 3, place.y - 2}, {place.x + size.x + 3, place.y + size.y + 2}, kBlack);
-    list.AddText(place, kWhite, names[i].c_str());
-  }
 }
 
 }  // namespace scarp::viewer

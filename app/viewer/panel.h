@@ -9,17 +9,11 @@
 
 #include "app/viewer/controls.h"
 #include "app/viewer/navigation.h"
+#include "app/viewer/overlay.h"
 #include "app/viewer/picture_worker.h"
 #include "app/viewer/reading.h"
 
 namespace scarp::viewer {
-
-/// A message over the picture.
-struct Toast {
-  std::string text{};
-  bool is_error = false;
-  double until = 0;  ///< seconds since the window opened
-};
 
 /// A slider whose value is typed.
 struct TypedValue {
@@ -37,6 +31,7 @@ struct PanelState {
   MoveMode mode = MoveMode::orbit;         ///< a change is an action
   double speed = 0;                        ///< metres per second
   double fov_deg = 30;                     ///< a change is an action
+  double first_fov_deg = 30;               ///< of the first view
   std::string device{};                    ///< device that traces rays
   const WorkedPicture* shown = nullptr;    ///< the picture in the window
   const WorkedVerdict* verdict = nullptr;  ///< verdict on that picture
@@ -64,11 +59,5 @@ struct PanelActions {
 
 /// Draws the panel between ImGui::NewFrame() and ImGui::Render().
 PanelActions draw_panel(PanelState& state);
-
-/// Draws a message at the lower edge, errors in red.
-void draw_toast(const Toast& toast);
-
-/// Draws the line between two pictures over a window of this size, and the names of its sides.
-void draw_split(double x, const std::vector<std::string>& names);
 
 }  // namespace scarp::viewer

@@ -62,6 +62,11 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
   if (map && map != lonlat)
     reading.lines.push_back(fmt::format("{} {:.2f}, {:.2f}", frames.crs.empty() ? "map" : frames.crs, map->x, map->y));
   if (lonlat) reading.lines.push_back(fmt::format("lon {:.6f}, lat {:.6f} degrees (WGS 84)", lonlat->x, lonlat->y));
+  if (lonlat) reading.place = fmt::format("{:.7f},{:.7f} (lon,lat on WGS 84); ", lonlat->x, lonlat->y);
+  if (map && map != lonlat)
+    reading.place += fmt::format("{:.3f},{:.3f} ({}); ", map->x, map->y, frames.crs.empty() ? "map" : frames.crs);
+  if (!lonlat && !map) reading.place = fmt::format("{:.3f},{:.3f} (local metres); ", p.x, p.y);
+  reading.place += fmt::format("height {:.2f} m", p.z / exaggeration);
   if (const double size = length(surface.normal); size > 0) {
     const dvec3 flat(surface.normal.x / exaggeration, surface.normal.y / exaggeration, surface.normal.z);
     const double slope = std::atan2(std::hypot(flat.x, flat.y), std::abs(flat.z));
@@ -84,6 +89,7 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
 
 MeasuredLine measure_line(const Scene& scene, const dvec3& from, const dvec3& to, double above, double exaggeration) {
   MeasuredLine line;
+  line.from = from, line.to = to;
   line.flat = std::hypot(to.x - from.x, to.y - from.y);
   line.rise = (to.z - from.z) / exaggeration;
   const dvec3 lift(0, 0, above * exaggeration);

@@ -24,6 +24,7 @@ struct Reading {
   dvec3 point{0.0};  ///< world metres
   Ray ray{};
   Hit hit{};
+  std::string place{};  ///< for other programs: "-84.23,36.48 (lon,lat on WGS 84); 692000,5143000 (EPSG:32610)"
   std::vector<std::string> lines{};  ///< "x 1203.4 m, y 880.1 m, height 512.3 m"
 };
 
@@ -35,6 +36,7 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
 /// Measures a line between two surface points: its length, slope, the profile of the ground below it, and whether its
 /// ends see each other from `above` metres over the surface.
 struct MeasuredLine {
+  dvec3 from{0.0}, to{0.0};   ///< world metres
   double flat = 0, rise = 0;  ///< metres
   bool sees = false;
   std::vector<float> heights{};  ///< heights of the ground at equal distances, without exaggeration; NaN: no ground

@@ -83,12 +83,33 @@ bool Subject::reopens(const OptionChange& change) const {
   return !prepared().serves(input_request(next.kind, *next.options));
 }
 
-bool Subject::change(const OptionChange& change) {
+bool Subject::change(const OptionChange& change, bool goes_on) {
   if (std::find(cli::kWindowOptions.begin(), cli::kWindowOptions.end(), change.option) != cli::kWindowOptions.end()) {
     throw cli::WrongUsage(
         fmt::format("{}: takes effect only when the window opens (mouse and keys move its view)", change.option));
   }
-  Side main = side_of(changed(main_.opening, change), main_, nullptr);
+  Given before = main_.opening.given;
+  const bool again = take(changed(main_.opening, change));
+  if (!goes_on || done_.empty()) done_.push_back(std::move(before));
+  undone_.clear();
+  return again;
+}
+
+std::optional<bool> Subject::go_back(std::vector<Given>& from, std::vector<Given>& to) {
+  if (from.empty()) return {};
+  Given now = main_.opening.given;
+  const bool again = take(with_options(main_.opening, from.back()));
+  from.pop_back();
+  to.push_back(std::move(now));
+  return again;
+}
+
+std::optional<bool> Subject::undo() { return go_back(done_, undone_); }
+std::optional<bool> Subject::redo() { return go_back(undone_, done_); }
+
+// Returns whether the input was reopened.
+bool Subject::take(Opening opening) {
+  Side main = side_of(std::move(opening), main_, nullptr);
   std::optional<Side> other = beside(main);
   const bool again = main.opened != main_.opened;
   main_ = std::move(main), other_ = std::move(other);

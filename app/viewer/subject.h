@@ -30,8 +30,13 @@ class Subject {
   const std::string& device() const { return device_; }
 
   /// Changes an option. Returns whether the input was reopened, which replaces prepared(). If it throws Error, nothing
-  /// has changed. Throws Error for options of the window itself (kWindowOptions).
-  bool change(const OptionChange& change);
+  /// has changed. Throws Error for options of the window itself (kWindowOptions). With `goes_on`, undo() takes it back
+  /// together with the change before, as for the movement of a slider.
+  bool change(const OptionChange& change, bool goes_on = false);
+  /// Takes the last change back, or makes one again that was taken back. Returns whether the input was reopened;
+  /// nullopt: there is no such change. Throws as change().
+  std::optional<bool> undo();
+  std::optional<bool> redo();
 
   /// Whether change() would reopen the input. Throws Error for a change that the options reject.
   bool reopens(const OptionChange& change) const;
@@ -78,6 +83,11 @@ class Subject {
   static PictureSide picture_side(const Side& side, int width, int height);
 
   int width_, height_;
+  using Given = std::vector<GivenOption>;
+  std::optional<bool> go_back(std::vector<Given>& from, std::vector<Given>& to);
+  bool take(Opening opening);
+
+  std::vector<Given> undone_{}, done_{};  // the options before each change, the newest last
   Side main_;
   std::string compared_{};
   std::optional<Side> other_{};

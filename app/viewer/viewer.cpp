@@ -24,6 +24,8 @@ namespace {
 constexpr double kRest = 0.15;          // seconds without a change until the picture is completed
 constexpr double kPlayStep = 1.0 / 60;  // seconds of a recording's own time per step
 constexpr double kSignalWait = 0.5;     // seconds between two checks for Ctrl-C
+constexpr double kWatch = 0.5;          // seconds between two looks at the input's files
+constexpr std::array<const char*, 6> kCameraOptions = {"--view", "--eye", "--eye-above", "--target", "--top", "--area"};
 
 }  // namespace
 
@@ -51,6 +53,7 @@ void Viewer::run() {
     play();
   } else {
     loop();
+    keep_view();
     write_settings(settings_file(), {width_, height_, shows_panel_});
   }
   worker_.reset();
@@ -72,13 +75,66 @@ void Viewer::show_first_view(std::unique_ptr<Subject> subject) {
   std::swap(subject_, subject);  // the previous one lives until nothing refers to it
   navigate(subject_->first_camera());
   first_ = navigator_->pose();
+  bookmarks_ = {};
+  path_.clear();
+  panel_.line.reset();
+  worked_ = false;
+  watch_ = FileWatch(subject_->opening().options->inputs);
+  if (!played_) restore_view();
+}
+
+std::string Viewer::kept_file() const { return view_file(settings_file(), subject_->opening().options->inputs); }
+
+// What the last window on this input showed, unless a view was asked for.
+void Viewer::restore_view() {
+  const KeptView kept = read_view(kept_file());
+  const double exaggeration = subject_->prepared().exaggeration();
+  const auto here = [&](const Pose& pose) { return with_heights_times(pose, exaggeration); };
+  for (std::size_t i = 0; i < bookmarks_.size(); ++i) {
+    if (kept.bookmarks[i]) bookmarks_[i] = here(*kept.bookmarks[i]);
+  }
+  if (kept.line) {
+    const dvec3 scale(1, 1, exaggeration);
+    measure(scale * kept.line->first, scale * kept.line->second);
+  }
+  const cli::Command& command = subject_->opening().command();
+  const bool asked = std::any_of(kCameraOptions.begin(), kCameraOptions.end(),
+                                 [&](const char* option) { return command.given(option); });
+  if (!kept.pose || asked) return;
+  navigator_->set_pose(here(*kept.pose));
+  say("the view of the last time (H: the first view)");
+}
+
+void Viewer::keep_view() const {
+  const double exaggeration = subject_->prepared().exaggeration();
+  const auto kept = [&](const Pose& pose) { return with_heights_times(pose, 1 / exaggeration); };
+  KeptView view;
+  view.pose = kept(navigator_->pose());
+  for (std::size_t i = 0; i < bookmarks_.size(); ++i) {
+    if (bookmarks_[i]) view.bookmarks[i] = kept(*bookmarks_[i]);
+  }
+  const dvec3 scale(1, 1, 1 / exaggeration);
+  if (panel_.line) view.line = {scale * panel_.line->from, scale * panel_.line->to};
+  write_view(kept_file(), view);
+}
+
+// Opens the input again after its files were written.
+void Viewer::watch() {
+  const double now = seconds();
+  if (now - watched_at_ < kWatch) return;
+  watched_at_ = now;
+  if (!watch_.changed()) return;
+  reopen();
+  if (!panel_.message.is_error) say("the input has changed and was opened again");
 }
 
 void Viewer::navigate(const Camera& first) {
   const cli::RenderInput& input = subject_->prepared().input();
   // The CPU traces single rays.
+  const bool above = !navigator_ || navigator_->keeps_above_ground();
   navigator_ = std::make_unique<Navigator>(subject_->prepared().given_scene(), first,
                                            subject_->prepared().view().fov_deg, input.subject.across);
+  navigator_->keep_above_ground(above);
   frames_ = std::make_unique<ReadingFrames>(input.raster);
   camera_.reset();
   line_from_.reset();
@@ -126,6 +182,7 @@ void Viewer::loop() {
       glfwPollEvents();
     }
     if (cli::caught_signal() != 0) throw Interrupted();
+    watch();
     const double now = seconds();
     step(now, now - before, waits ? 0.0 : now - before);
     before = now;
@@ -227,12 +284,15 @@ void Viewer::draw(Image* seen) {
     std::copy(played_buttons_.begin(), played_buttons_.end(), std::begin(io.MouseDown));
   }
   ImGui::NewFrame();
+  if (panel_.line && camera_)
+    draw_measured(*panel_.line, subject_->prepared().given_scene(), *camera_, subject_->prepared().exaggeration());
   if (compares()) draw_split(line_.share() * ImGui::GetIO().DisplaySize.x, panel_.names);
   PanelActions actions;
   if (shows_panel_) {
     panel_.mode = navigator_->pose().mode;
     panel_.speed = navigator_->speed();
     panel_.fov_deg = navigator_->pose().fov_deg;
+    panel_.first_fov_deg = first_.fov_deg;
     panel_.shown = shown_ ? &*shown_ : nullptr;
     panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
     panel_.times = !played_;  // times differ from run to run

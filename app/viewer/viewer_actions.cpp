@@ -14,12 +14,30 @@ namespace scarp::viewer {
 namespace {
 
 constexpr double kErrorToast = 10;  // seconds that an error is over the picture
+constexpr double kOneChange = 1;    // seconds between two movements of one slider
 
 }  // namespace
 
+// The movement of a slider is one change.
 void Viewer::change(const OptionChange& change) {
+  const bool goes_on = change.option == last_option_ && seconds() - last_change_ < kOneChange;
+  last_option_ = change.option, last_change_ = seconds();
   worked_ = true;
-  attempt([&] { return subject_->change(change); });
+  attempt([&] { return subject_->change(change, goes_on); });
+}
+
+void Viewer::undo() { go_back(&Subject::undo, "there is no change to take back"); }
+void Viewer::redo() { go_back(&Subject::redo, "there is no change to make again"); }
+
+void Viewer::go_back(std::optional<bool> (Subject::*way)(), const char* none) {
+  last_option_.clear();
+  bool found = true;
+  attempt([&] {
+    const std::optional<bool> again = ((*subject_).*way)();
+    found = again.has_value();
+    return again.value_or(false);
+  });
+  if (!found) say(none);
 }
 
 // Errors are shown when the change is made.
@@ -73,12 +91,10 @@ void Viewer::drag_sun(const dvec2& drag) {
 void Viewer::open_files(const std::vector<std::string>& files) {
   redraws_ = kRedraws;
   try {
-    show_first_view(std::make_unique<Subject>(opening_of(files), width_, height_));
-    bookmarks_ = {};
-    path_.clear();
-    worked_ = false;
-    panel_.line.reset();
+    auto subject = std::make_unique<Subject>(opening_of(files), width_, height_);
+    keep_view();
     panel_.message = {};
+    show_first_view(std::move(subject));
     glfwSetWindowTitle(glfw_->get(), title().c_str());
   } catch (const std::exception& error) {
     fail(error.what(), played_line_);
@@ -101,6 +117,15 @@ void Viewer::fail(const std::string& message, int line) {
   if (line > 0) throw Error(fmt::format("'{}', line {}: {}", options_.play, line, message));
   panel_.message = {message, true, seconds() + kErrorToast};
   redraws_ = kRedraws;
+}
+
+void Viewer::copy_reading() {
+  const std::optional<Reading> reading = reading_at(cursor_);
+  if (!reading) return say("there is nothing under the cursor");
+  glfwSetClipboardString(glfw_->get(), reading->place.c_str());
+  say(reading->place);
+  fmt::print("{}\n", reading->place);
+  std::fflush(stdout);
 }
 
 // Saves both sides if there are two.

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kDoubleClick = 0.35;  // seconds between two clicks
 constexpr double kClickPixels = 4;     // a longer movement is a drag
+constexpr double kArrow = 0.03;        // drag of an arrow key, in heights of the window
 
 }  // namespace
 
@@ -107,18 +108,25 @@ void Viewer::measure(const dvec3& point) {
     line_from_ = point;
     return;
   }
-  constexpr double kAbove = 1.7;  // metres, of eyes at both ends
-  const cli::PreparedScene& prepared = subject_->prepared();
-  panel_.line = measure_line(prepared.given_scene(), *line_from_, point, kAbove, prepared.exaggeration());
+  measure(*line_from_, point);
   line_from_.reset();
   panel_.measures = false;
   worked_ = true;
 }
 
+void Viewer::measure(const dvec3& from, const dvec3& to) {
+  constexpr double kAbove = 1.7;  // metres, of eyes at both ends
+  const cli::PreparedScene& prepared = subject_->prepared();
+  panel_.line = measure_line(prepared.given_scene(), from, to, kAbove, prepared.exaggeration());
+}
+
 void Viewer::take_key(const WindowEvent& event) {
   const int letter = event.letter != 0 ? event.letter : event.code;
-  if (event.down && letter == GLFW_KEY_Q && (event.modifiers & GLFW_MOD_CONTROL) != 0)
-    return glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
+  if (event.down && (event.modifiers & GLFW_MOD_CONTROL) != 0) {
+    if (letter == GLFW_KEY_Q) return glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
+    if (letter == GLFW_KEY_Z) return (event.modifiers & GLFW_MOD_SHIFT) != 0 ? redo() : undo();
+    if (letter == GLFW_KEY_Y) return redo();
+  }
   if (const auto key = move_key_of(event.code)) {
     navigator_->key(*key, event.down);
     // Some layouts have the letter of an action there.
@@ -159,6 +167,22 @@ void Viewer::act(WindowAction action) {
       line_from_.reset();
       if (panel_.measures) say("click both ends of a line");
       return;
+    case WindowAction::copy_reading:
+      return copy_reading();
+    case WindowAction::full_screen:
+      return glfw_->toggle_full_screen();
+    case WindowAction::nearer:
+      return navigator_->wheel(1, 0.5 * size(), size());
+    case WindowAction::farther:
+      return navigator_->wheel(-1, 0.5 * size(), size());
+    case WindowAction::look_left:
+      return navigator_->turn({kArrow * size().y, 0}, size());
+    case WindowAction::look_right:
+      return navigator_->turn({-kArrow * size().y, 0}, size());
+    case WindowAction::look_up:
+      return navigator_->turn({0, kArrow * size().y}, size());
+    case WindowAction::look_down:
+      return navigator_->turn({0, -kArrow * size().y}, size());
     case WindowAction::through_ground: {
       const bool keeps = !navigator_->keeps_above_ground();
       navigator_->keep_above_ground(keeps);

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/file_watch.h"
+#include "app/viewer/kept_view.h"
 #include "app/viewer/keys.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/panel.h"
@@ -47,6 +49,10 @@ class Viewer {
   std::string title() const;
 
   void show_first_view(std::unique_ptr<Subject> subject);
+  std::string kept_file() const;
+  void restore_view();
+  void keep_view() const;
+  void watch();
   void navigate(const Camera& first);
   void note_change();
   void describe();
@@ -56,6 +62,9 @@ class Viewer {
   // If it fails, for example because the file is gone, the window keeps its current state.
   void change(const OptionChange& change);
   bool reopens(const OptionChange& change) const;
+  void undo();
+  void redo();
+  void go_back(std::optional<bool> (Subject::*way)(), const char* none);
   void reopen();
   void attempt(const std::function<bool()>& changed);
   void compare(const std::string& with);
@@ -74,6 +83,7 @@ class Viewer {
   void take_drag(const dvec2& drag);
   void take_button(const WindowEvent& event, bool on_panel);
   void measure(const dvec3& point);
+  void measure(const dvec3& from, const dvec3& to);
   void take_key(const WindowEvent& event);
   void act(WindowAction action);
 
@@ -109,6 +119,7 @@ class Viewer {
   std::string command(std::size_t side, const std::string& output) const;
 
   void copy_command();
+  void copy_reading();
   void keep_in_path();
 
   // --- recordings ---------------------------------------------------------------------------------------------------
@@ -129,6 +140,10 @@ class Viewer {
   std::array<std::optional<Pose>, 9> bookmarks_;
   std::string path_{};   // file that K adds to; empty: none yet
   bool worked_ = false;  // something would be lost with the window
+  FileWatch watch_;      // of the input's files
+  double watched_at_ = 0;
+  std::string last_option_{};
+  double last_change_ = 0;
   std::unique_ptr<Glfw> glfw_;
   std::unique_ptr<Imgui> imgui_;
   std::unique_ptr<Presenter> presenter_;

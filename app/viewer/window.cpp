@@ -41,6 +41,24 @@ Glfw::~Glfw() {
   glfwTerminate();
 }
 
+void Glfw::toggle_full_screen() {
+  if (glfwGetWindowMonitor(window_)) return glfwSetWindowMonitor(window_, nullptr, x_, y_, width_, height_, 0);
+  glfwGetWindowPos(window_, &x_, &y_);
+  glfwGetWindowSize(window_, &width_, &height_);
+  int count = 0;
+  GLFWmonitor* const* const monitors = glfwGetMonitors(&count);
+  for (int i = 0; i < count; ++i) {
+    int left = 0, top = 0;
+    glfwGetMonitorPos(monitors[i], &left, &top);
+    const GLFWvidmode* const mode = glfwGetVideoMode(monitors[i]);
+    if (!mode) continue;
+    const int col = x_ + width_ / 2 - left, row = y_ + height_ / 2 - top;
+    const bool here = col >= 0 && row >= 0 && col < mode->width && row < mode->height;
+    if (here || i + 1 == count)
+      return glfwSetWindowMonitor(window_, monitors[i], 0, 0, mode->width, mode->height, mode->refreshRate);
+  }
+}
+
 void listen(GLFWwindow* window, WindowListener listener) {
   static WindowListener kept;
   kept = std::move(listener);
@@ -51,11 +69,12 @@ void listen(GLFWwindow* window, WindowListener listener) {
         {.kind = WindowEvent::Kind::button, .code = button, .down = action == GLFW_PRESS, .modifiers = modifiers});
   });
   glfwSetKeyCallback(window, [](GLFWwindow*, int key, int scancode, int action, int modifiers) {
-    if (action == GLFW_REPEAT) return;
+    const int letter = letter_of(key, scancode);
+    if (action == GLFW_REPEAT && !repeats(letter)) return;
     kept.event({.kind = WindowEvent::Kind::key,
                 .code = key,
-                .letter = letter_of(key, scancode),
-                .down = action == GLFW_PRESS,
+                .letter = letter,
+                .down = action != GLFW_RELEASE,
                 .modifiers = modifiers});
   });
   glfwSetCharCallback(window, [](GLFWwindow*, unsigned code) {

@@ -20,9 +20,12 @@ class Glfw {
   Glfw(const Glfw&) = delete;
   Glfw& operator=(const Glfw&) = delete;
   GLFWwindow* get() const { return window_; }
+  /// Fills the screen that the window is on, or goes back to a window.
+  void toggle_full_screen();
 
  private:
   GLFWwindow* window_ = nullptr;
+  int x_ = 0, y_ = 0, width_ = 0, height_ = 0;  // of the window, while it fills the screen
 };
 
 /// Called for the events of a window.

@@ -143,6 +143,13 @@ TEST(NavigationOnAHill, WalkersStartAtTheOrbitsPoint) {
   EXPECT_EQ(pose.fov_deg, 60);
   EXPECT_TRUE(navigator.set_mode(MoveMode::orbit, kSize));
   EXPECT_EQ(pose.fov_deg, before.fov_deg);
+  // Bookmarks of a walker, too, end with the usual view.
+  Navigator returns = at(scene, {50, -60, 50}, {50, 30, 0});
+  Pose walker = before;
+  walker.mode = MoveMode::walk, walker.fov_deg = 60;
+  returns.set_pose(walker);
+  EXPECT_TRUE(returns.set_mode(MoveMode::orbit, kSize));
+  EXPECT_EQ(returns.pose().fov_deg, before.fov_deg);
   // Without ground there, nothing changes.
   Navigator away = at(scene, {50, -60, 50}, {50, -160, 60});
   const Pose stays = away.pose();

@@ -172,6 +172,30 @@ TEST(TypedNumbers, HaveAPointOrAComma) {
     EXPECT_FALSE(typed_number(text)) << text;
 }
 
+TEST_F(WindowOptions, ChangesAreTakenBack) {
+  Subject subject(opening_of({file}), 16, 12);
+  EXPECT_FALSE(subject.undo() || subject.redo());
+  subject.change({"--water", "7"});
+  subject.change({"--sun", "300,20"});
+  subject.change({"--sun", "301,20"}, true);
+  subject.change({"--exaggeration", "3"});
+  const std::string all = words_of(subject.opening());
+  EXPECT_EQ(subject.undo(), true) << "the heights are read again";
+  EXPECT_EQ(words_of(subject.opening()), " --water=7 --sun=301,20");
+  EXPECT_EQ(subject.undo(), false);
+  EXPECT_EQ(words_of(subject.opening()), " --water=7");
+  EXPECT_EQ(subject.redo(), false);
+  EXPECT_EQ(subject.redo(), true);
+  EXPECT_EQ(words_of(subject.opening()), all);
+  EXPECT_FALSE(subject.redo());
+  EXPECT_TRUE(subject.undo());
+  subject.change({"--water", "8"});
+  EXPECT_FALSE(subject.redo()) << "another change replaces those that were taken back";
+  EXPECT_THROW(subject.change({"--water", "high"}), Error);
+  EXPECT_TRUE(subject.undo());
+  EXPECT_EQ(words_of(subject.opening()), " --water=7 --sun=301,20") << "a change that failed is none";
+}
+
 // As arguments of a command.
 TEST_F(WindowOptions, SeveralFilesAreOneInput) {
   const std::string other = file + ".npy";

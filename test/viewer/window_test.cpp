@@ -248,6 +248,33 @@ TEST_F(Window, WorkIsNotClosedByMistake) {
       << output_;
 }
 
+TEST_F(Window, ViewsComeBack) {
+  ASSERT_EQ(use("dem.tif --size 320x240",
+                "xdotool key Tab mousemove 280 200 sleep 0.1 mousedown 1 sleep 0.1 mousemove_relative 30 5 sleep 0.1 "
+                "mouseup 1\n"
+                "xdotool key c sleep 0.2 key Escape"),
+            0)
+      << output_;
+  const std::string command = output_;
+  ASSERT_EQ(use("dem.tif --size 320x240", "xdotool key c sleep 0.2 key h sleep 0.2 key c sleep 0.2 key Escape"), 0);
+  EXPECT_TRUE(output_.starts_with(command)) << command << output_;
+  EXPECT_FALSE(output_.ends_with(command)) << "H is the first view";
+  // A view that is asked for counts.
+  ASSERT_EQ(use("dem.tif --size 320x240 --view 200,25", "xdotool key c sleep 0.2 key Escape"), 0);
+  EXPECT_NE(output_, command);
+}
+
+TEST_F(Window, ChangedFilesAreOpenedAgain) {
+  ASSERT_EQ(use("dem.tif --size 320x240",
+                "xdotool key p; until [[ -e scarp-view-1.png ]]; do kill -0 $pid || exit 9; sleep 0.05; done\n"
+                "'" SCARP_PROGRAM "' generate --size 129 --seed 2 -o dem.tif; sleep 2\n"
+                "xdotool key p; until [[ -e scarp-view-2.png ]]; do kill -0 $pid || exit 9; sleep 0.05; done\n"
+                "xdotool key Escape"),
+            0)
+      << output_;
+  EXPECT_NE(bytes_of("scarp-view-1.png"), bytes_of("scarp-view-2.png"));
+}
+
 TEST_F(Window, EachInputHasItsOwnPath) {
   for (int i = 0; i < 2; ++i) ASSERT_EQ(view("1 key 75 1 0\n1.1 key 75 0 0\n1.2 key 75 1 0\n", "dem.tif"), 0);
   for (const char* name : {"scarp-path-1.csv", "scarp-path-2.csv"}) {
@@ -295,7 +322,7 @@ TEST_F(Window, ReportsFilesThatCannotBeSaved) {
 std::string random_events(int count, unsigned seed) {
   std::mt19937 random(seed);
   const auto pick = [&](int least, int most) { return std::uniform_int_distribution<int>(least, most)(random); };
-  std::string keys = "WASDQEOFGTHMKCP123456789";
+  std::string keys = "WASDQEOFGTHMKCPXRZY123456789";
   std::ostringstream text;
   for (int i = 0; i < count; ++i) {
     text << i / 600.0 << ' ';
@@ -306,8 +333,11 @@ std::string random_events(int count, unsigned seed) {
            << (outside ? pick(-100'000, 100'000) : pick(0, 240)) << '\n';
     } else if (kind < 6) {
       text << "button " << pick(0, 9) % 4 << ' ' << pick(0, 1) << ' ' << pick(0, 15) << '\n';
+    } else if (kind == 8 && pick(0, 3) == 0) {
+      constexpr const char* kTyped[] = {"1,5", "-2", "1e3", "nan", "4.5.6", "text", "\u00e4"};
+      text << "text " << kTyped[pick(0, static_cast<int>(std::size(kTyped)) - 1)] << '\n';
     } else if (kind < 9) {
-      constexpr int kOthers[] = {256, 257, 258, 259, 290, 294, 340, 344, 32, 320};
+      constexpr int kOthers[] = {256, 257, 258, 259, 262, 263, 264, 265, 61, 45, 290, 294, 340, 344, 32, 320};
       const int which = pick(0, static_cast<int>(keys.size() + std::size(kOthers)) - 1);
       const int code = which < static_cast<int>(keys.size()) ? keys[static_cast<std::size_t>(which)]
                                                              : kOthers[which - static_cast<int>(keys.size())];
