@@ -337,6 +337,7 @@ void Viewer::play() {
     step(play_seconds_, kPlayStep, kPlayStep);
     draw(nullptr);
   }
+  navigator_->release_keys();  // a key that is still held would move the view for ever
   while (!is_complete() || saves_ || worker_->busy()) {
     glfwWaitEventsTimeout(kRest);
     if (cli::caught_signal() != 0) throw Interrupted();
