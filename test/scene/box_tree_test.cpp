@@ -139,6 +139,22 @@ TEST(BoxTree, HandlesManyCoincidentBoxes) {
   BoxTree().traverse(ray, [&](std::uint32_t) { return ADD_FAILURE(), 0.0; });
 }
 
+TEST(BoxTree, HandlesBoxesWhoseDistancesOverflow) {
+  std::vector<WorldBox> far;
+  for (int i = 0; i < 20; ++i) {
+    const double x = (i - 9.5) * 1.8e307;
+    far.push_back({{x, -1, -1}, {x + 1, 1, 1}});
+  }
+  Ray ray;
+  ray.direction = {1, 0, 0};
+  int visits = 0;
+  BoxTree(far).traverse(ray, [&](std::uint32_t) {
+    ++visits;
+    return ray.t_max;
+  });
+  EXPECT_GE(visits, 10);
+}
+
 // The nearest box to a point, from any position, in worlds of any size.
 TEST(BoxTree, SearchFindsEveryBox) {
   Random random(5);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/tree/box_tree.h"
 
+#include <cmath>
 #include <glm/common.hpp>
 #include <numeric>
 #include <utility>
@@ -35,7 +36,8 @@ struct BoxTree::Builder {
   std::vector<std::uint32_t> order;
   BoxTree& tree;
 
-  dvec3 centre(std::uint32_t object) const { return 0.5 * (boxes[object].low + boxes[object].high); }
+  // Halved before they are added, which does not overflow.
+  dvec3 centre(std::uint32_t object) const { return 0.5 * boxes[object].low + 0.5 * boxes[object].high; }
 
   Range range(std::uint32_t begin, std::uint32_t end) const {
     Range range{begin, end, {}};
@@ -54,7 +56,7 @@ struct BoxTree::Builder {
     const dvec3 size = centres.high - centres.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto begin = order.begin() + whole.begin, end = order.begin() + whole.end;
-    if (!(size[axis] > 0) || depth >= kUnbalanced) {
+    if (!(size[axis] > 0) || !std::isfinite(kBins * size[axis]) || depth >= kUnbalanced) {
       const std::uint32_t half = whole.begin + whole.count() / 2;
       std::nth_element(begin, order.begin() + half, end,
                        [&](std::uint32_t a, std::uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
@@ -152,7 +154,7 @@ BoxTree::BoxTree(std::span<const WorldBox> boxes, std::vector<std::uint32_t> obj
   Builder builder{boxes, std::move(objects), *this};
   const auto whole = builder.range(0, static_cast<std::uint32_t>(builder.order.size()));
   box_ = whole.box;
-  middle_ = 0.5 * (box_.low + box_.high);
+  middle_ = 0.5 * box_.low + 0.5 * box_.high;
   const dvec3 half = box_.high - middle_;
   const double farthest = std::max({half.x, half.y, half.z}), room = (reach - 1) * farthest;
   box_ = {box_.low - room, box_.high + room};
