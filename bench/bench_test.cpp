@@ -71,6 +71,15 @@ TEST(ScarpBench, BatchesRunsAllSizes) {
   }
 }
 
+#ifdef SCARP_BENCH_C
+TEST(ScarpBench, CAnswersAsCpp) {
+  const json all = output_of("c --size 129 --rays small --repeats 1");
+  expect_documented(all, "c");
+  EXPECT_EQ(all["rows"].size(), 2u * 2u);  // classes, calls
+  for (const json& row : all["rows"]) EXPECT_EQ(row["differ"], 0) << row;
+}
+#endif
+
 TEST(ScarpBench, ExtentsMatchWindows) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
   expect_documented(all, "extents");

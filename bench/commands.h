@@ -37,5 +37,6 @@ void add_functions(cli::Program& program);
 void add_function_leaks(cli::Program& program);  // with SCARP_GDAL
 void add_shapes(cli::Program& program);
 void add_pixel_match(cli::Program& program);
+void add_c(cli::Program& program);  // with SCARP_C
 
 }  // namespace scarp::bench

@@ -49,6 +49,9 @@ cli::Program bench_program() {
 #endif
   add_shapes(program);
   add_pixel_match(program);
+#ifdef SCARP_BENCH_C
+  add_c(program);
+#endif
   return program;
 }
 
