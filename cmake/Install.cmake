@@ -1,6 +1,7 @@
-# The two targets that others link, and their way into an installed tree:
+# The targets that others link, and their way into an installed tree:
 #   scarp::core   base, vk, field, accel, march, scene: needs neither GDAL, libpng nor OpenEXR
 #   scarp::scarp  all stations
+#   scarp::c      the C interface, a shared library that contains what it needs of core
 # find_package(scarp COMPONENTS core) reads scarp-core-targets.cmake alone and asks for nothing that core does not use.
 include(CMakePackageConfigHelpers)
 
@@ -30,7 +31,8 @@ endif()
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/scarp)
 # Components, each installed by itself with cmake --install BUILD --component NAME once its targets are built: core,
-# files (the rest of the library), app (the command line). A component without a file is installed with core.
+# files (the rest of the library), app (the command line), c (the C interface as programs load it) and c_dev (what they are
+# built with). A component without a file is installed with core.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME core)
 install(TARGETS ${core_stations} scarp_core EXPORT scarp-core FILE_SET HEADERS FILE_SET version)
 install(EXPORT scarp-core FILE scarp-core-targets.cmake NAMESPACE scarp:: DESTINATION ${package_folder})
@@ -39,14 +41,22 @@ if(SCARP_FILES)
           ARCHIVE COMPONENT files LIBRARY COMPONENT files)
   install(EXPORT scarp-scarp FILE scarp-scarp-targets.cmake NAMESPACE scarp:: DESTINATION ${package_folder} COMPONENT files)
 endif()
+if(SCARP_C)
+  install(TARGETS scarp_c EXPORT scarp-c FILE_SET HEADERS COMPONENT c_dev RUNTIME COMPONENT c ARCHIVE COMPONENT c_dev
+          LIBRARY COMPONENT c NAMELINK_COMPONENT c_dev)
+  install(EXPORT scarp-c FILE scarp-c-targets.cmake NAMESPACE scarp:: DESTINATION ${package_folder} COMPONENT c_dev)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 include(PkgConfig)
 
 configure_package_config_file(cmake/scarp-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake
                               INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/scarp-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/scarp-config-version.cmake
-        DESTINATION ${package_folder})
+set(package_files ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/scarp-config-version.cmake)
+install(FILES ${package_files} DESTINATION ${package_folder})
+if(SCARP_C)
+  install(FILES ${package_files} DESTINATION ${package_folder} COMPONENT c_dev)
+endif()
 
 # The shader texts: as they are, for hosts with #include, under the paths that they include one another by; and each
 # march, and the ground in textures, with all that it needs in one file, for pasting.

@@ -1,4 +1,5 @@
-# Debian packages, made by ./dev package: `scarp`, the command line, and `libscarp-dev`, the library with its headers.
+# Debian packages, made by ./dev package: `scarp`, the command line, `libscarp-dev`, the library with its headers, and
+# `libscarp-c0.1`, the C interface as programs load it.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Scarp authors <scarp@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray engine for height fields and voxel grids")
@@ -20,6 +21,15 @@ set(CPACK_DEBIAN_APP_PACKAGE_RECOMMENDS libvulkan1)
 set(CPACK_DEBIAN_APP_DESCRIPTION "The command line: renders pictures of elevation models, procedural terrain,
 voxel models and scenes of them, and traces rays from files.")
 
+if(SCARP_C)
+  set(CPACK_DEBIAN_CLIB_PACKAGE_NAME libscarp-c${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  set(CPACK_DEBIAN_CLIB_PACKAGE_SECTION libs)
+  set(CPACK_DEBIAN_CLIB_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_CLIB_PACKAGE_GENERATE_SHLIBS ON)
+  set(CPACK_DEBIAN_CLIB_DESCRIPTION "The C interface as programs load it: exact ray queries on height fields and
+voxel grids, for programs in any language.")
+endif()
+
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libscarp-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(dev_depends libfmt-dev libglm-dev libtbb-dev libhwy-dev libpng-dev)
@@ -32,6 +42,9 @@ foreach(pair SCARP_GDAL:libgdal-dev SCARP_GDAL:libproj-dev SCARP_OPENEXR:libopen
     list(APPEND dev_depends ${package})
   endif()
 endforeach()
+if(SCARP_C)
+  list(APPEND dev_depends "${CPACK_DEBIAN_CLIB_PACKAGE_NAME} (= ${PROJECT_VERSION})")
+endif()
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "The C++ library: exact ray queries on height fields, terrain functions and
 voxel grids, alone or in scenes, as single rays and in batches, on processors
@@ -39,9 +52,17 @@ and Vulkan devices. With CMake and pkg-config files, and the marches as GLSL.")
 
 # Named here: the command line is installed by a deferred call, after this file.
 set(CPACK_COMPONENTS_ALL app core files)
+if(SCARP_C)
+  list(APPEND CPACK_COMPONENTS_ALL c c_dev)
+endif()
 include(CPack)
 cpack_add_component_group(app)
 cpack_add_component_group(dev)
 cpack_add_component(app GROUP app)
 cpack_add_component(core GROUP dev)
 cpack_add_component(files GROUP dev)
+if(SCARP_C)
+  cpack_add_component_group(clib)
+  cpack_add_component(c GROUP clib)
+  cpack_add_component(c_dev GROUP dev)
+endif()

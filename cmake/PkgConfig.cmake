@@ -1,4 +1,4 @@
-# pkg-config files: scarp-core.pc and, with SCARP_FILES, scarp.pc, for the same parts as the targets. Archives do not name
+# pkg-config files: scarp-core.pc, with SCARP_FILES scarp.pc, and with SCARP_C scarp-c.pc, for the same parts as the targets. Archives do not name
 # what they need, so their libraries are not private here.
 set(pc_core_libraries "")
 foreach(station IN LISTS core_stations)
@@ -52,4 +52,7 @@ pc_file(scarp-core "Rays over height fields and voxel grids" "fmt;glm;tbb;libhwy
 if(SCARP_FILES)
   pc_file(scarp "Rays over height fields and voxel grids: files and pictures" "scarp-core = ${PROJECT_VERSION};${pc_files_requires}"
           "${pc_files_libraries}" files)
+endif()
+if(SCARP_C)
+  pc_file(scarp-c "Rays over height fields and voxel grids: C interface" "" -lscarp_c c_dev)
 endif()

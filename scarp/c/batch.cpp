@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -136,6 +137,9 @@ scarp_status scarp_heights_at(const scarp_scene* scene, const double* xs, const 
                               size_t count) {
   return guarded_on_threads([&] {
     const std::span x(required(xs, count, "xs"), count), y(required(ys, count, "ys"), count);
-    scarp::heights_at(scene_of(scene), x, y, {required(heights, count, "heights"), count});
+    const std::span to(required(heights, count, "heights"), count);
+    const scarp::Scene& queries = scene_of(scene);
+    if (count != 1) return scarp::heights_at(queries, x, y, to);
+    to[0] = queries.height(x[0], y[0]).value_or(std::numeric_limits<double>::quiet_NaN());  // allocates nothing
   });
 }

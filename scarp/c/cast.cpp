@@ -2,8 +2,7 @@
 // Queries of single rays.
 #include "scarp/scene/cast.h"
 
-#include <bit>
-#include <optional>
+#include <new>
 
 #include "scarp/c/scene_handle.h"
 
@@ -15,10 +14,10 @@ scarp_status scarp_cast(const scarp_scene* scene, const scarp_ray* ray, const sc
     const scarp::Ray own = ray_from(required(ray, "ray"));
     required(hit, "hit");
     if (!from) {
-      *hit = std::bit_cast<scarp_hit>(scarp::cast(queries, own));
+      new (hit) scarp::Hit(scarp::cast(queries, own));  // in place, without a copy
     } else {
       const scarp::Hit start = checked_hit(*scene, *from);
-      *hit = std::bit_cast<scarp_hit>(scarp::cast(queries, own, &start));
+      new (hit) scarp::Hit(scarp::cast(queries, own, &start));
     }
   });
 }

@@ -29,6 +29,9 @@ endif()
 outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE_PROJ=ON -D CMAKE_DISABLE_FIND_PACKAGE_PNG=ON
         -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -D CMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON)
 outside(scarp)
+# The example in C, without a compiler for C++.
+outside(c -D CMAKE_DISABLE_FIND_PACKAGE_fmt=ON -D CMAKE_DISABLE_FIND_PACKAGE_glm=ON -D CMAKE_DISABLE_FIND_PACKAGE_TBB=ON
+        -D CMAKE_DISABLE_FIND_PACKAGE_hwy=ON)
 
 # The same programs, built with pkg-config.
 find_program(PKG_CONFIG pkg-config)
@@ -43,6 +46,10 @@ if(PKG_CONFIG)
     separate_arguments(flags)
     run(${CXX} -std=c++20 ${ROOT}/test/house/outside/${program}.cpp -o ${WORK}/by_pkg_config_${program} ${flags})
   endforeach()
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_folder} ${PKG_CONFIG} --cflags --libs scarp-c
+                  OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags)
+  run(cc -std=c11 -pedantic -Werror ${ROOT}/examples/c/hello.c -o ${WORK}/by_pkg_config_c ${flags} -lm)
 endif()
 
 # Every installed header, and the templates that the programs instantiate, compiled with strict warnings by every available

@@ -26,9 +26,11 @@ set(sees_scene_file base vk source field accel march scene scene_mesh scene_file
 set(sees_render base vk source field accel march scene scene_mesh scene_file render)
 set(sees_analysis base vk source field accel march scene scene_mesh scene_file analysis)
 set(sees_output base output)
+# The C interface; its header is scarp/scarp_c.h.
+set(sees_c base field accel march scene door c)
 # Files directly in scarp/: scarp.h and what it declares.
 set(sees_door base source field accel march scene scene_file analysis render output door)
-set(stations base vk source field accel march scene scene_mesh scene_file analysis render output door)
+set(stations base vk source field accel march scene scene_mesh scene_file analysis render output door c)
 set(core_stations base vk field accel march scene)
 # scarp.h and everything that it includes.
 set(door_stations base field accel march scene door)
