@@ -10,6 +10,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
+#include "scarp/base/nested_limit.h"
 #include "scarp/output/gdal_writing.h"
 #include "scarp/output/map_dataset.h"
 #include "scarp/output/map_files.h"
@@ -102,18 +103,6 @@ int CPL_STDCALL report(double done, const char*, void* progress) {
   return !call || call(done) ? TRUE : FALSE;
 }
 
-// Keeps GDAL from collecting a twentieth of the machine's memory in blocks before it writes them.
-class BlockLimit {
- public:
-  BlockLimit() : before_(GDALGetCacheMax64()) { GDALSetCacheMax64(std::min<GIntBig>(before_, 64 << 20)); }
-  ~BlockLimit() { GDALSetCacheMax64(before_); }
-  BlockLimit(const BlockLimit&) = delete;
-  BlockLimit& operator=(const BlockLimit&) = delete;
-
- private:
-  GIntBig before_;
-};
-
 // Writes the map with or without its colour table.
 void write_once(const std::string& path, const RasterMap& map, bool coloured, const Progress& progress) {
   // Some other programs do not read files that omit tiles, so maps are complete up to this size, for which empty tiles
@@ -142,7 +131,7 @@ void write_dataset(const std::string& path, GDALDataset& source, const MapFormat
   if (!driver) throw Error(fmt::format("{}: GDAL has no driver '{}'", path, format.driver));
   // GDAL copies bands of rows of this many bytes. Its default takes as much memory again as the rest of the program.
   const CPLConfigOptionSetter swath("GDAL_SWATH_SIZE", "2000000", true);
-  const BlockLimit limit;
+  const NestedLimit<GDALGetCacheMax64, GDALSetCacheMax64, kGdalCacheBytes> limit;
   bool stopped = false;
   const Progress watched = [&](double done) {
     stopped = progress && !progress(done);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -20,13 +19,6 @@ constexpr std::int64_t kLargestPieceBytes = 256 << 20;  // maximum size, if one 
 // The blocks that a virtual raster reports are small and its own; the blocks of its sources are rarely larger than
 // this.
 constexpr int kVirtualBlockSide = 1024;
-// Room for the blocks of a virtual raster's sources that two pieces share, in addition to the blocks of one piece.
-constexpr std::int64_t kCacheBytes = 64 << 20;
-
-// Guards GDAL's cache limit, which is process-wide.
-std::mutex cache_mutex;
-int cache_limits = 0;
-std::int64_t cache_before = 0;
 
 struct PieceSize {
   int cols, rows;
@@ -65,18 +57,6 @@ int next_boundary(int at, int step, int end) {
 }
 
 }  // namespace
-
-GdalCacheLimit::GdalCacheLimit() {
-  const std::lock_guard lock(cache_mutex);
-  if (cache_limits++ > 0) return;
-  cache_before = GDALGetCacheMax64();
-  if (cache_before > kCacheBytes) GDALSetCacheMax64(kCacheBytes);
-}
-
-GdalCacheLimit::~GdalCacheLimit() {
-  const std::lock_guard lock(cache_mutex);
-  if (--cache_limits == 0) GDALSetCacheMax64(cache_before);
-}
 
 void for_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_per_sample, const Progress& progress,
                 const PieceCalls& calls) {

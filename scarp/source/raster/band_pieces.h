@@ -7,21 +7,15 @@
 #include <cstdint>
 #include <functional>
 
+#include "scarp/base/nested_limit.h"
 #include "scarp/base/progress.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster/raster_options.h"
 
 namespace scarp {
 
-/// Limits GDAL's block cache, for the whole process, to what reading by pieces needs. By default, GDAL's limit is a
-/// twentieth of the machine's memory. A lower limit set by the user stays.
-class GdalCacheLimit {
- public:
-  GdalCacheLimit();
-  ~GdalCacheLimit();
-  GdalCacheLimit(const GdalCacheLimit&) = delete;
-  GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
-};
+/// Limits GDAL's block cache to what reading by pieces needs.
+using GdalCacheLimit = NestedLimit<GDALGetCacheMax64, GDALSetCacheMax64, kGdalCacheBytes>;
 
 /// Callbacks of for_pieces().
 struct PieceCalls {
