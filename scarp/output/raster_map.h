@@ -69,9 +69,10 @@ struct MergedFormat {
 };
 
 /// Joins bands of rows of one map, in any order, into one raster, as if it had been written at once: the files must
-/// have metadata PART "I/N: rows FIRST to LAST of ROWS", and otherwise the same metadata, bands and columns. Reads a
-/// few rows at a time. Throws Error naming the file: not a part, a part of another map, parts that are missing or given
-/// twice; and as write_raster_map().
+/// have metadata PART "I/N: rows FIRST to LAST of ROWS", and otherwise the same metadata, bands, columns and place.
+/// They may have metadata RUN, any text that is the same for all parts of a map; the result has neither. Reads a few
+/// rows of a few files at a time. Throws Error naming the file: not a part, a part of another map, parts that are
+/// missing or given twice; and as write_raster_map().
 void merge_raster_maps(const std::string& path, const std::vector<std::string>& parts, const MergedFormat& format,
                        const Progress& progress = {});
 

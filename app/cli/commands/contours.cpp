@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -72,11 +71,9 @@ void run(const ContourOptions& options, const Command& command) {
   keep_inputs(options.output, input.files());
   if (options.dry_run) {
     // Samples, and the heights in metres.
-    const double bytes = (input.sample_type() == SampleType::float32 ? 4 : 2) + sizeof(float);
-    constexpr double kMebi = 1 << 20;
-    fmt::print("{}: contour lines of {} x {} samples; about {:.0f} MiB of memory; nothing written (--dry-run)\n",
-               options.output, input.cols(), input.rows(),
-               std::ceil(bytes * input.cols() * static_cast<double>(input.rows()) / kMebi));
+    const double bytes = bytes_of(input.sample_type()) + sizeof(float);
+    print_dry_run(options.output, fmt::format("contour lines of {} x {} samples", input.cols(), input.rows()),
+                  bytes * input.cols() * static_cast<double>(input.rows()), {}, {});
     return;
   }
   input.read(input.whole(), terminal_progress("read"));
@@ -124,8 +121,8 @@ void add_contours(Program& program) {
                           .fallback = "multiples of --interval",
                           .common = true,
                           .excludes = {"--interval"}});
-  command.add(&o.dry_run, {.names = "--dry-run", .help = "print size and memory, and write nothing", .common = true});
-  command.add(&o.quiet, {.names = "--quiet", .help = "no summary, notes and progress", .common = true});
+  add_dry_run_option(command, o.dry_run, {}, true);
+  add_quiet_option(command, o.quiet, {}, true);
   add_raster_options(command, o.raster);
   command.example("scarp contours dem.tif --interval 10 -o contours.gpkg");
   command.example("scarp contours dem.tif --levels 500,750 -o levels.geojson");

@@ -4,12 +4,14 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/shared_options.h"
+#include "app/cli/picture/raster_output.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/output/raster_map.h"
@@ -19,15 +21,16 @@ namespace {
 
 struct MergeOptions {
   std::vector<std::string> parts;
-  std::string output, driver;
-  std::vector<std::string> creation;
+  std::string output;
+  FormatOptions format;
   bool quiet = false;
 };
 
 void run(const MergeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const MergedFormat format{options.driver.empty() ? raster_driver_of(options.output) : options.driver,
-                            options.creation};
+  const auto silence = options.quiet ? std::make_optional<SilentProgress>() : std::nullopt;
+  const std::string& driver = options.format.driver;
+  const MergedFormat format{driver.empty() ? raster_driver_of(options.output) : driver, options.format.creation};
   require_raster_driver(format.driver, format.creation_options);
   keep_inputs(options.output, options.parts);
   merge_raster_maps(options.output, options.parts, format, terminal_progress("merge"));
@@ -48,27 +51,14 @@ void add_merge(Program& program) {
                          .common = true,
                          .required = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
-  command.add(&o.driver, {.names = "--of",
-                          .value = "FORMAT",
-                          .help = "GDAL's short name of the output format",
-                          .choices = {"GTiff", "COG"},
-                          .note = "any raster format of gdalinfo --formats that can be written",
-                          .fallback = "by the extension",
-                          .common = true});
-  command.add(&o.creation, {.names = "--co",
-                            .value = "NAME=VALUE",
-                            .help = "creation option of the format",
-                            .note = "repeatable",
-                            .repeats = true,
-                            .fallback = "GTiff: tiled, DEFLATE",
-                            .common = true});
-  command.add(&o.quiet, {.names = "--quiet", .help = "no summary", .common = true});
+  add_format_options(command, o.format, {}, true);
+  add_quiet_option(command, o.quiet, {}, true);
   command.runs([options, &command] {
     command.require_effect({});
     run(*options);
   });
-  command.footer(R"(The parts are compared: all must be there, and come from one command and one input. The result is
-the raster that the command writes without --part.)");
+  command.footer(R"(The parts are compared: all must be there, and come from one command and one input, of the same
+size and time. The result is the raster that the command writes without --part.)");
   command.example("scarp shadow dem.tif --sun 135,20 --part 1/2 -o north.tif");
   command.example("scarp shadow dem.tif --sun 135,20 --part 2/2 -o south.tif");
   command.example("scarp merge north.tif south.tif -o shadow.tif");

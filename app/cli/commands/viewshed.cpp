@@ -28,6 +28,7 @@
 #include "app/cli/options/place_file.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/options/sight_options.h"
+#include "app/cli/picture/map_identity.h"
 #include "app/cli/picture/map_run.h"
 #include "scarp/analysis/map_part.h"
 #include "scarp/analysis/observer_count.h"
@@ -371,9 +372,6 @@ class BandMaker {
     if (options_.mode == "count") return count_band(group, rows, progress);
     if (options_.mode == "angle")
       return checked_band("angle above horizontal", "degrees", angle_pixels(group, rows, targets_, progress), nodata_);
-    // The other modes find no viewsheds.
-    for (std::size_t k = 0; group.summary && rows.rows() > 0 && k < group.observers.size(); ++k)
-      seen_pixels(group, k, rows, {});
     if (options_.mode == "height")
       return checked_band("visible height of targets", "m", height_pixels(group, rows, progress), nodata_);
     if (options_.mode == "fresnel")
@@ -400,15 +398,25 @@ class BandMaker {
   TargetCount targets_;
 };
 
-// "seen.tif" to "seen_3.tif", for the third row of the observers.
+// "seen.tif" to "seen_3.tif", for the third row of the observers; none without --per-observer files.
 std::vector<std::string> numbered_files(const ViewshedOptions& options, const std::vector<Stand>& stands) {
   std::vector<std::string> files;
+  if (options.each != "files") return files;
   const std::string stem = options.output.substr(0, options.output.size() - extension_of(options.output).size());
-  for (const Stand& one : stands) {
+  for (const Stand& one : stands)
     files.push_back(fmt::format("{}_{}{}", stem, one.row + 1, options.output.substr(stem.size())));
-    keep_inputs(files.back(), options.typed);
-  }
   return files;
+}
+
+// Before hours of work, and before the first of them is written.
+void check_files(const ViewshedOptions& options, const MapInput& input, const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    keep_inputs(file, options.typed);
+    keep_inputs(file, input.files());
+    keep_apart("--preview", options.raster_output.preview, file, {});
+    keep_apart("--summary", options.summary, file, {});
+    if (!options.raster_output.dry_run) const ReplaceFile writable(file);
+  }
 }
 
 void write_summary(const ViewshedOptions& options, const ViewshedSummary& summary, const PlaceTable& table,
@@ -452,12 +460,15 @@ void run(ViewshedOptions options, const Command& command) {
   if (stands.size() > kMostObservers && (codes || counts))
     throw Error(fmt::format("{} observers: at most {} are possible", stands.size(), kMostObservers));
   set_area(run, options, values && values->out_of_range != values->nodata, stands);
+  check_files(options, input, numbered_files(options, stands));
   constexpr double kNode_s = 6e-8;  // of one sweep, on one thread
   const double bands = options.each.empty() ? 1 : static_cast<double>(stands.size());
   constexpr double kCrossing_s = 6e-9;
   const double node_s = options.mode == "fresnel" ? kCrossing_s * (input.cols() + input.rows()) : kNode_s;
-  if (!run.begin(bands * (codes || counts ? 3 : 12), static_cast<double>(stands.size()) * node_s)) return;
-  if (bare) bare->follow(input);
+  if (!run.begin(bands * (codes || counts ? 3 : 12), static_cast<double>(stands.size()) * node_s,
+                 bare ? bytes_of(bare->input().sample_type()) : 0))
+    return;
+  if (bare) bare->follow(input), bare->close();
   keep_usable(stands, bare ? bare->input() : input, status);
   if (bare) bare->move_notes(input);
   Metadata metadata{
@@ -481,15 +492,21 @@ void run(ViewshedOptions options, const Command& command) {
   };
   const auto text = [&] { return fmt::format("{}; {}", maker.text(stands.size()), input.curvature_text()); };
   MapRecipe recipe{kMethod, metadata, "viridis", compute, text};
-  if (options.each == "files") recipe.files = numbered_files(options, stands);
+  recipe.files = numbered_files(options, stands);
   recipe.totals = maker.totals();
-  for (double* const total : summary.totals()) recipe.totals.push_back(total);
+  if (!options.summary.empty())
+    for (double* const total : summary.totals()) recipe.totals.push_back(total);
+  recipe.inputs.push_back(table_identity(places));
+  if (bare)
+    for (const std::string& file : bare->input().files()) recipe.inputs.push_back(file_identity(file));
+  recipe.write_more = [&] {
+    if (!options.summary.empty()) write_summary(options, summary, table, status, stands);
+  };
   constexpr std::size_t kMostNames = 100;
   for (const Stand& one : stands)
     recipe.marks.push_back(
         {dvec2(one.node.col, one.node.row), stands.size() > kMostNames ? "" : one.title(stands.size())});
   run.write(recipe);
-  if (!options.summary.empty()) write_summary(options, summary, table, status, stands);
 }
 
 }  // namespace

@@ -58,7 +58,19 @@ std::vector<double> least_of(const Observer& one, const Viewpoint& view, const R
   return least;
 }
 
-// Calls combine(pixel, height above `datum` of the least visible target) for all observers and pixels in range.
+// Visibility, from the heights of the least visible targets.
+std::vector<Seen> codes_of(const Observer& one, const Viewpoint& view, const RowBand& rows,
+                           const std::vector<double>& least) {
+  std::vector<Seen> codes(least.size());
+  visit_pixels(one.field, rows, [&](std::size_t i, const Node& node) {
+    codes[i] = reach_of(one, view, node);
+    if (codes[i] == Seen::visible && !(view.target(*view.ground().lowered(node)) >= least[i])) codes[i] = Seen::hidden;
+  });
+  return codes;
+}
+
+// Calls combine(pixel, height above `datum` of the least visible target) for all observers and pixels in range. Adds
+// the viewsheds to the summary.
 template <class Combine>
 std::vector<float> combined_least(const ObserverGroup& group, HeightDatum datum, const RowBand& rows,
                                   const Progress& progress, const Combine& combine) {
@@ -69,6 +81,7 @@ std::vector<float> combined_least(const ObserverGroup& group, HeightDatum datum,
     const Observer& one = group.observers[k];
     const Viewpoint view = viewpoint_of(one);
     const auto least = least_of(one, view, rows, progress_part(progress, static_cast<double>(k), count));
+    if (group.summary) group.summary->add(group.first + k, view, codes_of(one, view, rows, least), rows.first);
     if (pixels.empty()) pixels.assign(least.size(), kNothing);
     visit_pixels(one.field, rows, [&](std::size_t i, const Node& node) {
       const float height = least_height(view.ground(), node, least[i], datum);
@@ -90,13 +103,7 @@ std::vector<Seen> seen_pixels(const ObserverGroup& group, std::size_t k, const R
   const Viewpoint view = viewpoint_of(one);
   std::vector<Seen> codes;
   if (one.bare_ground) {
-    const auto least = least_visible_rows(one.field, one.node, over_surface(one, view), rows, progress);
-    codes.resize(least.size());
-    visit_pixels(one.field, rows, [&](std::size_t i, const Node& node) {
-      codes[i] = reach_of(one, view, node);
-      if (codes[i] == Seen::visible && !(view.target(*view.ground().lowered(node)) >= least[i]))
-        codes[i] = Seen::hidden;
-    });
+    codes = codes_of(one, view, rows, least_visible_rows(one.field, one.node, over_surface(one, view), rows, progress));
   } else {
     codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
   }
@@ -177,6 +184,10 @@ std::vector<float> fresnel_pixels(const ObserverGroup& group, double wavelength,
                                   const Progress& progress) {
   std::vector<float> pixels(
       static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(group.observers.front().field.cols()), kNothing);
+  const auto steps = static_cast<double>((group.summary ? 2 : 1) * group.observers.size());
+  double step = 0;
+  for (std::size_t k = 0; group.summary && rows.rows() > 0 && k < group.observers.size(); ++k)
+    seen_pixels(group, k, rows, progress_part(progress, step++, steps));
   for (std::size_t k = 0; k < group.observers.size(); ++k) {
     const Observer& one = group.observers[k];
     const Viewpoint view = viewpoint_of(one);
@@ -200,7 +211,7 @@ std::vector<float> fresnel_pixels(const ObserverGroup& group, double wavelength,
             }
           }
         },
-        progress_part(progress, static_cast<double>(k), static_cast<double>(group.observers.size())));
+        progress_part(progress, step++, steps));
   }
   return pixels;
 }

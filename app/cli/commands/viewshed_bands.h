@@ -55,7 +55,7 @@ std::vector<std::uint16_t> count_pixels(const ObserverGroup& group, const RowBan
 /// Returns the best visibility over all observers.
 std::vector<Seen> best_pixels(const ObserverGroup& group, const RowBand& rows, const Progress& progress);
 
-/// The functions below return NaN for pixels without a value. Those that find no viewshed add none to the summary.
+/// The functions below return NaN for pixels without a value, and add viewsheds to the summary.
 
 /// Least height of a visible target over all observers: least_height().
 std::vector<float> least_pixels(const ObserverGroup& group, HeightDatum datum, const RowBand& rows,
@@ -70,7 +70,7 @@ std::vector<float> angle_pixels(const ObserverGroup& group, const RowBand& rows,
                                 const Progress& progress);
 
 /// Largest share of the first Fresnel zone that is clear, over all observers: fresnel_clearance(), at most 1. One line
-/// of sight per pixel: slower than the others.
+/// of sight per pixel: slower than the others. The viewsheds of a summary are found first.
 std::vector<float> fresnel_pixels(const ObserverGroup& group, double wavelength, const RowBand& rows,
                                   const Progress& progress);
 

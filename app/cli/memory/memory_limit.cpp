@@ -2,6 +2,7 @@
 #include "app/cli/memory/memory_limit.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
 
 #include "app/cli/memory/file_memory.h"
 
@@ -22,8 +26,10 @@ constexpr double kProgram = 176 << 20;
 
 // Read by operator new on any thread.
 std::atomic<bool> is_limited{false};
-std::atomic<std::size_t> most_private{0};  // bytes
-char scratch_folder[4096];                 // written before is_limited
+std::atomic<std::size_t> most_private{0}, most_granted{0};  // bytes
+// Of large arrays in memory. Pages that are not yet used are not resident.
+std::atomic<std::size_t> granted_bytes{0};
+char scratch_folder[4096];  // written before is_limited
 
 struct Resident {
   std::size_t privately = 0, of_files = 0;  // bytes
@@ -50,7 +56,9 @@ MemoryLimit::MemoryLimit(double bytes, const std::string& folder)
   const double rest = std::max(0.0, bytes - kProgram), file_pages = rest * kOfFilePages;
   std::snprintf(scratch_folder, sizeof scratch_folder, "%s", folder_.c_str());
   const Resident now = resident();
-  most_private = now.privately + static_cast<std::size_t>(rest - file_pages);
+  const auto in_memory = static_cast<std::size_t>(rest - file_pages);
+  most_private = now.privately + in_memory;
+  most_granted = granted_bytes + in_memory;
   is_limited = true;
   watcher_ = std::thread([this, most = now.of_files + static_cast<std::size_t>(file_pages)] { watch(most); });
 }
@@ -73,18 +81,57 @@ void MemoryLimit::watch(std::size_t most_file_pages) {
     if (bytes_in_files() > 0 && resident().of_files > most_file_pages) forget_pages_in_files();
 }
 
-double machine_memory() {
-  double bytes = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  for (const char* limit : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    double of_group = 0;
-    if (std::ifstream(limit) >> of_group && of_group > 0) bytes = std::min(bytes, of_group);
+double memory_of_groups(const std::string& groups, const std::string& root) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto read = [&](const std::string& file) {
+    double bytes = 0;
+    if (std::ifstream(file) >> bytes && bytes > 0) least = std::min(least, bytes);  // "max" is none
+  };
+  // Each group has the limits of the groups above it.
+  const auto walk = [&](const std::string& mount, std::string group, const char* file) {
+    for (;; group.resize(group.rfind('/'))) {
+      while (group.ends_with('/')) group.pop_back();
+      read(fmt::format("{}{}/{}", mount, group, file));
+      if (group.empty()) return;
+    }
+  };
+  std::istringstream lines(groups);
+  // "0::/slurm/job_7" (version 2), or "4:memory:/slurm/job_7" (version 1).
+  for (std::string line; std::getline(lines, line);) {
+    const auto first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos || line.find('/', second) != second + 1) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",",
+                      group = line.substr(second + 1);
+    if (controllers == ",,") walk(root, group, "memory.max");
+    if (controllers.find(",memory,") != std::string::npos) walk(root + "/memory", group, "memory.limit_in_bytes");
   }
-  return bytes;
+  return least;
+}
+
+double machine_memory() {
+  const double bytes = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  std::ifstream file("/proc/self/cgroup");
+  const std::string groups{std::istreambuf_iterator<char>(file), {}};
+  // In a container, the file may name the group outside of it.
+  return std::min(bytes, memory_of_groups(groups + "\n0::/\n1:memory:/\n", "/sys/fs/cgroup"));
 }
 
 void* beyond_memory_limit(std::size_t bytes, std::size_t alignment) {
-  if (bytes < kLargeArray || !is_limited || resident().privately + bytes <= most_private) return nullptr;
+  if (bytes < kLargeArray) return nullptr;
+  // Before the check, so that arrays that threads allocate at the same time count one another.
+  const std::size_t all = granted_bytes += bytes;
+  if (!is_limited || (all <= most_granted && resident().privately + bytes <= most_private)) return nullptr;
+  granted_bytes -= bytes;
   return allocate_in_file(bytes, alignment, scratch_folder);
+}
+
+void count_granted(std::size_t bytes, std::size_t usable) noexcept {
+  if (bytes >= kLargeArray) granted_bytes -= bytes;
+  if (usable >= kLargeArray) granted_bytes += usable;
+}
+
+void count_released(std::size_t usable) noexcept {
+  if (usable >= kLargeArray) granted_bytes -= usable;
 }
 
 }  // namespace scarp::cli

@@ -43,11 +43,18 @@ class MemoryLimit {
   std::thread watcher_;
 };
 
-/// Memory that the program may use, in bytes: that of the machine or of its control group.
+/// Memory that the program may use, in bytes: that of the machine or of its control groups.
 double machine_memory();
+/// The least limit of the control groups in a text like /proc/self/cgroup, and of those above them, in bytes; infinity:
+/// none. `root`: /sys/fs/cgroup.
+double memory_of_groups(const std::string& groups, const std::string& root);
 
 /// Returns memory in a file for an array that does not fit below the limit; nullptr if it does, or if there is no
-/// limit. Throws std::bad_alloc. For operator new.
+/// limit. Throws std::bad_alloc. For operator new, as the functions below.
 void* beyond_memory_limit(std::size_t bytes, std::size_t alignment);
+/// After nullptr: counts an array in memory. `usable`: the size of its block; 0: none, because memory ran out.
+void count_granted(std::size_t bytes, std::size_t usable) noexcept;
+/// Before an array in memory is released.
+void count_released(std::size_t usable) noexcept;
 
 }  // namespace scarp::cli

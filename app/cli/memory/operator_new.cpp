@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Replaces operator new and delete of the program: as those of the standard library, except that large arrays beyond a
 // MemoryLimit lie in files.
+#include <malloc.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -21,9 +23,15 @@ void* in_memory(std::size_t bytes, std::size_t alignment) noexcept {
 void* allocate(std::size_t bytes, std::size_t alignment) {
   if (void* const memory = scarp::cli::beyond_memory_limit(bytes, alignment)) return memory;
   for (;;) {
-    if (void* const memory = in_memory(bytes, alignment)) return memory;
+    if (void* const memory = in_memory(bytes, alignment)) {
+      scarp::cli::count_granted(bytes, ::malloc_usable_size(memory));
+      return memory;
+    }
     const std::new_handler handler = std::get_new_handler();
-    if (!handler) throw std::bad_alloc();
+    if (!handler) {
+      scarp::cli::count_granted(bytes, 0);
+      throw std::bad_alloc();
+    }
     handler();
   }
 }
@@ -40,6 +48,7 @@ void release(void* memory) noexcept {
   // Memory in files begins with a page; malloc's hardly ever does.
   constexpr std::uintptr_t kLeastPage = 4096;
   if (reinterpret_cast<std::uintptr_t>(memory) % kLeastPage == 0 && scarp::cli::release_in_file(memory)) return;
+  if (memory) scarp::cli::count_released(::malloc_usable_size(memory));
   std::free(memory);
 }
 

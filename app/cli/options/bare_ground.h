@@ -23,6 +23,8 @@ class BareGround {
 
   /// Reads the part of the surface that was read, unless it has been read.
   void follow(const MapInput& surface);
+  /// Closes the file, as MapInput::close(): the part that was read is the last.
+  void close() { input_.close(); }
   MapInput& input() { return input_; }
   /// Moves the notes to those of the surface, unless it has them.
   void move_notes(MapInput& surface);

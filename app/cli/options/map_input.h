@@ -68,6 +68,8 @@ class MapInput {
   /// The middle between the first and the last sample, in columns and rows.
   dvec2 centre() const { return {(cols() - 1) / 2.0, (rows() - 1) / 2.0}; }
   const Georeference& georeference() const { return header_.georeference; }
+  /// Properties of the raster, without samples.
+  const Raster& header() const { return header_; }
   /// The georeference of a part of the raster, with the cell lengths and azimuth of the whole.
   Georeference georeference_of(const RasterWindow& part) const;
   SampleType sample_type() const { return static_cast<SampleType>(header_.samples.index()); }

@@ -14,9 +14,13 @@
 namespace scarp::cli {
 namespace {
 
+constexpr std::string_view kPartForm = "I/N, whole numbers with 1 <= I <= N, for example 3/16, or auto, or auto/N";
+
 // Names of environment variables; empty: the scheduler has none.
 struct JobArray {
   const char *index, *first, *last, *step, *count;
+
+  bool from_zero() const { return std::string_view(index).starts_with("AWS"); }
 };
 // AWS counts from 0. PBS states no last task, only the number of tasks.
 constexpr JobArray kArrays[] = {
@@ -41,32 +45,69 @@ std::optional<long> variable(const char* name) {
 }  // namespace
 
 PartNumber part_from(const std::string& text) {
-  constexpr std::string_view kForm = "I/N, whole numbers with 1 <= I <= N, for example 3/16, or auto";
-  const auto n = numbers_from(text, '/', 2, 2, "--part", kForm);
+  const auto n = numbers_from(text, '/', 2, 2, "--part", kPartForm);
   if (!(n[0] >= 1 && n[0] <= n[1] && n[1] <= std::numeric_limits<int>::max() && n[0] == std::floor(n[0]) &&
         n[1] == std::floor(n[1])))
-    throw Error(fmt::format("--part '{}': expected {}", text, kForm));
+    throw Error(fmt::format("--part '{}': expected {}", text, kPartForm));
   return {static_cast<int>(n[0]), static_cast<int>(n[1])};
 }
 
-std::string part_of_job_array() {
-  for (const JobArray& array : kArrays) {
-    const auto index = variable(array.index);
-    if (!index) continue;
-    const bool from_zero = std::string_view(array.index).starts_with("AWS");
-    const long first = variable(array.first).value_or(from_zero ? 0 : 1), step = variable(array.step).value_or(1);
-    std::optional<long> count = variable(array.count);
-    if (const auto last = variable(array.last); !count && last && step > 0) count = (*last - first) / step + 1;
-    if (!count)
-      throw Error(fmt::format("--part auto: {} is set, but not the number of tasks{} (give --part I/N)", array.index,
-                              *array.count != 0 ? fmt::format(", {}", array.count) : ""));
-    const long part = step > 0 ? (*index - first) / step + 1 : 0;
-    if (step <= 0 || *index < first || (*index - first) % step != 0 || part > *count)
-      throw Error(fmt::format("--part auto: {}={} is not one of {} tasks from {} in steps of {}", array.index, *index,
-                              *count, first, step));
-    return fmt::format("{}/{}", part, *count);
-  }
-  throw Error("--part auto: this is not a task of a job array (give --part I/N)");
+namespace {
+
+// "7" of "auto/7"; nullopt for "auto".
+std::optional<long> parts_typed(const std::string& text) {
+  if (text == kAutomaticPart) return {};
+  const std::string count = text.substr(kAutomaticPart.size() + 1);
+  char* end = nullptr;
+  const long parts = std::strtol(count.c_str(), &end, 10);
+  if (count.empty() || *end != 0 || parts < 1 || parts > std::numeric_limits<int>::max())
+    throw Error(fmt::format("--part '{}': expected {}", text, kPartForm));
+  return parts;
+}
+
+// The task of an array of some other size: the one that failed in an array of `parts` tasks, run again.
+std::string part_of_again(const JobArray& array, long index, long parts) {
+  const long part = index + (array.from_zero() ? 1 : 0);
+  if (part < 1 || part > parts)
+    throw Error(fmt::format("--part auto/{}: {}={} is not a task from {} to {}", parts, array.index, index,
+                            array.from_zero() ? 0 : 1, array.from_zero() ? parts - 1 : parts));
+  return fmt::format("{}/{}", part, parts);
+}
+
+std::string part_of_all(const JobArray& array, long index) {
+  const auto typed_first = variable(array.first), last = variable(array.last);
+  const long first = typed_first.value_or(array.from_zero() ? 0 : 1), step = variable(array.step).value_or(1);
+  std::optional<long> count = variable(array.count);
+  if (!count && last && step > 0) count = (*last - first) / step + 1;
+  if (!count)
+    throw Error(fmt::format("--part auto: {} is set, but not the number of tasks{} (give --part I/N or auto/N)",
+                            array.index, *array.count != 0 ? fmt::format(", {}", array.count) : ""));
+  // Tasks that are run again look like an array of their own, and would compute other rows.
+  const bool has_gaps = last && step > 0 && (*last - first) / step + 1 != *count;
+  if (first > 1 || has_gaps)
+    throw Error(
+        fmt::format("--part auto: the array has {} task{} from {}{}: a part of another array? (give --part "
+                    "auto/N for N parts, with tasks from 1 to N)",
+                    *count, *count == 1 ? "" : "s", first, has_gaps ? ", with gaps" : ""));
+  const long part = step > 0 ? (index - first) / step + 1 : 0;
+  if (step <= 0 || index < first || (index - first) % step != 0 || part > *count)
+    throw Error(fmt::format("--part auto: {}={} is not one of {} tasks from {} in steps of {}", array.index, index,
+                            *count, first, step));
+  return fmt::format("{}/{}", part, *count);
+}
+
+}  // namespace
+
+bool is_automatic_part(std::string_view text) {
+  return text == kAutomaticPart || text.starts_with(fmt::format("{}/", kAutomaticPart));
+}
+
+std::string part_of_job_array(const std::string& text) {
+  const auto parts = parts_typed(text);
+  for (const JobArray& array : kArrays)
+    if (const auto index = variable(array.index))
+      return parts ? part_of_again(array, *index, *parts) : part_of_all(array, *index);
+  throw Error(fmt::format("--part {}: this is not a task of a job array (give --part I/N)", text));
 }
 
 }  // namespace scarp::cli

@@ -11,33 +11,13 @@
 #include <cstring>
 #include <string_view>
 
+#include "app/cli/picture/check_sum.h"
 #include "scarp/base/error.h"
 
 namespace scarp::cli {
 namespace {
 
-constexpr std::string_view kBegin = "scarp resume 1\n";
-// More are a damaged file.
-constexpr std::uint64_t kMostNumbers = 1 << 20;
-
-// FNV-1a (Fowler, Noll, Vo) over words of 8 bytes: enough to tell a strip from one that was cut off.
-class CheckSum {
- public:
-  void add(std::span<const std::byte> bytes) {
-    constexpr std::uint64_t kPrime = 1099511628211;
-    while (!bytes.empty()) {
-      const std::size_t count = std::min<std::size_t>(bytes.size(), 8);
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes.data(), count);
-      value_ = (value_ ^ word) * kPrime;
-      bytes = bytes.subspan(count);
-    }
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ull;
-};
+constexpr std::string_view kKind = "scarp resume ", kVersion = "2\n";
 
 template <class T>
 std::span<const std::byte> bytes_of(const T& value) {
@@ -49,14 +29,31 @@ struct StripHead {
   std::uint64_t totals, bands;
 };
 
+struct BandHead {
+  std::uint64_t type, bytes;
+};
+
+// Some network file systems have no locks.
+void require_lock(int file, const std::string& path) {
+  if (::flock(file, LOCK_EX | LOCK_NB) == 0) return;
+  const int number = errno;
+  if (number == EWOULDBLOCK)
+    throw Error(fmt::format("{}: is in use by another run (wait for it, or name another output)", path));
+  throw Error(fmt::format("{}: cannot be locked: {} (name an output on another file system, or leave out --resume)",
+                          path, std::strerror(number)));
+}
+
 }  // namespace
 
-MapJournal::MapJournal(const std::string& output, const std::string& identity) : path_(output + ".resume") {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+FileDescriptor::~FileDescriptor() {
+  if (number_ >= 0) ::close(number_);
+}
+
+MapJournal::MapJournal(const std::string& output, const std::string& identity)
+    : path_(output + ".resume"), file_(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   if (file_ < 0) fail("cannot be written");
-  if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
-    throw Error(fmt::format("{}: is in use by another run (wait for it, or name another output)", path_));
-  const std::string begin = fmt::format("{}{}\n{}", kBegin, identity.size(), identity);
+  require_lock(file_, path_);
+  const std::string begin = fmt::format("{}{}{}\n{}", kKind, kVersion, identity.size(), identity);
   std::string found(begin.size(), 0);
   const off_t size = ::lseek(file_, 0, SEEK_END);
   ::lseek(file_, 0, SEEK_SET);
@@ -65,9 +62,7 @@ MapJournal::MapJournal(const std::string& output, const std::string& identity) :
   found.resize(length);
   if (!read(std::as_writable_bytes(std::span(found)))) fail("cannot be read");
   if (!begin.starts_with(found)) {
-    ::close(file_);
-    file_ = -1;
-    const bool ours = std::string_view(found).starts_with(kBegin) || kBegin.starts_with(found);
+    const bool ours = std::string_view(found).starts_with(kKind);
     throw Error(fmt::format(
         "{}: {} (delete it to begin anew, or name another output)", path_,
         ours ? "was begun by another command, another version or with other inputs" : "is not a file of --resume"));
@@ -75,10 +70,6 @@ MapJournal::MapJournal(const std::string& output, const std::string& identity) :
   if (found.size() == begin.size()) return;
   ::lseek(file_, 0, SEEK_SET);
   write(std::as_bytes(std::span(begin)));
-}
-
-MapJournal::~MapJournal() {
-  if (file_ >= 0) ::close(file_);
 }
 
 void MapJournal::fail(const std::string& what) const {
@@ -113,22 +104,27 @@ bool MapJournal::next(JournalStrip& strip) {
   const auto strip_is_complete = [&] {
     StripHead head{};
     CheckSum sum;
+    // The rest of the file bounds all numbers, so that a damaged one allocates no more.
+    const auto fits = [rest = static_cast<std::uint64_t>(end - begin)](std::uint64_t count, std::size_t bytes) {
+      return count <= rest / bytes;
+    };
     const auto take = [&](std::span<std::byte> bytes) {
       if (!read(bytes)) return false;
       sum.add(bytes);
       return true;
     };
     if (!take(std::as_writable_bytes(std::span(&head, 1)))) return false;
-    if (head.totals > kMostNumbers || head.bands > kMostNumbers) return false;
+    if (!fits(head.totals, sizeof(double)) || !fits(head.bands, sizeof(BandHead))) return false;
     strip.first = head.first, strip.last = head.last;
     strip.totals.resize(head.totals);
     strip.bands.resize(head.bands);
     if (!take(std::as_writable_bytes(std::span(strip.totals)))) return false;
-    for (auto& band : strip.bands) {
-      std::uint64_t size = 0;
-      if (!take(std::as_writable_bytes(std::span(&size, 1))) || size > static_cast<std::uint64_t>(end)) return false;
-      band.resize(size);
-      if (!take(band)) return false;
+    for (JournalBand& band : strip.bands) {
+      BandHead of_band{};
+      if (!take(std::as_writable_bytes(std::span(&of_band, 1))) || !fits(of_band.bytes, 1)) return false;
+      band.type = of_band.type;
+      band.pixels.resize(of_band.bytes);
+      if (!take(band.pixels)) return false;
     }
     std::uint64_t stored = 0;
     return read(std::as_writable_bytes(std::span(&stored, 1))) && stored == sum.value();
@@ -139,8 +135,7 @@ bool MapJournal::next(JournalStrip& strip) {
   return false;
 }
 
-void MapJournal::append(int first, int last, std::span<const double> totals,
-                        std::span<const std::span<const std::byte>> bands) {
+void MapJournal::append(int first, int last, std::span<const double> totals, std::span<const BandPixels> bands) {
   CheckSum sum;
   const auto put = [&](std::span<const std::byte> bytes) {
     sum.add(bytes);
@@ -148,9 +143,9 @@ void MapJournal::append(int first, int last, std::span<const double> totals,
   };
   put(bytes_of(StripHead{first, last, totals.size(), bands.size()}));
   put(std::as_bytes(totals));
-  for (const auto& band : bands) {
-    put(bytes_of(std::uint64_t{band.size()}));
-    put(band);
+  for (const BandPixels& band : bands) {
+    put(bytes_of(BandHead{band.type, band.pixels.size()}));
+    put(band.pixels);
   }
   write(bytes_of(sum.value()));
   if (::fdatasync(file_) != 0) fail("cannot be written");

@@ -176,7 +176,19 @@ MapPreview::MapPreview(std::string path, const DrawOptions& draw, const MapInput
       input_(input),
       file_(path_),
       scene_(scene_of(input)),
-      picture_(settings_of(input, scene_)) {}
+      picture_(settings_of(input, scene_))
+#ifdef SCARP_CAIRO
+      ,
+      camera_(Camera::top(picture_box(scene_), picture_.width, picture_.height)),
+      place_(input.georeference_of(input.part()))
+#endif
+{
+#ifdef SCARP_CAIRO
+  const std::optional<SolidRange> no_numbers;
+  figure_ = figure_of(figure_options(draw_), picture_,
+                      {scene_, camera_, true, no_numbers, place_, input.field().cols(), input.field().rows()});
+#endif
+}
 
 #ifdef SCARP_CAIRO
 
@@ -184,19 +196,15 @@ void MapPreview::write(const RasterMap& map, const RowBand& rows, const std::str
                        std::vector<DrawnMark> marks) {
   Paint paint = paint_of(map.bands.front(), ramp);
   picture_.ground.drape = std::make_shared<Drape>(drape_of(paint, input_, rows, picture_.width));
-  const Camera camera = Camera::top(picture_box(scene_), picture_.width, picture_.height);
-  const std::optional<SolidRange> no_numbers;
-  const Georeference geo = input_.georeference_of(input_.part());
-  const FigureSubject subject{scene_, camera, true, no_numbers, geo, input_.field().cols(), input_.field().rows()};
-  std::optional<Figure> figure = figure_of(figure_options(draw_), picture_, subject);
-  figure->key = std::move(paint.key);
-  figure->legend = std::move(paint.legend);
+  figure_->key = std::move(paint.key);
+  figure_->legend = std::move(paint.legend);
   for (DrawnMark& mark : marks) mark.at -= dvec2(input_.part().col, input_.part().row);
-  for (FigureShape& shape :
-       drawn_marks(marks, {geo, subject.cols, subject.rows, camera, static_cast<double>(pixel_side(picture_))}))
-    figure->shapes.push_back(std::move(shape));
-  const Picture picture = render_picture(scene_, camera, picture_, terminal_progress("preview"));
-  write_picture(file_, path_, picture_format_of(path_), picture.image, figure, {}, figure_options(draw_).dots_per_inch);
+  for (FigureShape& shape : drawn_marks(marks, {place_, input_.field().cols(), input_.field().rows(), camera_,
+                                                static_cast<double>(pixel_side(picture_))}))
+    figure_->shapes.push_back(std::move(shape));
+  const Picture picture = render_picture(scene_, camera_, picture_, terminal_progress("preview"));
+  write_picture(file_, path_, picture_format_of(path_), picture.image, figure_, {},
+                figure_options(draw_).dots_per_inch);
 }
 
 #else

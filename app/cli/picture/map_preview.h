@@ -11,8 +11,11 @@
 #include "app/cli/options/picture_format.h"
 #include "app/cli/picture/drawn_shapes.h"
 #include "scarp/analysis/map_part.h"
+#include "scarp/base/georeference.h"
 #include "scarp/base/replace_file.h"
+#include "scarp/output/figure.h"
 #include "scarp/output/raster_map.h"
+#include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
@@ -22,7 +25,8 @@ const PictureFormat& preview_format_of(const std::string& path);
 
 class MapPreview {
  public:
-  /// Reserves the file. Throws Error for a model without ground, and if the file is one of the inputs.
+  /// Reserves the file, and reads the files of --draw. The samples have been read. Throws Error for a model without
+  /// ground, if the file is one of the inputs, and as drawn_shapes().
   MapPreview(std::string path, const DrawOptions& draw, const MapInput& input);
 
   /// Draws the map of these rows, with marks in columns and rows of the raster. Bands without classes are coloured by
@@ -36,6 +40,11 @@ class MapPreview {
   ReplaceFile file_;
   Scene scene_;
   PictureSettings picture_;
+#ifdef SCARP_CAIRO
+  Camera camera_;
+  Georeference place_;  // of the samples
+  std::optional<Figure> figure_;
+#endif
 };
 
 }  // namespace scarp::cli

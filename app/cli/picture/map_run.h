@@ -32,6 +32,7 @@
 namespace scarp::cli {
 
 class MapJournal;
+struct JournalStrip;
 
 /// Options of a subcommand that computes a map.
 struct MapCommand : MapOptions {
@@ -68,7 +69,7 @@ struct MapRecipe {
   /// whole map, bit by bit. The rows may be none. Finds the field by MapInput, which may hold other samples in the next
   /// call.
   std::function<std::vector<ComputedBand>(const RowBand& rows, const Progress& progress)> compute;
-  /// Returns the result in words, over all rows computed.
+  /// Returns the result in words, over all rows computed. Not called with --quiet.
   std::function<std::string()> summary;
   /// Numbers of the summary that compute() updates, which --resume keeps.
   std::vector<double*> totals{};
@@ -78,6 +79,10 @@ struct MapRecipe {
   /// A file for each band, in place of the output; empty: all bands are in the output.
   std::vector<std::string> files{};
   std::vector<DrawnMark> marks{};  ///< on the preview, in columns and rows of the raster
+  /// All that the pixels depend on besides the raster and the typed words, for map_identity().
+  std::vector<std::string> inputs{};
+  /// Writes other outputs, after the map: --resume keeps the rows until then. Throws Error.
+  std::function<void()> write_more{};
 };
 
 class MapRun {
@@ -99,7 +104,8 @@ class MapRun {
   void set_reach(double metres);
 
   /// Reads the samples. With --dry-run, prints size, memory and time instead, and returns false.
-  bool begin(double bytes_per_pixel, double seconds_per_pixel);
+  /// `more_bytes`: per sample that is read, of other rasters.
+  bool begin(double bytes_per_pixel, double seconds_per_pixel, double more_bytes = 0);
 
   /// The rows of the samples that were read which write() computes.
   RowBand rows() const { return area_.rows(); }
@@ -110,7 +116,9 @@ class MapRun {
  private:
   std::vector<ComputedBand> compute(const MapRecipe& recipe, std::optional<MapJournal>& journal);
   int strips_of(const MapRecipe& recipe) const;
-  std::string identity(int strips) const;
+  std::vector<JournalStrip> finished_strips(const MapRecipe& recipe, MapJournal& journal);
+  std::vector<ComputedBand> finished_bands(const MapRecipe& recipe, const std::vector<JournalStrip>& done);
+  std::string identity(const MapRecipe& recipe) const;
 
   MapCommand& options_;
   const Command& command_;

@@ -23,13 +23,15 @@ constexpr const char* kPolygons = "polygons";
 
 }  // namespace
 
-void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes) {
+void add_format_options(Command& command, FormatOptions& options, const std::vector<std::string>& excludes,
+                        bool common) {
   command.add(&options.driver, {.names = "--of",
                                 .value = "FORMAT",
                                 .help = "GDAL's short name of the output format",
                                 .choices = {"GTiff", "COG"},
                                 .note = "any raster format of gdalinfo --formats that can be written",
                                 .fallback = "by the extension",
+                                .common = common,
                                 .excludes = excludes});
   command.add(&options.creation, {.names = "--co",
                                   .value = "NAME=VALUE",
@@ -37,11 +39,28 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                   .note = "repeatable",
                                   .repeats = true,
                                   .fallback = "GTiff: tiled, DEFLATE",
+                                  .common = common,
                                   .excludes = excludes});
+}
+
+void add_dry_run_option(Command& command, bool& dry_run, const std::vector<std::string>& excludes, bool common) {
+  command.add(&dry_run, {.names = "--dry-run",
+                         .help = "print size and estimated cost, and write nothing",
+                         .common = common,
+                         .excludes = excludes});
+}
+
+void add_quiet_option(Command& command, bool& quiet, const std::vector<std::string>& excludes, bool common) {
+  command.add(&quiet,
+              {.names = "--quiet", .help = "no summary, notes and progress", .common = common, .excludes = excludes});
+}
+
+void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes) {
+  add_format_options(command, options, excludes);
   command.add(&options.part, {.names = "--part",
                               .value = "I/N",
                               .help = "part I of N of the output, as a separate raster (scarp merge joins them)",
-                              .note = "bands of rows, from north to south; auto: the task of a job array",
+                              .note = "bands of rows, from north to south; auto, auto/N: the task of a job array",
                               .fallback = "all",
                               .common = true,
                               .excludes = excludes});
@@ -57,9 +76,8 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                  .excludes = excludes});
   add_draw_options(command, options.draw, Topic::general,
                    needs("--preview FILE", [&options] { return !options.preview.empty(); }), excludes);
-  command.add(&options.dry_run,
-              {.names = "--dry-run", .help = "print size, memory and time, and write nothing", .excludes = excludes});
-  command.add(&options.quiet, {.names = "--quiet", .help = "no summary, notes and progress", .excludes = excludes});
+  add_dry_run_option(command, options.dry_run, excludes);
+  add_quiet_option(command, options.quiet, excludes);
 }
 
 void settle_output(RasterOutput& options, const MapOptions& map, std::string_view sample_type) {
@@ -74,7 +92,7 @@ void settle_output(RasterOutput& options, const MapOptions& map, std::string_vie
     if (options.driver.empty()) options.driver = raster_driver_of(map.output);
     require_raster_driver(options.driver, options.creation, sample_type);
   }
-  if (options.part == kAutomaticPart) options.part = part_of_job_array();
+  if (is_automatic_part(options.part)) options.part = part_of_job_array(options.part);
   keep_inputs(map.output, map.typed);
   // Only a check: formats choose their own temporary files.
   if (!options.dry_run) const ReplaceFile writable(map.output);
@@ -139,26 +157,30 @@ RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapAr
   return map;
 }
 
-double memory_of(const MapInput& input, const MapArea& area, double bytes_per_node) {
+double bytes_of(SampleType type) { return type == SampleType::float32 ? 4 : 2; }
+
+double memory_of(const MapArea& area, double bytes_per_sample, double bytes_per_node) {
   const double read = static_cast<double>(area.read.cols) * area.read.rows,
                computed = static_cast<double>(area.computed.cols) * area.computed.rows;
-  return read * (input.sample_type() == SampleType::float32 ? 4 : 2) + computed * bytes_per_node;
+  return read * bytes_per_sample + computed * bytes_per_node;
 }
 
-void print_dry_run(const MapArea& area, const std::string& output, double memory, double limit, double seconds) {
+void print_dry_run(const std::string& output, const std::string& what, double memory, std::optional<double> limit,
+                   std::optional<double> seconds) {
   constexpr double kMebi = 1 << 20;
   const std::string in_files =
-      memory > limit ? fmt::format(" (at most {:.0f} at once, the rest in files)", limit / kMebi) : "";
-  fmt::print("{}: {} x {} pixels; about {:.0f} MiB of memory{} and {:.1f} s; nothing written (--dry-run)\n", output,
-             area.output.cols, area.output.rows, std::ceil(memory / kMebi), in_files, seconds);
+      limit && memory > *limit ? fmt::format(" (at most {:.0f} at once, the rest in files)", *limit / kMebi) : "";
+  fmt::print("{}: {}; about {:.0f} MiB of memory{}{}; nothing written (--dry-run)\n", output, what,
+             std::ceil(memory / kMebi), in_files, seconds ? fmt::format(" and {:.1f} s", *seconds) : "");
 }
 
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
-                       const std::string& output, const std::string& what,
+                       const std::string& output, const std::function<std::string()>& what,
                        std::chrono::steady_clock::time_point begin) {
   if (options.quiet) return;
+  const std::string text = what();
   print_notes(input.notes);
-  fmt::print("{}: {} x {} pixels, {}; {:.2f} s\n", output, area.output.cols, area.output.rows, what,
+  fmt::print("{}: {} x {} pixels, {}; {:.2f} s\n", output, area.output.cols, area.output.rows, text,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }
 

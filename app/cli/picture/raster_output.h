@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,17 +18,29 @@
 
 namespace scarp::cli {
 
-struct RasterOutput {
+/// The format of a raster to write.
+struct FormatOptions {
   std::string driver;                 ///< empty: by the extension; "polygons": a vector file
   std::vector<std::string> creation;  ///< NAME=VALUE
-  std::string part;                   ///< I/N, or "auto" before settle_output(); empty: all
-  std::string preview;                ///< picture; empty: none
-  DrawOptions draw;                   ///< on the preview
+};
+
+struct RasterOutput : FormatOptions {
+  std::string part;     ///< I/N, or "auto" before settle_output(); empty: all
+  std::string preview;  ///< picture; empty: none
+  DrawOptions draw;     ///< on the preview
   bool dry_run = false, quiet = false, resume = false;
 };
 
-/// Declares --of, --co, --part, --resume, --preview, --dry-run and --quiet. `excludes`: options with which the output
-/// is not a raster.
+/// Declares --of and --co. `excludes`: options with which the output is not a raster; `common`: as Option::common.
+void add_format_options(Command& command, FormatOptions& options, const std::vector<std::string>& excludes = {},
+                        bool common = false);
+/// Declares --dry-run.
+void add_dry_run_option(Command& command, bool& dry_run, const std::vector<std::string>& excludes = {},
+                        bool common = false);
+/// Declares --quiet. With it, the subcommand prints nothing and creates a SilentProgress.
+void add_quiet_option(Command& command, bool& quiet, const std::vector<std::string>& excludes = {},
+                      bool common = false);
+/// Declares all of these, --part, --resume and --preview.
 void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes = {});
 
 /// Throws Error, before hours of work, for formats and files that cannot be written, formats that cannot store samples
@@ -61,14 +74,19 @@ MapArea map_area(const MapInput& input, const RasterOutput& options, const Raste
 RasterMap map_of(const MapInput& input, const RasterOutput& options, const MapArea& area, const std::string& method,
                  std::vector<std::pair<std::string, std::string>> metadata);
 
-/// Estimated memory of a map in bytes: its samples, and `bytes_per_node` of each node computed.
-double memory_of(const MapInput& input, const MapArea& area, double bytes_per_node);
+/// Bytes of a sample in memory.
+double bytes_of(SampleType type);
+/// Estimated memory of a map in bytes: of each sample read, and of each node computed.
+double memory_of(const MapArea& area, double bytes_per_sample, double bytes_per_node);
 
-/// Prints the requirements of a run: size of the output, memory, of which `limit` bytes may be used, and seconds.
-void print_dry_run(const MapArea& area, const std::string& output, double memory, double limit, double seconds);
+/// Prints the requirements of a run: `what` it writes, memory in bytes, of which `limit` may be used, and seconds, if
+/// they are known.
+void print_dry_run(const std::string& output, const std::string& what, double memory, std::optional<double> limit,
+                   std::optional<double> seconds);
 
-/// Unless quiet, prints the notes and the last line: output, size, `what`, seconds.
+/// Unless quiet, prints the notes and the last line: output, size, the text of `what`, seconds.
 void print_map_summary(const MapInput& input, const RasterOutput& options, const MapArea& area,
-                       const std::string& output, const std::string& what, std::chrono::steady_clock::time_point begin);
+                       const std::string& output, const std::function<std::string()>& what,
+                       std::chrono::steady_clock::time_point begin);
 
 }  // namespace scarp::cli
