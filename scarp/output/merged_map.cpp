@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kPartItem = "PART";
 constexpr const char* kRunItem = "RUN";
 
-// What parts of one map have in common, as text, with a name for messages: "metadata", "CRS".
+// Properties that all parts of a map share, as text, with a name for messages: "metadata", "CRS".
 using Traits = std::vector<std::pair<std::string, std::string>>;
 
 struct Part {
