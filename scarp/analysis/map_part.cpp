@@ -57,17 +57,27 @@ std::vector<Value> fill_rows(const Viewpoint& view, const RowBand& band, Value g
   return map;
 }
 
+// Rows or columns, of `lines` in all; the ray crosses `step` of them along its vector.
+RowBand lines_towards(const SunRay& ray, std::int64_t step, int lines, const RowBand& band, double relief) {
+  // A ray is no longer blocked once it is above all ground. One line more for the ground next to the first crossing,
+  // and one for rounding.
+  constexpr int kMargin = 2;
+  const double reach = kMargin + std::abs(static_cast<double>(step)) * relief / ray.rise;
+  const int more = static_cast<int>(std::min<double>(std::ceil(reach), lines));
+  return step < 0 ? RowBand{std::max(0, band.first - more), band.last}
+                  : RowBand{band.first, std::min(lines, band.last + (step > 0 ? more : 0))};
+}
+
 }  // namespace
 
 RowBand rows_towards(const NodeSteps& steps, int rows, const SunDirection& sun, const RowBand& band, double relief) {
   const SunRay ray = sun_ray(steps, sun);
-  // A ray is no longer blocked once it is above all ground. One row more for the ground next to the first crossing, and
-  // one for rounding.
-  constexpr int kMargin = 2;
-  const double reach = kMargin + std::abs(static_cast<double>(ray.row)) * relief / ray.rise;
-  const int more = static_cast<int>(std::min<double>(std::ceil(reach), rows));
-  return ray.row < 0 ? RowBand{std::max(0, band.first - more), band.last}
-                     : RowBand{band.first, std::min(rows, band.last + (ray.row > 0 ? more : 0))};
+  return lines_towards(ray, ray.row, rows, band, relief);
+}
+
+RowBand cols_towards(const NodeSteps& steps, int cols, const SunDirection& sun, const RowBand& band, double relief) {
+  const SunRay ray = sun_ray(steps, sun);
+  return lines_towards(ray, ray.col, cols, band, relief);
 }
 
 void require_band(const HeightField& field, const RowBand& band) {

@@ -33,6 +33,8 @@ RowBand row_band(int rows, int part, int parts);
 /// Returns the rows, of `rows` in all, that the shadows of a band depend on, if no ground is more than `relief` metres
 /// above the ground of the band. `steps` as for sun_ray(), which it throws as.
 RowBand rows_towards(const NodeSteps& steps, int rows, const SunDirection& sun, const RowBand& band, double relief);
+/// The same for columns, of `cols` in all.
+RowBand cols_towards(const NodeSteps& steps, int cols, const SunDirection& sun, const RowBand& band, double relief);
 
 /// Throws Error for an empty band, and one that is not inside the field.
 void require_band(const HeightField& field, const RowBand& band);

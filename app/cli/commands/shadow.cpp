@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -15,6 +17,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/options/horizon_frames.h"
 #include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_run.h"
 #include "app/cli/progress.h"
@@ -42,14 +45,16 @@ struct ShadowOptions : MapCommand {
   bool fraction = false, refraction = false, per_cell = false;
 };
 
-// A sun over the field. The azimuth is relative to grid north.
+// A sun over the field.
 struct Sun {
-  SunDirection direction;
-  std::string name;   // name of the band
-  std::string place;  // azimuth and altitude in degrees
+  SunDirection direction;  // that of the whole raster; the azimuth is relative to grid north
+  std::string name;        // name of the band
+  std::string place;       // azimuth and altitude in degrees
 #ifdef SCARP_ERFA
   std::optional<LocalSun> local{};  // replaces the direction
 #endif
+  // The direction at the middle of a block of nodes, which replaces that of the whole raster in rasters of several.
+  std::function<SunDirection(const HorizonFrame&)> at_block{};
 };
 
 std::string place_text(double azimuth, double altitude) {
@@ -68,14 +73,16 @@ struct SunSpread {
   double lowest = 0, highest = 0;  // altitudes at centre and corners
 };
 
+SunPosition sun_over(const MapInput& input, const SunAtTime& sky, const dvec2& node, double height, bool refraction) {
+  const auto at = input.lonlat_of(node.x, node.y);
+  if (!at) throw Error(fmt::format("{}: --time needs a raster with a CRS (give --crs, or --sun)", input.path()));
+  return sky.at({at->x / kDegreesPerRadian, at->y / kDegreesPerRadian, height}, refraction);
+}
+
 SunSpread sun_spread(const MapInput& input, const std::string& text, double height, bool refraction) {
   const SunAtTime sky(parse_time(text));
   const double last_col = input.cols() - 1, last_row = input.rows() - 1;
-  const auto position = [&](double col, double row) {
-    const auto at = input.lonlat_of(col, row);
-    if (!at) throw Error(fmt::format("{}: --time needs a raster with a CRS (give --crs, or --sun)", input.path()));
-    return sky.at({at->x / kDegreesPerRadian, at->y / kDegreesPerRadian, height}, refraction);
-  };
+  const auto position = [&](double col, double row) { return sun_over(input, sky, {col, row}, height, refraction); };
   SunSpread spread{position(last_col / 2, last_row / 2)};
   const SunPosition& sun = spread.centre;
   const double centre_north = input.north_at(last_col / 2, last_row / 2);  // true north turns over the raster
@@ -106,7 +113,8 @@ Sun fixed_sun(const MapInput& input, const SunDirection& direction, const std::s
       {}, name, place_text(direction.azimuth, direction.altitude), LocalSun{{}, false, node_places(input), direction}};
 }
 
-void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vector<Sun>& suns, double& lowest) {
+void add_suns_of_times(MapInput& input, const ShadowOptions& options, bool by_blocks, std::vector<Sun>& suns,
+                       double& lowest) {
   double error = 0;
   // Not from the samples of a part: all parts have the same sun. A --dry-run reads no samples; kilometres of height
   // move the sun by less than a microradian.
@@ -120,11 +128,20 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
       throw Error(fmt::format("--time: {}", error_of_time.what()));
     }
     const auto& [azimuth, altitude] = spread.centre;
-    if (const double highest = options.per_cell ? spread.highest : altitude; highest <= 0)
+    if (const double highest = options.per_cell || by_blocks ? spread.highest : altitude; highest <= 0)
       throw Error(
           fmt::format("--time '{}': the sun is {:.2f} degrees below the horizon", text, -highest * kDegreesPerRadian));
     lowest = std::min(lowest, spread.lowest);
     error = std::max(error, spread.error);
+    if (by_blocks) {
+      suns.push_back({{}, text, place_text(azimuth, altitude) + " at the centre"});
+      suns.back().at_block = [&input, sky = SunAtTime(parse_time(text)), height,
+                              refraction = options.refraction](const HorizonFrame& block) {
+        const SunPosition sun = sun_over(input, sky, block.middle, height, refraction);
+        return SunDirection{sun.azimuth - input.north_at(block.middle.x, block.middle.y), sun.altitude};
+      };
+      continue;
+    }
     if (!options.per_cell) {
       suns.push_back({{azimuth - grid_north_of(input), altitude}, text, place_text(azimuth, altitude)});
       continue;
@@ -134,7 +151,7 @@ void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vecto
                     place_text(azimuth, altitude) + " at the centre",
                     LocalSun{parse_time(text), options.refraction, places}});
   }
-  if (!options.per_cell)
+  if (!options.per_cell && !by_blocks)
     input.notes.push_back(
         fmt::format("one sun for the whole raster, that at its centre; it is up to {:.3g} degrees off in the corners "
                     "(--sun-per-cell)",
@@ -153,7 +170,7 @@ void note_turn_of_north(MapInput& input) {
 }
 
 // `lowest`: the lowest altitude of the suns, radians.
-std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& lowest) {
+std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, bool by_blocks, double& lowest) {
   std::vector<Sun> suns;
   for (const std::string& text : options.suns) {
     constexpr std::string_view kForm =
@@ -172,12 +189,19 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& 
       throw Error("--sun-per-cell: this build has one sun for the whole raster (SCARP_ERFA=OFF)");
 #endif
     }
+    if (by_blocks) {
+      suns.push_back({{}, name, place_text(azimuth, altitude)});
+      suns.back().at_block = [&input, azimuth, altitude](const HorizonFrame& block) {
+        return SunDirection{azimuth - input.north_at(block.middle.x, block.middle.y), altitude};
+      };
+      continue;
+    }
     suns.push_back({{azimuth - grid_north_of(input), altitude}, name, place_text(azimuth, altitude)});
   }
-  if (!options.suns.empty() && !options.per_cell) note_turn_of_north(input);
+  if (!options.suns.empty() && !options.per_cell && !by_blocks) note_turn_of_north(input);
   if (!options.times.empty()) {
 #ifdef SCARP_ERFA
-    add_suns_of_times(input, options, suns, lowest);
+    add_suns_of_times(input, options, by_blocks, suns, lowest);
 #else
     static_cast<void>(lowest);
     throw Error("--time: this build does not compute the sun's position (SCARP_ERFA=OFF)");
@@ -199,6 +223,60 @@ std::vector<float> shares_of(const SunGround& ground, const Sun& sun, const RowB
   if (sun.local) return local_lit_share(ground, *sun.local, rows, progress);
 #endif
   return lit_share(ground, sun.direction, rows, progress);
+}
+
+// The values of a map in a block: those of `of`(ground, band of its rows) over the ground that can shade the block.
+template <class Of>
+auto block_of(const MapInput& input, const HeightField& field, const SunDirection& sun, const NodeRect& nodes,
+              double below, const Of& of) {
+  RowBand cols{0, field.cols()}, rows{0, field.rows()};
+  const double relief = field.max_height() - field.min_height();
+  if (const SunDirection lowest{sun.azimuth, sun.altitude - below}; lowest.altitude > 0) {
+    cols = cols_towards(node_steps(field), field.cols(), lowest, {nodes.col_begin, nodes.col_end}, relief);
+    rows = rows_towards(node_steps(field), field.rows(), lowest, {nodes.row_begin, nodes.row_end}, relief);
+  }
+  const HeightField near = field.visit([&](const auto& grid) {
+    return HeightField::view(grid.row(rows.first) + cols.first, cols.rows(), rows.rows(), field.settings(),
+                             grid.row_stride);
+  });
+  const std::optional<BilinearGround> bilinear = input.bilinear_ground(near);
+  const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(near);
+  const auto wide = of(ground, RowBand{nodes.row_begin - rows.first, nodes.row_end - rows.first});
+  auto values = wide;
+  values.clear();
+  for (int row = 0; row < nodes.row_end - nodes.row_begin; ++row) {
+    const auto line = wide.begin() + static_cast<std::ptrdiff_t>(row) * cols.rows() - cols.first;
+    values.insert(values.end(), line + nodes.col_begin, line + nodes.col_end);
+  }
+  return values;
+}
+
+// Rows of a map by blocks, each under the sun at its middle. Blocks where it is below the horizon have the value
+// `dark`, their holes `hole`.
+template <class T, class Of>
+std::vector<T> blocks_of(MapInput& input, const HeightField& field, const Sun& sun, const HorizonFrames& frames,
+                         const RowBand& rows, double below, T dark, T hole, const Progress& progress, const Of& of) {
+  std::vector<T> all(static_cast<std::size_t>(rows.rows()) * static_cast<std::size_t>(field.cols()));
+  const SightGround heights(field);
+  const std::vector<HorizonFrame> blocks = frames.of(input, rows);
+  std::vector<SunDirection> directions;  // not on all threads: transformations of coordinates have one user at a time
+  for (const HorizonFrame& block : blocks) directions.push_back(sun.at_block(block));
+  const auto add = [&](const HorizonFrame& block, const Progress& of_block) {
+    const SunDirection& direction = directions[static_cast<std::size_t>(&block - blocks.data())];
+    if (direction.altitude + below > 0) {
+      const auto values =
+          block_of(input, field, direction, block.nodes, below,
+                   [&](const SunGround& ground, const RowBand& band) { return of(ground, direction, band, of_block); });
+      return paste(values, block, rows, field.cols(), all);
+    }
+    std::vector<T> values;
+    for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row)
+      for (int col = block.nodes.col_begin; col < block.nodes.col_end; ++col)
+        values.push_back(heights.height({col, row}) ? dark : hole);
+    paste(values, block, rows, field.cols(), all);
+  };
+  for_each_frame(blocks, add, progress);
+  return all;
 }
 
 std::string method_of(const ShadowOptions& options) {
@@ -246,7 +324,7 @@ ComputedBand band_of(const Sun& sun, const std::vector<Shade>& shades, LitPixels
 // The rows that the shadows of a band depend on. The band is read for its lowest ground; the highest ground is bounded
 // by the type of the samples, so that floats need all rows, as suns of their own for each pixel do.
 RowBand rows_towards_suns(MapInput& input, const std::vector<Sun>& suns, const ShadowOptions& options,
-                          const RowBand& band) {
+                          const std::optional<HorizonFrames>& frames, const RowBand& band) {
   const std::optional<double> highest = input.highest_possible();
   if (!highest || options.per_cell || options.raster_output.dry_run) return {0, input.rows()};
   input.read({0, band.first, input.cols(), band.rows()}, terminal_progress("read lowest ground"));
@@ -256,8 +334,14 @@ RowBand rows_towards_suns(MapInput& input, const std::vector<Sun>& suns, const S
   RowBand rows = band;
   // The disc's lowest strip of --fraction is the first to be hidden.
   const double below = options.fraction ? kSunDiameter / 2 : 0;
+  std::vector<SunDirection> directions;
   for (const Sun& sun : suns) {
-    const SunDirection lowest{sun.direction.azimuth, sun.direction.altitude - below};
+    if (!sun.at_block) directions.push_back(sun.direction);
+    if (sun.at_block)
+      for (const HorizonFrame& block : frames->of(input, {0, band.rows()})) directions.push_back(sun.at_block(block));
+  }
+  for (const SunDirection& direction : directions) {
+    const SunDirection lowest{direction.azimuth, direction.altitude - below};
     if (!(lowest.altitude > 0)) return {0, input.rows()};
     const RowBand needed = rows_towards(node_steps(field), input.rows(), lowest, band, relief);
     rows = {std::min(rows.first, needed.first), std::max(rows.last, needed.last)};
@@ -269,8 +353,14 @@ void run(ShadowOptions options, const Command& command) {
   MapRun run(options, command, options.fraction ? "Float32" : "Byte");
   MapInput& input = run.input();
   double lowest = std::numbers::pi / 2;
-  const std::vector<Sun> suns = suns_of(input, options, lowest);
-  run.set_rows([&](const RowBand& band) { return rows_towards_suns(input, suns, options, band); });
+  std::optional<HorizonFrames> frames;
+  if (!options.per_cell && !is_geographic(input.georeference())) {
+    frames.emplace(input, HorizonInput{}, options.plane_error,
+                   options.times.empty() ? FrameUse::north : FrameUse::suns);
+    if (frames->single()) frames.reset();
+  }
+  const std::vector<Sun> suns = suns_of(input, options, frames.has_value(), lowest);
+  run.set_rows([&](const RowBand& band) { return rows_towards_suns(input, suns, options, frames, band); });
   const auto bands = static_cast<double>(suns.size());
   if (!run.begin(bands * (options.fraction ? 4 : 1) + 1, bands * node_seconds(options))) return;
   std::string places;
@@ -287,14 +377,25 @@ void run(ShadowOptions options, const Command& command) {
     for (std::size_t i = 0; i < suns.size(); ++i) {
       const Sun& sun = suns[i];
       const Progress of_sun = progress_part(progress, static_cast<double>(i), bands);
-      computed.push_back(options.fraction ? band_of(sun, shares_of(ground, sun, rows, of_sun), pixels)
-                                          : band_of(sun, shades_of(ground, sun, rows, of_sun), pixels));
+      const auto shares = [&] {
+        if (!frames) return shares_of(ground, sun, rows, of_sun);
+        return blocks_of(input, field, sun, *frames, rows, kSunDiameter / 2, 0.0f, kNoShare, of_sun, lit_share);
+      };
+      const auto shades = [&] {
+        if (!frames) return shades_of(ground, sun, rows, of_sun);
+        const auto codes = [](const SunGround& near, const SunDirection& direction, const RowBand& band,
+                              const Progress& of_block) { return near.rows(direction, band, of_block); };
+        return blocks_of(input, field, sun, *frames, rows, 0, Shade::self_shaded, Shade::hole, of_sun, codes);
+      };
+      computed.push_back(options.fraction ? band_of(sun, shares(), pixels) : band_of(sun, shades(), pixels));
     }
     return computed;
   };
   const auto summary = [&] { return fmt::format("{}; {:.3g} % lit", places, pixels.percent()); };
-  run.write(
-      {method_of(options), {{"SUN", places}}, "grey", compute, summary, {&pixels.lit, &pixels.with_sample}, true});
+  Metadata metadata{{"SUN", places}};
+  if (frames)
+    for (auto& pair : frames->metadata()) metadata.push_back(std::move(pair));
+  run.write({method_of(options), metadata, "grey", compute, summary, {&pixels.lit, &pixels.with_sample}, true});
 }
 
 }  // namespace
@@ -320,7 +421,7 @@ void add_shadow(Program& program) {
                               .common = true,
                               .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
   command.add(&o.per_cell, {.names = "--sun-per-cell",
-                            .help = "the sun's position, north and scale at every pixel instead of at the centre",
+                            .help = "the sun's position, north and scale at every pixel instead of its block's",
                             .common = true});
   command.add(&o.fraction, {.names = "--fraction",
                             .help = "lit fraction of the sun's disc (0.533 degrees) instead of codes",

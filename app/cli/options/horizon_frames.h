@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Blocks of a raster for maps of horizons, each with the cell lengths and the north at its middle:
+// Blocks of a raster for maps of horizons and shadows, each with the cell lengths and the north at its middle:
 //
 //   projected rasters   blocks in which grid north turns against true north by little; the lengths are those at the
 //                       centre of the raster
@@ -39,6 +39,9 @@ class HorizonFrames {
 
   /// The blocks that cover rows of the part that was read.
   std::vector<HorizonFrame> of(MapInput& input, const RowBand& rows) const;
+
+  /// Whether one block covers the raster.
+  bool single() const { return single_; }
 
   /// BLOCKS: their size and what it costs, if there is more than one.
   Metadata metadata() const;
