@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "python/bind/bind.h"
+#include "python/bind/maps.h"
 #include "python/bind/names.h"
-#include "python/bind/tasks.h"
 #include "python/bind/terrain_object.h"
 #include "scarp/analysis/line_of_sight.h"
 #include "scarp/analysis/observer_count.h"
@@ -85,43 +85,43 @@ struct Observers {
   }
 };
 
-std::vector<std::uint8_t> visible(const Observers& observers, const Progress& progress) {
+std::vector<std::uint8_t> visible(const Observers& observers, const RowBand& rows, const Progress& progress) {
   std::vector<std::uint8_t> codes;
   if (observers.count() == 1) {
     constexpr std::uint8_t kCodes[] = {kHidden, kVisible, kNoCode, kNoCode};
-    const auto seen = viewshed(observers.fields[0], observers.nodes[0], observers.settings[0], progress);
+    const auto seen = viewshed_rows(observers.fields[0], observers.nodes[0], observers.settings[0], rows, progress);
     codes.resize(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i) codes[i] = kCodes[static_cast<std::size_t>(seen[i])];
     return codes;
   }
-  const auto counts = observer_count(observers.views(), progress);
+  const auto counts = observer_count_rows(observers.views(), rows, progress);
   codes.resize(counts.size());
   for (std::size_t i = 0; i < counts.size(); ++i)
     codes[i] = counts[i] == kCountHole || counts[i] == kCountOutOfRange ? kNoCode : counts[i] > 0 ? kVisible : kHidden;
   return codes;
 }
 
-std::vector<std::uint16_t> count(const Observers& observers, const Progress& progress) {
-  auto counts = observer_count(observers.views(), progress);
+std::vector<std::uint16_t> count(const Observers& observers, const RowBand& rows, const Progress& progress) {
+  auto counts = observer_count_rows(observers.views(), rows, progress);
   for (std::uint16_t& number : counts)
     if (number == kCountOutOfRange) number = kCountHole;
   return counts;
 }
 
-std::vector<float> least(const Observers& observers, HeightDatum datum, const Progress& progress) {
+std::vector<float> least(const Observers& observers, HeightDatum datum, const RowBand& rows, const Progress& progress) {
   std::vector<float> pixels;
   for (std::size_t k = 0; k < observers.count(); ++k) {
     const HeightField& field = observers.fields[k];
     const auto heights =
-        least_visible(field, observers.nodes[k], observers.settings[k],
-                      progress_part(progress, static_cast<double>(k), static_cast<double>(observers.count())));
+        least_visible_rows(field, observers.nodes[k], observers.settings[k], rows,
+                           progress_part(progress, static_cast<double>(k), static_cast<double>(observers.count())));
     const Viewpoint view(field, observers.nodes[k], observers.settings[k]);
     if (pixels.empty()) pixels.assign(heights.size(), kNothing);
     const int cols = field.cols();
-    parallel_for(field.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(rows.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin * cols); i < static_cast<std::size_t>(end * cols); ++i) {
         const Node node{static_cast<int>(i % static_cast<std::size_t>(cols)),
-                        static_cast<int>(i / static_cast<std::size_t>(cols))};
+                        rows.first + static_cast<int>(i / static_cast<std::size_t>(cols))};
         pixels[i] = std::fmin(pixels[i], least_height(view.ground(), node, heights[i], datum));  // replaces NaN
       }
     });
@@ -129,13 +129,14 @@ std::vector<float> least(const Observers& observers, HeightDatum datum, const Pr
   return pixels;
 }
 
-std::vector<float> angles(const Observers& observers, const Progress& progress) {
+std::vector<float> angles(const Observers& observers, const RowBand& rows, const Progress& progress) {
   std::vector<float> pixels;
   for (std::size_t k = 0; k < observers.count(); ++k) {
     const auto codes =
-        viewshed(observers.fields[k], observers.nodes[k], observers.settings[k],
-                 progress_part(progress, static_cast<double>(k), static_cast<double>(observers.count())));
-    const auto of_one = sight_angles(Viewpoint(observers.fields[k], observers.nodes[k], observers.settings[k]), codes);
+        viewshed_rows(observers.fields[k], observers.nodes[k], observers.settings[k], rows,
+                      progress_part(progress, static_cast<double>(k), static_cast<double>(observers.count())));
+    const auto of_one =
+        sight_angles(Viewpoint(observers.fields[k], observers.nodes[k], observers.settings[k]), codes, rows.first);
     if (pixels.empty()) pixels.assign(of_one.size(), kNothing);
     for (std::size_t i = 0; i < of_one.size(); ++i) pixels[i] = std::fmax(pixels[i], of_one[i]);  // replaces NaN
   }
@@ -149,20 +150,19 @@ constexpr Named<Mode> kModes[] = {{"visible", Mode::visible},
                                   {"ground", Mode::ground},
                                   {"angle", Mode::angle}};
 
-py::array viewshed_map(const TerrainObject& terrain, const std::vector<ObserverRow>& rows, double target_height,
+py::array viewshed_map(const TerrainObject& terrain, const std::vector<ObserverRow>& places, double target_height,
                        double coefficient, double diameter, double min_distance, double max_distance, double low_pitch,
-                       double high_pitch, const std::string& mode_name, const py::object& progress) {
+                       double high_pitch, const std::string& mode_name, const RowPair& rows,
+                       const py::object& progress) {
   const Mode mode = find(kModes, mode_name, "mode");
   const Limits limits{target_height, coefficient, diameter, min_distance, max_distance, low_pitch, high_pitch};
   std::vector<Observer> observers;
-  for (const ObserverRow& row : rows) observers.push_back(std::make_from_tuple<Observer>(row));
+  for (const ObserverRow& place : places) observers.push_back(std::make_from_tuple<Observer>(place));
   if (observers.empty()) throw Error("viewshed: no observer");
-  require_memory(terrain);
-  const std::vector<py::ssize_t> shape{terrain.field().rows(), terrain.field().cols()};
+  const auto shape = shape_of(terrain, {rows.first, rows.second});
   const auto of_observers = [&](const auto& map) {
-    return result_of_task(progress, [&](const Progress& report) {
-      const auto locks = shared_locks(terrain);
-      return map(Observers(terrain, observers, limits), report);
+    return map_of(terrain, rows, progress, [&](const HeightField&, const RowBand& band, const Progress& report) {
+      return map(Observers(terrain, observers, limits), band, report);
     });
   };
   switch (mode) {
@@ -177,8 +177,10 @@ py::array viewshed_map(const TerrainObject& terrain, const std::vector<ObserverR
       break;
   }
   const HeightDatum datum = mode == Mode::dem ? HeightDatum::sea : HeightDatum::ground;
-  return handed_over<float>(
-      of_observers([&](const Observers& all, const Progress& report) { return least(all, datum, report); }), shape);
+  return handed_over<float>(of_observers([&](const Observers& all, const RowBand& band, const Progress& report) {
+                              return least(all, datum, band, report);
+                            }),
+                            shape);
 }
 
 // A line between two places, in columns and rows.
@@ -232,9 +234,16 @@ py::array_t<double> profile_table(const TerrainObject& terrain, Numbers... numbe
 }  // namespace
 
 void bind_sight(py::module_& module) {
+  module.def(
+      "row_band",
+      [](int rows, int part, int parts) {
+        const RowBand band = row_band(rows, part, parts);
+        return py::make_tuple(band.first, band.last);
+      },
+      py::arg("rows"), py::arg("part"), py::arg("parts"));
   module.def("viewshed", &viewshed_map, py::arg("terrain"), py::arg("observers"), py::arg("target_height"),
              py::arg("coefficient"), py::arg("diameter"), py::arg("min_distance"), py::arg("max_distance"),
-             py::arg("low_pitch"), py::arg("high_pitch"), py::arg("mode"), py::arg("progress"));
+             py::arg("low_pitch"), py::arg("high_pitch"), py::arg("mode"), py::arg("rows"), py::arg("progress"));
   using LineOf = py::tuple (*)(const TerrainObject&, double, double, double, bool, double, double, double, bool, double,
                                double, double, double);
   module.def("line_of_sight", static_cast<LineOf>(&sight));

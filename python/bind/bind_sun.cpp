@@ -2,19 +2,21 @@
 // Maps of sun and sky, in the library's units: metres, radians from grid north.
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "python/bind/bind.h"
+#include "python/bind/maps.h"
 #include "python/bind/names.h"
-#include "python/bind/tasks.h"
 #include "python/bind/terrain_object.h"
 #include "scarp/analysis/horizon.h"
-#include "scarp/analysis/map_part.h"
 #include "scarp/analysis/shadow.h"
 #include "scarp/analysis/sky_view.h"
 #include "scarp/analysis/sun_disc.h"
@@ -22,6 +24,10 @@
 #include "scarp/base/progress_part.h"
 #ifdef SCARP_ERFA
 #include "scarp/analysis/sun_position.h"
+#ifdef SCARP_PYTHON_FILES
+#include "scarp/analysis/local_sun.h"
+#include "scarp/source/raster/node_places.h"
+#endif
 #endif
 
 namespace scarp::python {
@@ -35,68 +41,90 @@ constexpr Named<SkyMeasure> kMeasures[] = {{"sky-fraction", SkyMeasure::sky_frac
                                            {"positive-openness", SkyMeasure::positive_openness},
                                            {"negative-openness", SkyMeasure::negative_openness}};
 
-std::vector<py::ssize_t> shape_of(const TerrainObject& terrain) {
-  return {terrain.field().rows(), terrain.field().cols()};
-}
-
-// Runs a map of a terrain as a task.
-template <class Map>
-auto map_of(const TerrainObject& terrain, const py::object& progress, const Map& map) {
-  require_memory(terrain);
-  return result_of_task(progress, [&](const Progress& report) {
-    const auto locks = shared_locks(terrain);
-    return map(terrain.field(), report);
-  });
-}
-
 HorizonSettings horizon_settings(double eye_height, double max_distance, double coefficient, double diameter,
                                  const std::string& engine) {
   return {eye_height, max_distance, {coefficient, diameter}, find(kEngines, engine, "engine")};
 }
 
+// Shares of the sun's disc, NaN without a sample.
+std::vector<float> with_nan(std::vector<float> shares) {
+  for (float& share : shares)
+    if (share == kNoShare) share = std::numeric_limits<float>::quiet_NaN();
+  return shares;
+}
+
 // Codes as `scarp shadow` writes them: 0 lit, 1 self-shaded, 2 cast shadow, 255 no sample.
-py::array shadow_map(const TerrainObject& terrain, double azimuth, double altitude, bool fraction,
+std::vector<Shade> with_nodata(std::vector<Shade> shades) {
+  for (Shade& shade : shades)
+    if (shade == Shade::hole) shade = Shade{255};
+  return shades;
+}
+
+py::array shadow_map(const TerrainObject& terrain, double azimuth, double altitude, bool fraction, const RowPair& rows,
                      const py::object& progress) {
   const SunDirection sun{azimuth, altitude};
+  const auto shape = shape_of(terrain, {rows.first, rows.second});
   if (fraction)
-    return handed_over<float>(map_of(terrain, progress,
-                                     [&](const HeightField& field, const Progress& report) {
-                                       auto shares = lit_share(field, sun, {0, field.rows()}, report);
-                                       for (float& share : shares)
-                                         if (share == kNoShare) share = std::numeric_limits<float>::quiet_NaN();
-                                       return shares;
+    return handed_over<float>(map_of(terrain, rows, progress,
+                                     [&](const HeightField& field, const RowBand& band, const Progress& report) {
+                                       return with_nan(lit_share(field, sun, band, report));
                                      }),
-                              shape_of(terrain));
-  return handed_over<std::uint8_t>(map_of(terrain, progress,
-                                          [&](const HeightField& field, const Progress& report) {
-                                            auto shades = shadow(field, sun, report);
-                                            for (Shade& shade : shades)
-                                              if (shade == Shade::hole) shade = Shade{255};
-                                            return shades;
+                              shape);
+  return handed_over<std::uint8_t>(map_of(terrain, rows, progress,
+                                          [&](const HeightField& field, const RowBand& band, const Progress& report) {
+                                            return with_nodata(shadow_rows(field, sun, band, report));
                                           }),
-                                   shape_of(terrain));
+                                   shape);
 }
+
+#if defined(SCARP_ERFA) && defined(SCARP_PYTHON_FILES)
+// The same with the sun of a time, or a fixed direction from true north, at every node.
+py::array local_shadow_map(const TerrainObject& terrain, const std::optional<std::string>& time, bool refraction,
+                           double azimuth, double altitude, bool fraction, const RowPair& rows,
+                           const py::object& progress) {
+  const NodePlaces places(terrain.georeference(), terrain.field().cols(), terrain.field().rows());
+  LocalSun sun{.refraction = refraction,
+               .places = [&](int row, int first_col, std::span<dvec3> nodes) { places.row(row, first_col, nodes); }};
+  if (time) {
+    sun.time = parse_time(*time);
+  } else {
+    sun.fixed = SunDirection{azimuth, altitude};
+  }
+  const auto shape = shape_of(terrain, {rows.first, rows.second});
+  if (fraction)
+    return handed_over<float>(map_of(terrain, rows, progress,
+                                     [&](const HeightField& field, const RowBand& band, const Progress& report) {
+                                       return with_nan(local_lit_share(field, sun, band, report));
+                                     }),
+                              shape);
+  return handed_over<std::uint8_t>(map_of(terrain, rows, progress,
+                                          [&](const HeightField& field, const RowBand& band, const Progress& report) {
+                                            return with_nodata(local_shadow(field, sun, band, report));
+                                          }),
+                                   shape);
+}
+#endif
 
 // Angles in radians of (azimuths, rows, columns) and, with `distances`, metres.
 py::tuple horizon_maps(const TerrainObject& terrain, const std::vector<double>& azimuths, double eye_height,
                        double max_distance, double coefficient, double diameter, const std::string& engine,
-                       bool distances, const py::object& progress) {
+                       bool distances, const RowPair& rows, const py::object& progress) {
   const HorizonSettings settings = horizon_settings(eye_height, max_distance, coefficient, diameter, engine);
-  HorizonRows all = map_of(terrain, progress, [&](const HeightField& field, const Progress& report) {
-    const Horizons horizons(field, settings, [&](double) { return report(0); });
-    HorizonRows rows;
-    for (std::size_t i = 0; i < azimuths.size(); ++i) {
-      HorizonRows of_one =
-          horizons.rows(azimuths[i], 0, field.rows(), distances,
-                        progress_part(report, static_cast<double>(i), static_cast<double>(azimuths.size())));
-      if (azimuths.size() == 1) return of_one;
-      rows.angle.insert(rows.angle.end(), of_one.angle.begin(), of_one.angle.end());
-      rows.distance.insert(rows.distance.end(), of_one.distance.begin(), of_one.distance.end());
-    }
-    return rows;
-  });
-  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(azimuths.size()), terrain.field().rows(),
-                                       terrain.field().cols()};
+  HorizonRows all =
+      map_of(terrain, rows, progress, [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        const Horizons horizons(field, settings, [&](double) { return report(0); });
+        HorizonRows found;
+        for (std::size_t i = 0; i < azimuths.size(); ++i) {
+          HorizonRows of_one =
+              horizons.rows(azimuths[i], band.first, band.last, distances,
+                            progress_part(report, static_cast<double>(i), static_cast<double>(azimuths.size())));
+          if (azimuths.size() == 1) return of_one;
+          found.angle.insert(found.angle.end(), of_one.angle.begin(), of_one.angle.end());
+          found.distance.insert(found.distance.end(), of_one.distance.begin(), of_one.distance.end());
+        }
+        return found;
+      });
+  const auto shape = shape_of(terrain, {rows.first, rows.second}, azimuths.size());
   py::object metres = py::none();
   if (distances) metres = handed_over<float>(std::move(all.distance), shape);
   return py::make_tuple(handed_over<float>(std::move(all.angle), shape), metres);
@@ -124,33 +152,79 @@ py::object horizon_at(const TerrainObject& terrain, double col, double row, cons
 // One array per measure; openness in radians.
 py::list sky_maps(const TerrainObject& terrain, const std::vector<std::string>& names, int azimuths, double eye_height,
                   double max_distance, double coefficient, double diameter, const std::string& engine,
-                  const py::object& progress) {
+                  const RowPair& rows, const py::object& progress) {
   const HorizonSettings settings = horizon_settings(eye_height, max_distance, coefficient, diameter, engine);
   std::vector<SkyMeasure> measures;
   for (const std::string& name : names) measures.push_back(find(kMeasures, name, "measure"));
-  auto maps = map_of(terrain, progress, [&](const HeightField& field, const Progress& report) {
-    const SkyView sky(field, settings, azimuths, measures, [&](double) { return report(0); });
-    return sky.rows(0, field.rows(), report);
-  });
+  auto maps =
+      map_of(terrain, rows, progress, [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        const SkyView sky(field, settings, azimuths, measures, [&](double) { return report(0); });
+        return sky.rows(band.first, band.last, report);
+      });
   py::list arrays;
-  for (auto& map : maps) arrays.append(handed_over<float>(std::move(map), shape_of(terrain)));
+  for (auto& map : maps)
+    arrays.append(handed_over<float>(std::move(map), shape_of(terrain, {rows.first, rows.second})));
   return arrays;
 }
 
-using MomentRow = std::tuple<double, double, double, double>;  // azimuth, altitude, hours, day of year
+using MomentRow = std::tuple<double, double, double, double>;   // azimuth, altitude, hours, day of year
+using Sky = std::tuple<double, double, std::optional<double>>;  // Linke turbidity, albedo, transmittance
 
-py::array sun_hours_map(const TerrainObject& terrain, const std::vector<MomentRow>& rows, double eye_height,
-                        double max_distance, double coefficient, double diameter, const std::string& engine,
-                        const py::object& progress) {
-  const HorizonSettings settings = horizon_settings(eye_height, max_distance, coefficient, diameter, engine);
+std::vector<SunMoment> moments_of(const std::vector<MomentRow>& rows) {
   std::vector<SunMoment> moments;
   for (const auto& [azimuth, altitude, hours, day] : rows) moments.push_back({{azimuth, altitude}, hours, day});
-  return handed_over<float>(map_of(terrain, progress,
-                                   [&](const HeightField& field, const Progress& report) {
-                                     const Horizons horizons(field, settings, [&](double) { return report(0); });
-                                     return sun_hours(horizons, moments, 0, field.rows(), nullptr, report).hours;
-                                   }),
-                            shape_of(terrain));
+  return moments;
+}
+
+// Arrays of hours, the indices of the first and the last moment with sun (-1: none) and, with a sky, beam, diffuse and
+// reflected energy.
+py::list sun_hours_maps(const TerrainObject& terrain, const std::vector<MomentRow>& suns, double eye_height,
+                        double max_distance, double coefficient, double diameter, const std::string& engine,
+                        const std::optional<Sky>& sky, const RowPair& rows, const py::object& progress) {
+  constexpr int kSkyAzimuths = 64;  // of the sky view factor, as `scarp sunhours`
+  const HorizonSettings settings = horizon_settings(eye_height, max_distance, coefficient, diameter, engine);
+  const std::vector<SunMoment> moments = moments_of(suns);
+  SunHours found =
+      map_of(terrain, rows, progress, [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        const Progress preparing = [&](double) { return report(0); };
+        const Horizons horizons(field, settings, preparing);
+        if (!sky) return sun_hours(horizons, moments, band.first, band.last, nullptr, report);
+        const SkyView view(field, settings, kSkyAzimuths, {SkyMeasure::sky_view_factor}, preparing);
+        const auto factors = view.rows(band.first, band.last, preparing);
+        const auto& [linke, albedo, transmittance] = *sky;
+        const ClearSkyGround ground{linke, albedo, factors[0], transmittance};
+        return sun_hours(horizons, moments, band.first, band.last, &ground, report);
+      });
+  const auto shape = shape_of(terrain, {rows.first, rows.second});
+  py::list arrays;
+  arrays.append(handed_over<float>(std::move(found.hours), shape));
+  for (auto* indices : {&found.first, &found.last})
+    arrays.append(handed_over<std::int32_t>(std::move(*indices), shape));
+  if (!sky) return arrays;
+  for (auto* part : {&found.energy.beam, &found.energy.diffuse, &found.energy.reflected})
+    arrays.append(handed_over<float>(std::move(*part), shape));
+  return arrays;
+}
+
+// An array of (moments, rows, columns): 1 in the sun, 0 in the shade, 255 no sample.
+py::array sun_mask_maps(const TerrainObject& terrain, const std::vector<MomentRow>& suns, double eye_height,
+                        double max_distance, double coefficient, double diameter, const std::string& engine,
+                        const RowPair& rows, const py::object& progress) {
+  constexpr std::uint8_t kHole = 255;
+  const HorizonSettings settings = horizon_settings(eye_height, max_distance, coefficient, diameter, engine);
+  const std::vector<SunMoment> moments = moments_of(suns);
+  auto codes =
+      map_of(terrain, rows, progress, [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        const Horizons horizons(field, settings, [&](double) { return report(0); });
+        std::vector<std::uint8_t> lit;
+        for (std::size_t i = 0; i < moments.size(); ++i) {
+          const auto part = progress_part(report, static_cast<double>(i), static_cast<double>(moments.size()));
+          for (const float hours : sun_hours(horizons, {&moments[i], 1}, band.first, band.last, nullptr, part).hours)
+            lit.push_back(std::isnan(hours) ? kHole : static_cast<std::uint8_t>(hours > 0));
+        }
+        return lit;
+      });
+  return handed_over<std::uint8_t>(std::move(codes), shape_of(terrain, {rows.first, rows.second}, moments.size()));
 }
 
 #ifdef SCARP_ERFA
@@ -170,17 +244,24 @@ std::vector<std::pair<double, double>> sun_positions(const std::vector<std::stri
 
 void bind_sun(py::module_& module) {
   module.def("shadow", &shadow_map, py::arg("terrain"), py::arg("azimuth"), py::arg("altitude"), py::arg("fraction"),
-             py::arg("progress"));
+             py::arg("rows"), py::arg("progress"));
+#if defined(SCARP_ERFA) && defined(SCARP_PYTHON_FILES)
+  module.def("local_shadow", &local_shadow_map, py::arg("terrain"), py::arg("time"), py::arg("refraction"),
+             py::arg("azimuth"), py::arg("altitude"), py::arg("fraction"), py::arg("rows"), py::arg("progress"));
+#endif
   module.def("horizon", &horizon_maps, py::arg("terrain"), py::arg("azimuths"), py::arg("eye_height"),
              py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"),
-             py::arg("distances"), py::arg("progress"));
+             py::arg("distances"), py::arg("rows"), py::arg("progress"));
   module.def("horizon_at", &horizon_at, py::arg("terrain"), py::arg("col"), py::arg("row"), py::arg("azimuths"),
              py::arg("eye_height"), py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"));
   module.def("sky_view", &sky_maps, py::arg("terrain"), py::arg("measures"), py::arg("azimuths"), py::arg("eye_height"),
-             py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"),
+             py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"), py::arg("rows"),
              py::arg("progress"));
-  module.def("sun_hours", &sun_hours_map, py::arg("terrain"), py::arg("moments"), py::arg("eye_height"),
-             py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"),
+  module.def("sun_hours", &sun_hours_maps, py::arg("terrain"), py::arg("moments"), py::arg("eye_height"),
+             py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"), py::arg("sky"),
+             py::arg("rows"), py::arg("progress"));
+  module.def("sun_masks", &sun_mask_maps, py::arg("terrain"), py::arg("moments"), py::arg("eye_height"),
+             py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"), py::arg("rows"),
              py::arg("progress"));
 #ifdef SCARP_ERFA
   module.def("sun_positions", &sun_positions, py::arg("times"), py::arg("longitude"), py::arg("latitude"),

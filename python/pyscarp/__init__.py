@@ -19,7 +19,8 @@ from ._instruments import Camera, Scanner
 from ._picture import png, render, write_png
 from ._scene import Part, Scene, Voxels
 from ._sight import LineOfSight, Profile, line_of_sight, profile, viewshed
-from ._sun import horizon, shadow, sky_view, sun_hours, sun_position
+from ._sun import horizon, shadow, sky_view, sun_position
+from ._sun_hours import SunMaps, sun_hours, sun_masks
 from ._terrain import Terrain
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "Scanner",
     "Scene",
     "Status",
+    "SunMaps",
     "Terrain",
     "Voxels",
     "__version__",
@@ -47,6 +49,7 @@ __all__ = [
     "shadow",
     "sky_view",
     "sun_hours",
+    "sun_masks",
     "sun_position",
     "viewshed",
     "write_png",

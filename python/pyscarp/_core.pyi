@@ -6,6 +6,7 @@ import numpy as np
 
 _Progress = Optional[Callable[[float], Optional[bool]]]
 _Six = Sequence[float]
+_Rows = tuple[int, int]  # first, and the one after the last, from north
 
 __version__: str
 HAS_FILES: bool
@@ -97,6 +98,7 @@ def cast_from_scanner(
     t_max: float,
     normals: bool,
 ) -> list[np.ndarray]: ...
+def row_band(rows: int, part: int, parts: int) -> _Rows: ...
 def viewshed(
     terrain: Terrain,
     observers: Sequence[Sequence[Any]],
@@ -108,11 +110,24 @@ def viewshed(
     low_pitch: float,
     high_pitch: float,
     mode: str,
+    rows: _Rows,
     progress: _Progress,
 ) -> np.ndarray: ...
 def line_of_sight(terrain: Terrain, *line: Any) -> tuple[bool, Any, float, float, float, float, float]: ...
 def profile(terrain: Terrain, *line: Any) -> np.ndarray: ...
-def shadow(terrain: Terrain, azimuth: float, altitude: float, fraction: bool, progress: _Progress) -> np.ndarray: ...
+def shadow(
+    terrain: Terrain, azimuth: float, altitude: float, fraction: bool, rows: _Rows, progress: _Progress
+) -> np.ndarray: ...
+def local_shadow(
+    terrain: Terrain,
+    time: Optional[str],
+    refraction: bool,
+    azimuth: float,
+    altitude: float,
+    fraction: bool,
+    rows: _Rows,
+    progress: _Progress,
+) -> np.ndarray: ...
 def horizon(
     terrain: Terrain,
     azimuths: Sequence[float],
@@ -122,6 +137,7 @@ def horizon(
     diameter: float,
     engine: str,
     distances: bool,
+    rows: _Rows,
     progress: _Progress,
 ) -> tuple[np.ndarray, Any]: ...
 def horizon_at(
@@ -143,6 +159,7 @@ def sky_view(
     coefficient: float,
     diameter: float,
     engine: str,
+    rows: _Rows,
     progress: _Progress,
 ) -> list[np.ndarray]: ...
 def sun_hours(
@@ -153,6 +170,19 @@ def sun_hours(
     coefficient: float,
     diameter: float,
     engine: str,
+    sky: Optional[tuple[float, float, Optional[float]]],
+    rows: _Rows,
+    progress: _Progress,
+) -> list[np.ndarray]: ...
+def sun_masks(
+    terrain: Terrain,
+    moments: Sequence[tuple[float, float, float, float]],
+    eye_height: float,
+    max_distance: float,
+    coefficient: float,
+    diameter: float,
+    engine: str,
+    rows: _Rows,
     progress: _Progress,
 ) -> np.ndarray: ...
 def sun_positions(

@@ -11,16 +11,12 @@ import numpy as np
 
 from . import _core
 from ._core import Error
-from ._progress import Progress, reporting
+from ._maps import Layer, Map, computed, terrain_of
+from ._progress import Progress
 from ._rays import number
 from ._terrain import Terrain
 
 _VISIBLE_LIGHT = 6 / 7
-
-
-def terrain_of(value: Any) -> Terrain:
-    """Returns a terrain as it is, and one over anything else."""
-    return value if isinstance(value, Terrain) else Terrain(value)
 
 
 def curvature_of(terrain: Terrain, cc: Optional[float]) -> tuple[float, float]:
@@ -43,6 +39,7 @@ def viewshed(
     mode: str = "visible",
     cc: Optional[float] = None,
     coords: Optional[str] = None,
+    rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> Any:
     """Maps what one or many observers see, exactly: the same values as ``scarp viewshed``.
@@ -69,6 +66,7 @@ def viewshed(
         cc: curvature coefficient, 1 - refraction coefficient, 0 (flat) to 1. Default: 6/7 on Earth.
         coords: of observers: ``map`` (those of the DataArray or file), ``local`` (metres, as in rays) or ``lonlat``
             (degrees, WGS 84). Default: map if there are any, else local.
+        rows: compute only these rows of the map, ``slice(first, last)``: the same values, in less time.
         progress: None, True (a bar; tqdm where it is installed), or a function of the fraction done; if it returns
             False, the call raises Interrupted. Ctrl-C raises KeyboardInterrupt.
 
@@ -82,21 +80,21 @@ def viewshed(
     >>> viewshed(wall, (0, 0))[0].tolist()
     [1, 1, 1, 0, 0]
     """
-    terrain = terrain_of(terrain)
+    given, terrain = terrain, terrain_of(terrain)
     places = np.atleast_2d(np.asarray(observers, float))
     if places.ndim != 2 or places.shape[1] not in (2, 3) or len(places) == 0:
         raise Error(f"observers: the array has the shape {places.shape} (expected (n, 2) or (n, 3): x, y, height)")
     if heights not in ("ground", "sea"):
         raise Error(f"heights: unknown name '{heights}' (expected one of: ground, sea)")
     low, high = (-90.0, 90.0) if pitch is None else pitch
-    rows = []
+    eyes = []
     for place in places.tolist():
         col, row = (math.floor(v + 0.5) for v in terrain._node(place[0], place[1], coords))
         if not (0 <= col < terrain.shape[1] and 0 <= row < terrain.shape[0]):
             raise Error(f"observer {place[0]:.10g},{place[1]:.10g}: is outside the terrain")
         ground = terrain._ground(col, row, max_distance)
         own = len(place) > 2 and not math.isnan(place[2])
-        rows.append(
+        eyes.append(
             (
                 col,
                 row,
@@ -107,28 +105,33 @@ def viewshed(
             )
         )
     coefficient, diameter = curvature_of(terrain, cc)
-    with reporting(progress) as report:
-        values = _core.viewshed(
-            terrain,
-            rows,
-            number(target_height, "target_height"),
-            coefficient,
-            diameter,
-            number(min_distance, "min_distance"),
-            number(max_distance, "max_distance"),
-            math.radians(low),
-            math.radians(high),
-            mode,
-            report,
-        )
-    unit, meaning, nodata = {
-        "visible": ("", "visible", 255),
-        "count": ("", "observers that see the pixel", 65535),
-        "dem": ("m", "least visible height above sea", None),
-        "ground": ("m", "least visible height above ground", None),
-        "angle": ("degrees", "angle above horizontal", None),
-    }[mode]
-    return terrain._wrap(values, "viewshed", unit, meaning, nodata)
+    arguments = (
+        eyes,
+        number(target_height, "target_height"),
+        coefficient,
+        diameter,
+        number(min_distance, "min_distance"),
+        number(max_distance, "max_distance"),
+        math.radians(low),
+        math.radians(high),
+        mode,
+    )
+    if mode not in _MODES:
+        raise Error(f"mode: unknown name '{mode}' (expected one of: {', '.join(_MODES)})")
+    return computed(given, terrain, Map(_viewshed_rows, arguments, (_MODES[mode],)), rows, progress)
+
+
+_MODES = {
+    "visible": Layer("viewshed", np.uint8, "", "visible", 255),
+    "count": Layer("viewshed", np.uint16, "", "observers that see the pixel", 65535),
+    "dem": Layer("viewshed", np.float32, "m", "least visible height above sea"),
+    "ground": Layer("viewshed", np.float32, "m", "least visible height above ground"),
+    "angle": Layer("viewshed", np.float32, "degrees", "angle above horizontal"),
+}
+
+
+def _viewshed_rows(terrain: Terrain, *arguments: Any) -> list[np.ndarray]:
+    return [_core.viewshed(terrain, *arguments)]
 
 
 def _field_of_view(azimuth: Optional[tuple[float, float]], grid_north: float) -> tuple[float, float]:

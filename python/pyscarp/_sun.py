@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Shadows, horizons, sky views and hours of sun."""
+"""Shadows, horizons and sky views."""
 
 from __future__ import annotations
 
@@ -11,29 +11,27 @@ import numpy as np
 
 from . import _core, _georeference as geo
 from ._core import Error
-from ._progress import Progress, reporting
+from ._maps import Layer, Map, computed, terrain_of
+from ._progress import Progress
 from ._rays import number, numbers
-from ._sight import curvature_of, terrain_of
+from ._sight import curvature_of
 from ._terrain import Terrain
 
-_MINUTES = 1440
-
 Time = Union[str, datetime.datetime]
-Date = Union[str, datetime.date]
 
 
 def _centre(terrain: Terrain) -> tuple[float, float]:
     return (terrain.shape[1] - 1) / 2, (terrain.shape[0] - 1) / 2
 
 
-def _plane(terrain: Terrain) -> Terrain:
+def require_plane(terrain: Terrain) -> Terrain:
     """The terrain on the plane of its centre."""
     if terrain._body.geographic:
         terrain._ground(*_centre(terrain), math.inf)  # throws for rasters that are too large
     return terrain
 
 
-def _place(terrain: Terrain, place: Optional[Sequence[float]]) -> tuple[float, float, float]:
+def place_of_sun(terrain: Terrain, place: Optional[Sequence[float]]) -> tuple[float, float, float]:
     """Longitude, latitude in radians and height in metres of the centre."""
     if not _core.HAS_SUN:
         raise Error("time: this build does not compute the sun's position (give sun=(azimuth, altitude))")
@@ -49,8 +47,14 @@ def _place(terrain: Terrain, place: Optional[Sequence[float]]) -> tuple[float, f
             raise Error("time: the centre of the terrain has no longitude and latitude")
     if len(place) != 2 or not (abs(place[0]) <= 360 and abs(place[1]) <= 90):
         raise Error(f"place: {tuple(place)} (expected longitude and latitude in degrees)")
-    low, high = terrain.range
-    return math.radians(place[0]), math.radians(place[1]), 0.0 if low is None or high is None else (low + high) / 2
+    return math.radians(place[0]), math.radians(place[1]), _height_at_centre(terrain)
+
+
+def _height_at_centre(terrain: Terrain) -> float:
+    """Metres; 0 over a hole. As the command line has it."""
+    value = float(terrain.heights[terrain.shape[0] // 2, terrain.shape[1] // 2])
+    _, _, scale, offset, _, nodata, *_ = terrain._settings
+    return 0.0 if math.isnan(value) or value == nodata else value * scale + offset
 
 
 def _time_text(time: Time) -> str:
@@ -80,7 +84,7 @@ def sun_position(
     (179, 62)
     """
     terrain = terrain_of(terrain)
-    ((azimuth, altitude),) = _core.sun_positions([_time_text(time)], *_place(terrain, place), refraction)
+    ((azimuth, altitude),) = _core.sun_positions([_time_text(time)], *place_of_sun(terrain, place), refraction)
     return math.degrees(azimuth), math.degrees(altitude)
 
 
@@ -91,7 +95,9 @@ def shadow(
     time: Optional[Time] = None,
     refraction: bool = False,
     place: Optional[Sequence[float]] = None,
+    sun_per_cell: bool = False,
     fraction: bool = False,
+    rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> Any:
     """Maps where the sun shines, exactly: the same values as ``scarp shadow``.
@@ -100,8 +106,9 @@ def shadow(
         terrain: `Terrain`, or what it accepts.
         sun: azimuth in degrees clockwise from true north, and altitude in degrees, above 0 and at most 90.
         time, refraction, place: instead of ``sun``, as for `sun_position`; one sun for the whole map.
+        sun_per_cell: take sun, north and scale at each sample instead of at the centre; needs a CRS, and GDAL.
         fraction: the lit share of the sun's disc, float32, 0 to 1, NaN without a sample; instead of codes.
-        progress: see `viewshed`.
+        rows, progress: see `viewshed`.
 
     Returns:
         uint8 ``(rows, cols)``: 0 lit, 1 self-shaded, 2 cast shadow, 255 no sample; a DataArray if the input is one.
@@ -113,34 +120,76 @@ def shadow(
     >>> shadow(wall, sun=(90, 40))[0].tolist()
     [0, 1, 0, 0, 0]
     """
-    terrain = _plane(terrain_of(terrain))
+    given, terrain = terrain, terrain_of(terrain)
     if (sun is None) == (time is None):
         raise Error("shadow: expected sun=(azimuth, altitude) or time")
     if time is not None:
         sun = sun_position(terrain, time, refraction=refraction, place=place)
-        if sun[1] <= 0:
+        if sun[1] <= 0 and not sun_per_cell:
             raise Error(f"time {_time_text(time)}: the sun is {-sun[1]:.2f} degrees below the horizon")
     azimuth, altitude = numbers(sun, 2, "sun", "azimuth and altitude in degrees")
-    if not (math.isfinite(azimuth) and 0 < altitude <= 90):
+    if not (math.isfinite(azimuth) and (0 < altitude or time is not None) and altitude <= 90):
         raise Error(
             f"sun: {azimuth}, {altitude} (expected azimuth and altitude in degrees, altitude above 0 and at most 90)"
         )
-    with reporting(progress) as report:
-        values = _core.shadow(
-            terrain, math.radians(azimuth) - terrain._georeference[3], math.radians(altitude), fraction, report
-        )
-    return terrain._wrap(
-        values,
-        "shadow",
-        "1" if fraction else "",
-        "lit share of the sun" if fraction else "0 lit, 1 self-shaded, 2 cast shadow",
-        None if fraction else 255,
-    )
+    layer = _LIT_SHARES if fraction else _SHADES
+    direction = math.radians(azimuth), math.radians(altitude)
+    if sun_per_cell:
+        moment = None if time is None else _time_text(time)
+        _require_suns(terrain, moment, refraction, place, direction[1])
+        found = Map(_local_shadow_rows, (moment, refraction, *direction, fraction), (layer,))
+    else:
+        require_plane(terrain)
+        found = Map(_shadow_rows, (direction[0] - terrain._georeference[3], direction[1], fraction), (layer,))
+    return computed(given, terrain, found, rows, progress)
 
 
-def _horizon_settings(
+_SHADES = Layer("shadow", np.uint8, "", "0 lit, 1 self-shaded, 2 cast shadow", 255)
+_LIT_SHARES = Layer("shadow", np.float32, "1", "lit share of the sun")
+
+
+def _shadow_rows(terrain: Terrain, *arguments: Any) -> list[np.ndarray]:
+    return [_core.shadow(terrain, *arguments)]
+
+
+def _local_shadow_rows(terrain: Terrain, *arguments: Any) -> list[np.ndarray]:
+    return [_core.local_shadow(terrain, *arguments)]
+
+
+def _require_suns(
+    terrain: Terrain, time: Optional[str], refraction: bool, place: Optional[Sequence[float]], altitude: float
+) -> None:
+    """Throws unless each sample can have its own sun; `altitude` is that at the centre."""
+    if not (_core.HAS_FILES and _core.HAS_SUN):
+        raise Error("sun_per_cell: this build has no GDAL or no ERFA (leave it out, or use scarp shadow)")
+    present, map_from_node, crs, _ = terrain._georeference
+    if place is not None or not (present and crs):
+        raise Error("sun_per_cell: needs a CRS and coordinates, and no place")
+    altitudes = [altitude]
+    if time is not None:
+        height = _height_at_centre(terrain)
+        last_row, last_col = terrain.shape[0] - 1, terrain.shape[1] - 1
+        for col in (0, last_col):
+            for row in (0, last_row):
+                corner = geo.lonlat_of(map_from_node, crs, terrain.shape, col, row)
+                if corner is None:
+                    raise Error("sun_per_cell: a corner of the terrain has no longitude and latitude")
+                lonlat = math.radians(corner[0]), math.radians(corner[1])
+                altitudes.append(_core.sun_positions([time], *lonlat, height, refraction)[0][1])
+        if max(altitudes) <= 0:
+            raise Error(f"time {time}: the sun is {-math.degrees(max(altitudes)):.2f} degrees below the horizon")
+    low, high = terrain.range
+    lowest = min(altitudes)
+    # Rays need a plane only as far as a shadow reaches.
+    reach = (high - low) / math.tan(lowest) if lowest > 0 and low is not None and high is not None else math.inf
+    if terrain._body.geographic:
+        terrain._ground(*_centre(terrain), reach)
+
+
+def horizon_settings(
     terrain: Terrain, observer_height: float, max_distance: float, cc: Optional[float]
 ) -> tuple[float, float, float, float]:
+    """Returns eye height and distance in metres, and the curvature."""
     return (
         number(observer_height, "observer_height"),
         number(max_distance, "max_distance"),
@@ -159,6 +208,7 @@ def horizon(
     engine: str = "exact",
     distance: bool = False,
     coords: Optional[str] = None,
+    rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> Any:
     """Maps the elevation of the horizon in degrees, for all samples, or at one place.
@@ -170,7 +220,7 @@ def horizon(
             pvlib's functions take them.
         observer_height: of the eye, metres above ground.
         max_distance: metres; ground farther away does not count.
-        cc, coords, progress: as for `viewshed`.
+        cc, coords, rows, progress: as for `viewshed`.
         engine: ``exact``, or ``sweep``: approximate, faster.
         distance: also return the metres to the ground that is the horizon, as a second array.
 
@@ -188,7 +238,7 @@ def horizon(
     >>> elevations.round(1).tolist()
     [26.6, -90.0]
     """
-    terrain = terrain_of(terrain)
+    given, terrain = terrain, terrain_of(terrain)
     degrees = (
         np.arange(azimuths) * (360 / max(azimuths, 1))
         if isinstance(azimuths, (int, np.integer))
@@ -197,7 +247,7 @@ def horizon(
     degrees = np.atleast_1d(degrees).astype(float)
     if degrees.ndim != 1 or degrees.size == 0 or not np.isfinite(degrees).all():
         raise Error("azimuths: expected at least one, in degrees")
-    settings = _horizon_settings(terrain, observer_height, max_distance, cc)
+    settings = horizon_settings(terrain, observer_height, max_distance, cc)
     if at is not None:
         col, row = terrain._node(at[0], at[1], coords)
         ground = terrain._ground(col, row, max_distance)
@@ -206,39 +256,35 @@ def horizon(
             raise Error(f"place {at[0]:.10g},{at[1]:.10g}: is outside the terrain or over a hole")
         elevations = np.degrees(table[:, 0])
         return (degrees, elevations, table[:, 1]) if distance else (degrees, elevations)
-    _plane(terrain)
-    with reporting(progress) as report:
-        angles, metres = _core.horizon(
-            terrain, (np.radians(degrees) - terrain._georeference[3]).tolist(), *settings, engine, distance, report
+    require_plane(terrain)
+    north = terrain._georeference[3]
+    about = {"units": "degrees", "long_name": "azimuth from true north"}
+    layers = [
+        Layer(name, np.float32, unit, meaning, coordinate=("azimuth", degrees, about))
+        for name, unit, meaning in (
+            ("horizon", "degrees", "elevation of the horizon"),
+            ("distance", "m", "distance to the horizon"),
         )
+    ]
+    arguments = ((np.radians(degrees) - north).tolist(), *settings, engine, distance)
+    if distance:
+        found = Map(_horizon_rows, arguments, tuple(layers), tuple)
+    else:
+        found = Map(_horizon_rows, arguments, tuple(layers[:1]))
+    return computed(given, terrain, found, rows, progress)
+
+
+def _horizon_rows(terrain: Terrain, *arguments: Any) -> list[np.ndarray]:
+    angles, metres = _core.horizon(terrain, *arguments)
     np.multiply(angles, 180 / math.pi, out=angles, dtype=float, casting="same_kind")
-    found = _stacked(terrain, angles, degrees, "horizon", "degrees", "elevation of the horizon")
-    return (
-        (found, _stacked(terrain, metres, degrees, "distance", "m", "distance to the horizon")) if distance else found
-    )
-
-
-def _stacked(terrain: Terrain, values: np.ndarray, azimuths: np.ndarray, name: str, unit: str, meaning: str) -> Any:
-    if terrain._template is None:
-        return terrain._wrap(values, name)
-    import xarray
-
-    maps = [terrain._wrap(one, name, unit, meaning) for one in values]
-    stacked = xarray.concat(
-        maps,
-        xarray.DataArray(
-            azimuths, dims="azimuth", name="azimuth", attrs={"units": "degrees", "long_name": "azimuth from true north"}
-        ),
-    )
-    stacked.attrs = maps[0].attrs
-    return stacked
+    return [angles] if metres is None else [angles, metres]
 
 
 _MEASURES = {
-    "sky-fraction": ("1", "share of the sky's solid angle that is visible"),
-    "sky-view-factor": ("1", "share of the radiation of a uniform sky"),
-    "positive-openness": ("degrees", "positive openness"),
-    "negative-openness": ("degrees", "negative openness"),
+    "sky-fraction": Layer("sky_fraction", np.float32, "1", "share of the sky's solid angle that is visible"),
+    "sky-view-factor": Layer("sky_view_factor", np.float32, "1", "share of the radiation of a uniform sky"),
+    "positive-openness": Layer("positive_openness", np.float32, "degrees", "positive openness"),
+    "negative-openness": Layer("negative_openness", np.float32, "degrees", "negative openness"),
 }
 
 
@@ -251,6 +297,7 @@ def sky_view(
     max_distance: float = math.inf,
     cc: Optional[float] = None,
     engine: str = "exact",
+    rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> Any:
     """Maps how much sky each sample sees, from its horizons.
@@ -260,7 +307,7 @@ def sky_view(
         measure: ``sky-fraction`` (solid angle, 0 to 1), ``sky-view-factor`` (radiation on the sloping ground, 0 to 1),
             ``positive-openness`` or ``negative-openness`` (degrees).
         azimuths: number of directions, 1 to 3600.
-        observer_height, max_distance, cc, engine, progress: as for `horizon`.
+        observer_height, max_distance, cc, engine, rows, progress: as for `horizon`.
 
     Returns:
         float32 ``(rows, cols)``, NaN without a sample; a DataArray if the input is one.
@@ -271,109 +318,15 @@ def sky_view(
     >>> sky_view(Terrain(np.zeros((2, 2), np.float32), cell=1), azimuths=8).tolist()
     [[1.0, 1.0], [1.0, 1.0]]
     """
-    terrain = _plane(terrain_of(terrain))
-    with reporting(progress) as report:
-        (values,) = _core.sky_view(
-            terrain, [measure], azimuths, *_horizon_settings(terrain, observer_height, max_distance, cc), engine, report
-        )
-    unit, meaning = _MEASURES[measure]
-    if unit == "degrees":
+    given, terrain = terrain, require_plane(terrain_of(terrain))
+    if measure not in _MEASURES:
+        raise Error(f"measure: unknown name '{measure}' (expected one of: {', '.join(_MEASURES)})")
+    arguments = (measure, azimuths, *horizon_settings(terrain, observer_height, max_distance, cc), engine)
+    return computed(given, terrain, Map(_sky_rows, arguments, (_MEASURES[measure],)), rows, progress)
+
+
+def _sky_rows(terrain: Terrain, measure: str, *arguments: Any) -> list[np.ndarray]:
+    (values,) = _core.sky_view(terrain, [measure], *arguments)
+    if _MEASURES[measure].unit == "degrees":
         values *= np.float32(180 / math.pi)
-    return terrain._wrap(values, measure.replace("-", "_"), unit, meaning)
-
-
-def sun_hours(
-    terrain: Any,
-    date: Optional[Date] = None,
-    *,
-    to: Optional[Date] = None,
-    step: int = 30,
-    utc_offset: Optional[float] = None,
-    suns: Any = None,
-    refraction: bool = False,
-    place: Optional[Sequence[float]] = None,
-    observer_height: float = 0.0,
-    max_distance: float = math.inf,
-    cc: Optional[float] = None,
-    engine: str = "exact",
-    progress: Progress = None,
-) -> Any:
-    """Maps the hours of direct sun.
-
-    Args:
-        terrain: `Terrain`, or what it accepts.
-        date, to: first and last day, ``2026-06-21`` or a date. Default of ``to``: ``date``.
-        step: minutes between positions of the sun, 1 to 1440; the sun of a step is that in its middle.
-        utc_offset: hours of local time from UTC, with which days begin. Default: whole hours, from the longitude.
-        suns: instead of dates, ``(n, 3)``: azimuth from true north and altitude of the sun in degrees, and hours. Suns
-            below the horizon do not count.
-        refraction, place: as for `sun_position`.
-        observer_height, max_distance, cc, engine, progress: as for `horizon`.
-
-    Returns:
-        float32 ``(rows, cols)``, hours, NaN without a sample; a DataArray if the input is one.
-
-    Raises:
-        Error: neither or both of date and suns; no CRS and no place; a value out of range.
-
-    >>> wall = Terrain(np.array([[0, 0, 10, 0, 0]] * 2, np.float32), cell=10)
-    >>> sun_hours(wall, suns=[(90, 30, 4), (270, 30, 4)])[0].tolist()
-    [8.0, 4.0, 8.0, 4.0, 8.0]
-    """
-    terrain = _plane(terrain_of(terrain))
-    if (date is None) == (suns is None):
-        raise Error("sun_hours: expected a date, or suns=[(azimuth, altitude, hours), ...]")
-    if suns is not None:
-        table = np.asarray(suns, float)
-        if table.ndim != 2 or table.shape[1] != 3:
-            raise Error(f"suns: the array has the shape {table.shape} (expected (n, 3): azimuth, altitude, hours)")
-        moments = [(math.radians(a), math.radians(h), t, 1.0) for a, h, t in table.tolist()]
-    else:
-        assert date is not None
-        moments = _moments(terrain, date, date if to is None else to, step, utc_offset, refraction, place)
-    north = terrain._georeference[3]
-    up = [(azimuth - north, altitude, hours, day) for azimuth, altitude, hours, day in moments if altitude > 0]
-    with reporting(progress) as report:
-        values = _core.sun_hours(
-            terrain, up, *_horizon_settings(terrain, observer_height, max_distance, cc), engine, report
-        )
-    return terrain._wrap(values, "sun_hours", "h", "hours of direct sun")
-
-
-def _day(date: Date) -> datetime.date:
-    if isinstance(date, datetime.date):
-        return date
-    try:
-        return datetime.date.fromisoformat(date)
-    except ValueError:
-        raise Error(f"date: '{date}' is not a date (expected 2026-06-21)") from None
-
-
-def _moments(
-    terrain: Terrain,
-    date: Date,
-    to: Date,
-    step: int,
-    utc_offset: Optional[float],
-    refraction: bool,
-    place: Optional[Sequence[float]],
-) -> list[tuple[float, float, float, float]]:
-    """The sun in the middle of each step: azimuth, altitude, hours, day of the year."""
-    if not 1 <= step <= _MINUTES:
-        raise Error(f"step: {step} minutes (expected 1 to {_MINUTES})")
-    longitude, latitude, height = _place(terrain, place)
-    offset = round(math.degrees(longitude) / 15) if utc_offset is None else utc_offset
-    day, last = _day(date), _day(to)
-    if last < day:
-        raise Error(f"to: {last} is before {day}")
-    times, spans = [], []
-    while day <= last:
-        midnight = datetime.datetime(day.year, day.month, day.day, tzinfo=datetime.timezone.utc)
-        for minute in range(0, _MINUTES, step):
-            length = min(step, _MINUTES - minute)
-            middle = midnight + datetime.timedelta(minutes=minute + length / 2 - 60 * offset)
-            times.append(middle.isoformat())
-            spans.append((length / 60, float(day.timetuple().tm_yday)))
-        day += datetime.timedelta(days=1)
-    positions = _core.sun_positions(times, longitude, latitude, height, refraction)
-    return [(azimuth, altitude, *span) for (azimuth, altitude), span in zip(positions, spans)]
+    return [values]

@@ -392,27 +392,13 @@ class Terrain(Rays, _core.Terrain):
 
     # Output.
 
-    def _wrap(self, values: np.ndarray, name: str, unit: str = "", meaning: str = "", nodata: Any = None) -> Any:
-        """Returns a map like the input: rows in its order, a DataArray if it is one."""
-        if self._south_up:
-            values = values[..., ::-1, :]
-        if self._template is None:
-            return values
-        import xarray
-
-        template = self._template
-        coords = {key: value for key, value in template.coords.items() if set(value.dims) <= set(template.dims)}
-        attrs: dict[str, Any] = {"long_name": meaning or name}
-        if unit:
-            attrs["units"] = unit
-        if nodata is not None:
-            attrs["_FillValue"] = nodata
-        if "grid_mapping" in template.attrs:
-            attrs["grid_mapping"] = template.attrs["grid_mapping"]
-        result = xarray.DataArray(values, coords=coords, dims=template.dims, name=name, attrs=attrs)
-        if "grid_mapping" in template.encoding:
-            result.encoding["grid_mapping"] = template.encoding["grid_mapping"]
-        return result
+    def __reduce__(self) -> Any:
+        # The coordinates of a DataArray are kept, its values are those of the array.
+        array = self.heights if self._array is None else self._array
+        present, map_from_node, crs, north = self._georeference
+        settings = self._settings
+        arguments = (array, self._south_up, *settings, tuple(map_from_node) if present else None, crs, north)
+        return _rebuilt, (arguments, self._template, self._south_up, self._plane_error, self._cell_given)
 
     def _repr_png_(self) -> bytes:
         from ._picture import png, render
@@ -429,6 +415,20 @@ class Terrain(Rays, _core.Terrain):
             f"<pyscarp.Terrain {cols} x {rows} {self.heights.dtype}, cells {self.cell[0]:.6g} x {self.cell[1]:.6g} m, "
             f"{between}>"
         )
+
+
+def _rebuilt(
+    arguments: tuple[Any, ...], template: Any, south_up: bool, plane_error: float, cell_given: bool
+) -> Terrain:
+    """Returns the terrain of a pickle or a copy; a copy is over the same array."""
+    terrain = Terrain.__new__(Terrain)
+    terrain._template = template
+    terrain._south_up = south_up
+    terrain._plane_error = plane_error
+    terrain._cell_given = cell_given
+    _core.Terrain.__init__(terrain, *arguments)
+    terrain._token = object()
+    return terrain
 
 
 def _bounds(part: slice, count: int) -> tuple[int, int]:

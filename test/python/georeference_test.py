@@ -272,3 +272,39 @@ def test_maps_equal_those_of_the_command_line(dem, tmp_path, scarp_program):
         assert np.array_equal(
             np.nan_to_num(hours, nan=-9999), written("sunhours", dem, "--date", "2026-06-21", "--step", 60)[0]
         )
+
+
+@needs_files
+def test_suns_equal_those_of_the_command_line(dem, tmp_path, scarp_program):
+    rasterio = pytest.importorskip("rasterio")
+
+    def written(*arguments):
+        command(scarp_program, *arguments, "-o", tmp_path / "map.tif")
+        with rasterio.open(tmp_path / "map.tif") as file:
+            return file.read()
+
+    terrain = Terrain.open(dem)
+    date = ("sunhours", dem, "--date", "2026-03-21", "--step", 60)
+    maps = pyscarp.sun_hours(terrain, "2026-03-21", step=60, first_last=True, energy=True, linke=5, albedo=0.4)
+    bands = np.nan_to_num(
+        [maps.hours, maps.energy, maps.beam, maps.diffuse, maps.reflected, maps.first, maps.last], nan=-9999
+    )
+    assert np.array_equal(bands, written(*date, "--first-last", "--energy", "--linke", 5, "--albedo", 0.4))
+    assert maps.energy.dtype == maps.first.dtype == np.float32 and np.nanmin(maps.first) < np.nanmax(maps.first)
+    clear = pyscarp.sun_hours(terrain, "2026-03-21", step=60, energy=True, transmittance=0.65)
+    assert clear.first is None
+    assert np.array_equal(
+        np.nan_to_num(clear.energy, nan=-9999), written(*date, "--energy", "--transmittance", 0.65)[1]
+    )
+    times, masks = pyscarp.sun_masks(terrain, "2026-03-21", step=60)
+    assert np.array_equal(masks, written(*date, "--masks")) and times.dtype.kind == "M" and len(times) == len(masks)
+
+    per_cell = ("shadow", dem, "--sun-per-cell")
+    noon = "2026-12-21T09:00Z"
+    assert np.array_equal(pyscarp.shadow(terrain, time=noon, sun_per_cell=True), written(*per_cell, "--time", noon)[0])
+    shares = pyscarp.shadow(terrain, (135, 20), sun_per_cell=True, fraction=True)
+    assert np.array_equal(np.nan_to_num(shares, nan=-1), written(*per_cell, "--sun", "135,20", "--fraction")[0])
+    with pytest.raises(Error, match="below the horizon"):
+        pyscarp.shadow(terrain, time="2026-12-21T00:00Z", sun_per_cell=True)
+    with pytest.raises(Error, match="needs a CRS"):
+        pyscarp.shadow(Terrain(hills(9, 9), cell=1), (135, 20), sun_per_cell=True)

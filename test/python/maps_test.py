@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Maps: against a judge in rational numbers, against one another, and their errors."""
 
+import copy
+import pickle
 from fractions import Fraction
 
 import numpy as np
@@ -188,6 +190,52 @@ def test_days_have_the_suns_of_their_steps():
     assert (shade == 0).all()
 
 
+def all_maps():
+    """Maps of each kind as functions of a terrain."""
+    observers = [(100, 100), (300, 250), (400, 60)]
+    suns = [(100, 15, 1), (180, 35, 2)]
+    yield from (
+        (lambda t, mode=mode, **k: pyscarp.viewshed(t, observers, mode=mode, max_distance=260, **k))
+        for mode in ("visible", "count", "dem", "ground", "angle")
+    )
+    yield lambda t, **k: pyscarp.viewshed(t, observers[0], **k)
+    yield lambda t, **k: pyscarp.shadow(t, (135, 10), **k)
+    yield lambda t, **k: pyscarp.shadow(t, (200, 10), fraction=True, **k)
+    yield lambda t, **k: pyscarp.horizon(t, 5, **k)
+    yield lambda t, **k: pyscarp.sky_view(t, "positive-openness", azimuths=6, **k)
+    yield lambda t, **k: pyscarp.sun_hours(t, suns=suns, **k)
+
+
+@pytest.mark.parametrize("south_up", [False, True])
+def test_rows_are_those_of_the_whole_map(south_up):
+    terrain = Terrain(rough(3, 41, 50, holes=5), cell=10, south_up=south_up)
+    for index, compute in enumerate(all_maps()):
+        whole = compute(terrain)
+        for rows in slice(0, 1), slice(7, 30), slice(-3, None):
+            part = compute(terrain, rows=rows)
+            assert part.dtype == whole.dtype and np.array_equal(part, whole[..., rows, :], equal_nan=True), index
+    for rows in slice(5, 5), slice(0, 9, 2), slice(60, 70):
+        with pytest.raises(Error, match="rows"):
+            pyscarp.shadow(terrain, (135, 10), rows=rows)
+    with pytest.raises(TypeError, match="rows"):
+        pyscarp.shadow(terrain, (135, 10), rows=3)
+
+
+def test_terrains_can_be_copied_and_pickled():
+    heights = rough(3, 12, 9)
+    whole = Terrain(
+        heights, crs="EPSG:32610", transform=(10, 0, 0, 0, -10, 120), cell=10, south_up=False, nodata=3, exaggeration=2
+    )
+    again = pickle.loads(pickle.dumps(whole))
+    assert np.array_equal(again.heights, heights, equal_nan=True) and not np.shares_memory(again.heights, heights)
+    for name in "shape", "cell", "range", "transform", "crs", "grid_north":
+        assert getattr(again, name) == getattr(whole, name), name
+    assert np.array_equal(pyscarp.shadow(again, (99, 9)), pyscarp.shadow(whole, (99, 9)))
+    assert np.shares_memory(copy.copy(whole).heights, heights)
+    south = Terrain(heights, cell=1, south_up=True)
+    assert np.array_equal(pickle.loads(pickle.dumps(south)).heights, south.heights, equal_nan=True)
+
+
 FLAT = np.zeros((5, 5), np.float32)
 
 
@@ -223,6 +271,11 @@ FLAT = np.zeros((5, 5), np.float32)
         (lambda t: pyscarp.sun_hours(t, "yesterday", place=(0, 0)), "2026-06-21"),
         (lambda t: pyscarp.sun_hours(t, suns=[(90, 30)]), "azimuth, altitude, hours"),
         (lambda t: pyscarp.sun_hours(t, "2026-06-21", place=(0, 99)), "place"),
+        (lambda t: pyscarp.sun_hours(t, suns=[(90, 30, 1)], energy=True), "date"),
+        (lambda t: pyscarp.sun_hours(t, "2026-06-21", to="2026-06-22", first_last=True, place=(0, 9)), "single day"),
+        (lambda t: pyscarp.sun_hours(t, "2026-06-21", energy=True, linke=9, place=(0, 9)), "linke: 9 .* 1 to 8"),
+        (lambda t: pyscarp.sun_hours(t, "2026-06-21", energy=True, albedo=np.nan, place=(0, 9)), "albedo"),
+        (lambda t: pyscarp.sun_masks(t, "2026-12-21", place=(0, 80)), "does not rise"),
     ],
 )
 def test_bad_input_has_one_line(call, message):

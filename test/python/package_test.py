@@ -46,6 +46,7 @@ def test_functions_have_a_docstring_of_their_own_with_an_example():
         "shadow",
         "sky_view",
         "sun_hours",
+        "sun_masks",
         "sun_position",
         "viewshed",
     ):
@@ -77,7 +78,7 @@ def test_stubs_name_the_arguments_of_the_module():
 
     stubs = dict(stub_signatures())
     if not _core.HAS_FILES:
-        for name in "wkt_of", "ground_plane", "crs_of", "lonlat", "node_of_lonlat":
+        for name in "wkt_of", "ground_plane", "line_plane", "crs_of", "lonlat", "node_of_lonlat", "local_shadow":
             del stubs[name]
     for name, arguments in stubs.items():
         found = _core

@@ -121,7 +121,15 @@ def test_callbacks_cannot_edit(large):
         long_task(large, lambda fraction: large.edit(5, rows=slice(0, 1)))
 
 
-def test_ctrl_c_stops_a_task(large):
+@pytest.fixture
+def interruptible():
+    """Shells start programs in the background with SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_stops_a_task(large, interruptible):
     timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     begin = time.perf_counter()
@@ -130,7 +138,7 @@ def test_ctrl_c_stops_a_task(large):
     assert time.perf_counter() - begin < 5
 
 
-def test_ctrl_c_stops_a_batch(large):
+def test_ctrl_c_stops_a_batch(large, interruptible):
     origins = np.broadcast_to(np.array([10.0, 10.0, 150.0]), (40_000_000, 3))
     directions = np.broadcast_to(np.array([1.0, 0.7, 0.001]), (40_000_000, 3))
     blocked = np.empty(len(origins), bool)
