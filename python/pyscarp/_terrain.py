@@ -426,7 +426,9 @@ def _rebuilt(
     terrain._south_up = south_up
     terrain._plane_error = plane_error
     terrain._cell_given = cell_given
-    _core.Terrain.__init__(terrain, *arguments)
+    array, *others = arguments
+    # Arrays that came over a network may lie at any address.
+    _core.Terrain.__init__(terrain, np.require(array, requirements="A"), *others)
     terrain._token = object()
     return terrain
 
