@@ -55,7 +55,7 @@ def errors():
         lambda: terrain.edit(np.inf),
         lambda: pyscarp.viewshed(terrain, (99999, 0)),
         lambda: pyscarp.Terrain(np.zeros((2, 2)), cell=1),
-        lambda: pyscarp.horizon(terrain, 50, progress=lambda fraction: False),
+        lambda: pyscarp.horizon(terrain, 3000, progress=lambda fraction: False),
     ):
         try:
             wrong()
@@ -64,12 +64,13 @@ def errors():
         raise AssertionError
 
 
-if "keep" in sys.argv:
-    ctypes.pythonapi.Py_IncRef(ctypes.py_object(pyscarp.shadow(new_terrain(), (135, 20))))
-else:
-    for _ in range(3):
-        rays()
-        maps()
-        errors()
-        gc.collect()
-print("done")
+if __name__ == "__main__":
+    if "keep" in sys.argv:
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(pyscarp.shadow(new_terrain(), (135, 20))))
+    else:
+        for _ in range(3):
+            rays()
+            maps()
+            errors()
+            gc.collect()
+    print("done")
