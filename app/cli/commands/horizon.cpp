@@ -167,14 +167,7 @@ void add_horizon(Program& program) {
                       .note = "repeatable",
                       .repeats = true,
                       .common = true});
-  add_place_file(command, o.points,
-                 {.names = "--points",
-                  .value = "FILE",
-                  .help = "points: CSV (x,y[,z]) or a vector file of points",
-                  .files = "csv geojson gpkg shp",
-                  .note = "-: CSV from standard input",
-                  .common = true,
-                  .excludes = {"--at"}});
+  add_points_option(command, o.points);
   const Rule of_skylines =
       needs("--at X,Y and a .svg, .pdf or .png output", [&o] { return o.at_points() && is_figure(o.output); });
   command.add(&o.labels, {.names = "--labels",

@@ -360,14 +360,7 @@ void add_sunhours(Program& program) {
                       .help = "point instead of a map, with the height of the eye above the ground",
                       .fallback = "none",
                       .common = true});
-  add_place_file(command, o.points,
-                 {.names = "--points",
-                  .value = "FILE",
-                  .help = "points: CSV (x,y[,z]) or a vector file of points",
-                  .files = "csv geojson gpkg shp",
-                  .note = "-: CSV from standard input",
-                  .common = true,
-                  .excludes = {"--at"}});
+  add_points_option(command, o.points);
   command.add(&o.step, {.names = "--step",
                         .value = "MIN",
                         .help = "minutes between positions of the sun",

@@ -23,6 +23,17 @@ void add_place_file(Command& command, PlaceFile& options, Option file) {
                                   .rules = {needs_file}});
 }
 
+void add_points_option(Command& command, PlaceFile& options) {
+  add_place_file(command, options,
+                 {.names = "--points",
+                  .value = "FILE",
+                  .help = "points: CSV (x,y[,z]) or a vector file of points",
+                  .files = "csv geojson gpkg shp",
+                  .note = "-: CSV from standard input",
+                  .common = true,
+                  .excludes = {"--at"}});
+}
+
 void ignore_vector_z(PlaceTable& table) {
   if (!table.vector) return;
   bool any = false;

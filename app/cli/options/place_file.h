@@ -24,6 +24,9 @@ struct PlaceFile {
 /// Declares the option `file` for the path, --layer and --skip-bad.
 void add_place_file(Command& command, PlaceFile& options, Option file);
 
+/// The same for --points: places of a table, for subcommands that have --at.
+void add_points_option(Command& command, PlaceFile& options);
+
 /// Removes Z of a vector file's points, which is a height above the sea, and adds a note if there was any: for
 /// subcommands whose heights count from the ground.
 void ignore_vector_z(PlaceTable& table);
