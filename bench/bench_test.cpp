@@ -468,10 +468,12 @@ TEST(ScarpBench, SkyComparesHorizonsWithEmbree) {
   const json programs = output_of("sky --sizes 65 --repeats 1 --programs scarp --scarp " SCARP_BENCH_SCARP);
   expect_documented(programs, "sky");
   ASSERT_EQ(programs["rows"].size(), 8u);
-  // Angles and shares are floats; hours are sums of half-hours.
+  // Angles and shares are sums of 64 floats, of at most pi / 2 each; hours are sums of half-hours, and at each of the
+  // four times at which the sun comes or goes the step may be the one before or behind, by a quarter on average.
+  constexpr double kFloats = 64 * 0x1p-24, kHours = 4 * 0.25;
   for (const json& row : programs["rows"]) {
     if (row["program"] == "scarp, exact") {
-      EXPECT_LT(row["error_p99"], row["map"] == "hours of sun" ? 1.0 : 1e-6) << row;
+      EXPECT_LE(row["error_p99"], row["map"] == "hours of sun" ? kHours : kFloats) << row;
     }
   }
 #endif

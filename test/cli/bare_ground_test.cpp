@@ -148,7 +148,8 @@ TEST_F(BareGround, VisibleHeightsOfTargetsAreSummed) {
     for_each(pixels, [&](const Place& to, double value) {
       const double expected =
           seen_height(stands, blocks, kEyes[0], 30, to, 20) + seen_height(stands, blocks, kEyes[1], 6, to, 20);
-      EXPECT_NEAR(value, expected, 1e-5) << to.col << ' ' << to.row;  // floats up to 40
+      // Two floats and their sum, below 64.
+      EXPECT_NEAR(value, expected, 3 * 64 * 0x1p-24) << to.col << ' ' << to.row;
       partly += expected > 20 && expected < 40;
     });
     EXPECT_GT(partly, 10);
