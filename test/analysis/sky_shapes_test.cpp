@@ -100,8 +100,7 @@ TEST(SkyShapes, InfiniteValley) {
 
 // At the bottom of a hemisphere the rim is at 45 degrees all round. Between its nodes the ground is linear: at a
 // distance d, it lies between heights that are at most a cell c nearer or farther, which are at most (d + c)^2 / R
-// inside the rim, and R. So tan h <= R / (R - c). Not later than two and a half cells behind the rim, a crossing has
-// its height.
+// inside the rim, and R. So tan h <= R / (R - c). A crossing at most two and a half cells behind the rim is as high.
 TEST(SkyShapes, HemisphereBowl) {
   constexpr double kRadius = 50 * kCell;
   const HeightField bowl = field_of(
