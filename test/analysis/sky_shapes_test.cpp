@@ -118,9 +118,9 @@ TEST(SkyShapes, HemisphereBowl) {
   EXPECT_GE(sky.factor, 1 - sine(most) * sine(most) - kSum);
 }
 
-// From a plain, the horizon over a hemisphere of radius R whose middle is D away has the sine R / D. A row of nodes has
-// one within half a cell of the place where the line of sight touches; there the ground is lower than the line by at
-// most half the square of the offset times the curvature R^2 / z^3 of the section.
+// The horizon over a hemisphere of radius R, seen from a plain D away from its middle, has the sine R / D. A row of nodes
+// has one within half a cell of the place where the line of sight touches; there the ground is lower than the line by
+// at most half the square of the offset times the curvature R^2 / z^3 of the section.
 TEST(SkyShapes, Dome) {
   constexpr double kRadius = 300;
   constexpr int kReach = 70;
@@ -153,7 +153,7 @@ TEST(SkyShapes, Dome) {
 }
 
 // In the eight directions of the grid, crossings are nodes: a pit of slope b hides sin b of the sky, and cos^2 b of the
-// radiation reaches its bottom. From the plain, the top of a peak is its horizon.
+// radiation reaches its bottom. The top of a peak is the horizon of the plain.
 TEST(SkyShapes, Cones) {
   for (const double degrees : {10.0, 30.0, 45.0}) {
     const double slope = degrees * kPi / 180, rise = std::tan(slope);
