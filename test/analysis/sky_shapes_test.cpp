@@ -100,7 +100,7 @@ TEST(SkyShapes, InfiniteValley) {
 
 // At the bottom of a hemisphere the rim is at 45 degrees all round. Between its nodes the ground is linear: at a
 // distance d, it lies between heights that are at most a cell c nearer or farther, which are at most (d + c)^2 / R
-// inside the rim, and R. So tan h <= R / (R - c). A crossing at most two and a half cells behind the rim is as high.
+// inside the rim, and R: tan h <= R / (R - c). Crossings two and a half cells behind the rim are as high as it.
 TEST(SkyShapes, HemisphereBowl) {
   constexpr double kRadius = 50 * kCell;
   const HeightField bowl = field_of(
@@ -118,9 +118,9 @@ TEST(SkyShapes, HemisphereBowl) {
   EXPECT_GE(sky.factor, 1 - sine(most) * sine(most) - kSum);
 }
 
-// The horizon over a hemisphere of radius R, seen from a plain D away from its middle, has the sine R / D. A row of nodes
-// has one within half a cell of the place where the line of sight touches; there the ground is lower than the line by
-// at most half the square of the offset times the curvature R^2 / z^3 of the section.
+// The horizon over a hemisphere of radius R, seen from a plain D away from its middle, has the sine R / D. A row of
+// nodes has one within half a cell of the place where the line of sight touches; the ground there is lower than the
+// line by at most half the square of the offset times the curvature R^2 / z^3 of the section.
 TEST(SkyShapes, Dome) {
   constexpr double kRadius = 300;
   constexpr int kReach = 70;
