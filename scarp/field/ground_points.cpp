@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <cmath>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/field/ground_points_simd.h"
 
 namespace scarp {
 namespace {
@@ -14,6 +15,31 @@ namespace {
 constexpr std::int64_t kPointsPerPiece = 4096;
 
 }  // namespace
+
+std::optional<GroundPoint> ground_point(const HeightField& field, double x, double y) {
+  // The common case with one decision about the sample type, by the operations of height() and normal().
+  const HeightField::GridScales scales = field.grid_scales();
+  const HeightFieldSettings& settings = field.settings();
+  const double col = x * scales.per_cell_x, row = (field.rows() - 1) - y * scales.per_cell_y;
+  const int cols = field.cols() - 1, rows = field.rows() - 1;
+  if (col >= 0 && row >= 0 && col < cols && row < rows && !field.wraps() && field.nodata_count() == 0) {
+    const int c = static_cast<int>(col), r = static_cast<int>(row);
+    const CellHeights h = field.visit([&](const auto& grid) { return grid.cell(c, r); });
+    const double u = col - c, v = row - r, metres = settings.scale * settings.exaggeration;
+    const bool flat = settings.surface == Surface::triangles;
+    const double side = u + v > 1 ? 1.0 : 0.0, at_u = flat ? side : u, at_v = flat ? side : v;
+    const double along_row = (h.h10 - h.h00) + at_v * ((h.h11 - h.h01) - (h.h10 - h.h00));
+    const double along_col = (h.h01 - h.h00) + at_u * ((h.h11 - h.h10) - (h.h01 - h.h00));
+    const double nx = -(along_row * metres * scales.per_cell_x), ny = along_col * metres * scales.per_cell_y;
+    const double per_length = 1 / std::sqrt(nx * nx + ny * ny + 1);
+    return GroundPoint{field.height_from_sample(height_in_cell(settings.surface, h, u, v)),
+                       {nx * per_length, ny * per_length, per_length}};
+  }
+  GroundPoint point;
+  look_up_point(field, x, y, point.height, &point.normal);
+  if (std::isnan(point.height)) return {};
+  return point;
+}
 
 void heights_at(const HeightField& field, std::span<const double> xs, std::span<const double> ys,
                 std::span<double> heights, std::span<dvec3> normals) {
@@ -23,17 +49,14 @@ void heights_at(const HeightField& field, std::span<const double> xs, std::span<
                     "normals)",
                     xs.size(), ys.size(), heights.size(), normals.size()));
   }
-  parallel_for(static_cast<std::int64_t>(xs.size()), kPointsPerPiece, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const auto height = field.height(xs[i], ys[i]);
-      heights[i] = height.value_or(std::numeric_limits<double>::quiet_NaN());
-      if (normals.empty()) continue;
-      normals[i] = dvec3(0.0);
-      if (!height) continue;
-      const auto [cell, u, v] = field.ground_at(field.place(xs[i], ys[i]).value());
-      normals[i] = field.normal(cell, u, v);
-    }
-  });
+  const auto look_up = [&](std::int64_t begin, std::int64_t end) {
+    const auto first = static_cast<std::size_t>(begin);
+    look_up_points(field, xs.data() + first, ys.data() + first, static_cast<std::size_t>(end) - first,
+                   heights.data() + first, normals.empty() ? nullptr : normals.data() + first);
+  };
+  const auto count = static_cast<std::int64_t>(xs.size());
+  if (count <= kPointsPerPiece) return look_up(0, count);
+  parallel_for(count, kPointsPerPiece, look_up);
 }
 
 }  // namespace scarp

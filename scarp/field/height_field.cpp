@@ -236,20 +236,24 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
   if (!has_cells()) return {};
   double col = col_from_x(x), row = row_from_y(y);
   const int cols = cell_cols(), rows = cell_rows();
+  if (col >= 0 && row >= 0 && col < cols && row < rows && nodata_count() == 0) {
+    const Cell cell{static_cast<int>(col), static_cast<int>(row)};
+    return Place{cell, col - cell.col, row - cell.row};
+  }
   if (wraps()) {
     col -= std::floor(col / cols) * cols;
     row -= std::floor(row / rows) * rows;
   }
   // NaN counts as outside; positions within rounding of the border count as on it.
   const auto inside = [](double position, int cells) {
+    if (position >= 0 && position <= cells) return true;
     const double off = rounding_of_line(position, cells);
     return position >= -off && position <= cells + off;
   };
   if (!(inside(col, cols) && inside(row, rows))) return {};
   col = std::clamp(col, 0.0, static_cast<double>(cols)), row = std::clamp(row, 0.0, static_cast<double>(rows));
-  return ground_at({{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)},
-                    col - std::min(std::floor(col), cols - 1.0),
-                    row - std::min(std::floor(row), rows - 1.0)});
+  const Cell cell{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)};
+  return ground_at({cell, col - cell.col, row - cell.row});
 }
 
 HeightField::Place HeightField::ground_at(const Place& place) const {
@@ -294,6 +298,15 @@ std::optional<CellHeights> HeightField::cell_heights(Cell cell) const {
 }
 
 std::optional<double> HeightField::height(double x, double y) const {
+  // The common case with one decision about the sample type: inside a field without holes that does not wrap.
+  const double col = x * per_cell_x_, row = (rows_ - 1) - y * per_cell_y_;
+  const int cols = cols_ - 1, rows = rows_ - 1;
+  if (col >= 0 && row >= 0 && col < cols && row < rows && settings_.wrap == Wrap::none && nodata_count() == 0) {
+    const int c = static_cast<int>(col), r = static_cast<int>(row);
+    return visit_as(false, [&](const auto& grid) {
+      return height_from_sample(height_in_cell(settings_.surface, grid.cell(c, r), col - c, row - r));
+    });
+  }
   const auto at = place(x, y);
   if (!at) return {};
   const auto h = cell_heights(at->cell);
@@ -302,7 +315,9 @@ std::optional<double> HeightField::height(double x, double y) const {
 }
 
 dvec2 HeightField::gradient(Cell cell, double u, double v) const {
-  const CellHeights h = cell_heights(cell).value();
+  const CellHeights h = nodata_count() > 0
+                            ? cell_heights(cell).value()
+                            : visit_as(false, [&](const auto& grid) { return grid.cell(cell.col, cell.row); });
   const double metres = settings_.scale * settings_.exaggeration;
   // With triangles, the slope is that of one of the cell's two triangles.
   const bool south_east = u + v > 1;
