@@ -14,10 +14,14 @@ using glm::dot;
 using glm::length;
 using glm::normalize;
 
-using dvec2 = glm::dvec2;
-using dvec3 = glm::dvec3;
-using ivec3 = glm::ivec3;
-using vec3 = glm::vec3;
+// Packed, also under GLM_FORCE_DEFAULT_ALIGNED_GENTYPES, which gives glm::dvec3 another layout than that of the
+// compiled library. Without it, these are glm::dvec3 and so on; with it, both convert to each other.
+using dvec2 = glm::vec<2, double, glm::packed_highp>;
+using dvec3 = glm::vec<3, double, glm::packed_highp>;
+using ivec3 = glm::vec<3, int, glm::packed_highp>;
+using vec3 = glm::vec<3, float, glm::packed_highp>;
+using dmat3 = glm::mat<3, 3, double, glm::packed_highp>;  // <glm/mat3x3.hpp>
+using dmat4 = glm::mat<4, 4, double, glm::packed_highp>;  // <glm/mat4x4.hpp>
 
 /// The corners of a triangle.
 using Triangle = std::array<dvec3, 3>;

@@ -12,8 +12,8 @@ namespace scarp {
 
 struct TurnedBox {
   dvec3 centre{0.0};
-  dvec3 half{0.0};       ///< half of each side, >= 0
-  glm::dmat3 turn{1.0};  ///< a rotation: its columns are the directions of the sides
+  dvec3 half{0.0};  ///< half of each side, >= 0
+  dmat3 turn{1.0};  ///< a rotation: its columns are the directions of the sides
 };
 
 /// Throws Error unless a box is finite, none of its sides is negative and `turn` is a rotation.

@@ -111,7 +111,7 @@ class LidarScan {
  private:
   struct Station;
   Station station_at(double time) const;
-  Station placed(const dvec3& position, const glm::dmat3& body) const;
+  Station placed(const dvec3& position, const dmat3& body) const;
   dvec3 direction(const Station& station, int column_of_turn, std::size_t channel) const;
   void describe(const Station& station, const dvec3& direction, LidarReturn& answer) const;
   void set_range(const dvec3& eye, const dvec3& direction, double t, LidarReturn& answer) const;

@@ -16,9 +16,9 @@ namespace scarp {
 /// A rotation, a uniform scale and a translation, in this order. For a rotation by an angle about an axis:
 /// `glm::dmat3(glm::rotate(glm::dmat4(1), radians, axis))`, from <glm/gtc/matrix_transform.hpp>.
 struct Placement {
-  glm::dmat3 turn{1.0};  ///< a rotation
-  double scale = 1;      ///< > 0
-  dvec3 origin{0.0};     ///< metres
+  dmat3 turn{1.0};    ///< a rotation
+  double scale = 1;   ///< > 0
+  dvec3 origin{0.0};  ///< metres
 
   dvec3 world_from_field(const dvec3& p) const { return scale * (turn * p) + origin; }
   dvec3 world_from_normal(const dvec3& n) const { return turn * n; }
@@ -31,7 +31,7 @@ struct Placement {
     return local;
   }
 
-  bool identity() const { return turn == glm::dmat3(1.0) && scale == 1 && origin == dvec3(0.0); }
+  bool identity() const { return turn == dmat3(1.0) && scale == 1 && origin == dvec3(0.0); }
   /// Whether z stays up, that is, the rotation is about z only. Rounding reduces the cosine by about 2^-50; a tilt of
   /// 2^-20 is detected.
   bool upright() const { return turn[2].z >= 1 - 0x1p-41; }

@@ -51,7 +51,7 @@ struct VoxelPacket {
 
 /// Placement of a grid: p_world = world_from_grid * p_grid + origin.
 struct VoxelStand {
-  glm::dmat3 grid_from_world{1.0};
+  dmat3 grid_from_world{1.0};
   dvec3 origin{0.0};
   VoxelTies ties{};   ///< of the matrix
   double room = 0.0;  ///< VoxelRay::room
@@ -62,7 +62,7 @@ struct VoxelStand {
 [[nodiscard]] bool load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays);
 
 /// Call before marches, and again before rays traverse grids with another orientation.
-void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world, VoxelTies ties = {});
+void aim_voxel_packet(VoxelPacket& packet, const dmat3& grid_from_world, VoxelTies ties = {});
 
 /// The marches of packets (VoxelPacketMarch).
 std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,

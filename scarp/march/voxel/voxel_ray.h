@@ -79,9 +79,9 @@ struct VoxelTies {
   std::uint32_t bits = 0;
 
   VoxelTies() = default;
-  explicit VoxelTies(const glm::dmat3& grid_from_world) : VoxelTies(grid_from_world, VoxelTies()) {}
+  explicit VoxelTies(const dmat3& grid_from_world) : VoxelTies(grid_from_world, VoxelTies()) {}
   /// `frame`: the ties of the space that the matrix maps from, if that is rotated, too (Ray::frame).
-  VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame);
+  VoxelTies(const dmat3& grid_from_world, VoxelTies frame);
 
   /// 1 or -1: the upper side of planes across this axis.
   int up(int axis) const { return bits >> axis & 1 ? -1 : 1; }

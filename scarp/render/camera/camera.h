@@ -65,11 +65,11 @@ class Camera {
 
   /// Returns the matrix from world to camera coordinates: metres, x to the right, y up, z along the view axis
   /// (left-handed).
-  glm::dmat4 camera_from_world() const;
+  dmat4 camera_from_world() const;
   /// Returns the matrix from world to homogeneous coordinates. After division by w, x and y are in [-1, 1] from left to
   /// right and from bottom to top of the picture. z is 1 - 1 m / depth in perspective, and the depth in metres for an
   /// orthographic camera.
-  glm::dmat4 ndc_from_world() const;
+  dmat4 ndc_from_world() const;
 
   /// Sets t_max of the rays, in metres, > 0; infinite by default. Terrain that wraps requires a finite reach.
   void set_reach(double metres) { reach_ = metres; }

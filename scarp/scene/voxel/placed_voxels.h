@@ -17,9 +17,9 @@ namespace scarp {
 
 /// Placement of a model: p_field = world_from_grid * p_grid + origin.
 struct VoxelPlace {
-  std::uint32_t model = 0;          ///< index into the models
-  glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times the side of a voxel in metres, > 0
-  dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
+  std::uint32_t model = 0;     ///< index into the models
+  dmat3 world_from_grid{1.0};  ///< a rotation or reflection times the side of a voxel in metres, > 0
+  dvec3 origin{0.0};           ///< metres, of the grid's corner (0, 0, 0)
 };
 
 /// Models are shared with the caller. After an edit of a model, scenes that contain it throw Error until they are built

@@ -127,7 +127,7 @@ class VoxelObjects {
   /// For each Ray::frame, the bits of the ties of a turn.
   using TiesByFrame = std::array<std::uint8_t, 1u << VoxelTies::kBits>;
   struct PlacedTurn {
-    glm::dmat3 grid_from_world;
+    dmat3 grid_from_world;
     TiesByFrame ties;
     double room;       ///< VoxelRay::room of rays without a room of their own
     double per_metre;  ///< voxels per metre
@@ -143,12 +143,12 @@ class VoxelObjects {
     std::uint32_t model, turn;
   };
   struct Turn {
-    glm::dmat3 grid_from_world, world_from_grid;
+    dmat3 grid_from_world, world_from_grid;
     TiesByFrame ties_by_frame;
     double per_metre;  // voxels per metre
     double room = 0;   // VoxelRay::room without Ray::room
 
-    explicit Turn(const glm::dmat3& world_from_grid_);
+    explicit Turn(const dmat3& world_from_grid_);
     double room_of(const Ray& ray) const { return std::max(room, room_in_metres(ray.room) * per_metre); }
     VoxelTies ties(const Ray& ray) const {
       VoxelTies ties;

@@ -41,10 +41,10 @@ struct VdbVoxels {
   std::vector<VdbLeaf> leaves;
   std::vector<VdbTile> tiles;
   std::vector<VdbColour>
-      colours;  ///< of the leaves' solid voxels, leaf by leaf in the order of bricks and bits; or none
-  glm::dmat3 world_from_index{1.0};  ///< a rotation or reflection, times the side of a voxel
-  dvec3 origin{0.0};                 ///< centre of voxel (0, 0, 0) in the file's space
-  std::vector<std::string> notes;    ///< for users, one line each
+      colours;                  ///< of the leaves' solid voxels, leaf by leaf in the order of bricks and bits; or none
+  dmat3 world_from_index{1.0};  ///< a rotation or reflection, times the side of a voxel
+  dvec3 origin{0.0};            ///< centre of voxel (0, 0, 0) in the file's space
+  std::vector<std::string> notes;  ///< for users, one line each
 };
 
 /// Maximum number of voxels per axis in a file, the same as for grids.
