@@ -7,6 +7,7 @@
 #include "scarp/march/height/max_mip_ahead.h"
 #include "scarp/march/height/max_mip_march.h"
 #include "scarp/march/height/max_mip_resume.h"
+#include "scarp/march/height/short_rays.h"
 
 namespace scarp {
 namespace {
@@ -17,6 +18,8 @@ using max_mip::march;
 
 // Beyond this many cells doubles cannot distinguish neighbouring cells.
 constexpr double kFarthestCell = 0x1p51;
+// Rays over less than this many cells are faster in the scalar traversal (scarp-bench calls).
+constexpr double kFewCells = 4;
 
 }  // namespace
 
@@ -36,7 +39,8 @@ Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSetting
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray) {
   require(target, HeightPart::pyramid);
   double t_clear = max_mip::kNotClear;
-  if (ray.start == RayStart::free && max_mip::looks_ahead(target)) {
+  if (ray.start == RayStart::free && !max_mip::crosses_few_cells(*target.field, ray, kFewCells) &&
+      max_mip::looks_ahead(target)) {
     const Ahead ahead = max_mip::look_ahead(target, ray, t_clear);
     if (ahead != Ahead::open) return ahead == Ahead::hit;
   }

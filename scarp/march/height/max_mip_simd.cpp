@@ -17,6 +17,7 @@
 #include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
+#include "scarp/march/height/short_rays.h"
 
 // Compiled once per instruction set. Vectors whose length is unknown at compile time cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -634,6 +635,9 @@ HWY_EXPORT(answer_seen);
 
 thread_local VectorStats t_stats;
 
+// Rays over less than this many cells are faster one by one (scarp-bench calls).
+constexpr double kFewCells = 1;
+
 // Minimum width of copies of a wrapped ground: entering the next one takes as long as a few cells.
 constexpr int kNarrowestCopy = 128;
 
@@ -652,20 +656,20 @@ bool walks_over(const HeightTarget& target) {
 
 void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                const VectorOptions& options) {
-  if (walks_over(target)) {
-    HWY_DYNAMIC_DISPATCH(walk_closest)(target, rays, hits.data(), options, t_stats);
-  } else {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = march_max_mip(target, rays[i]);
-  }
+  const auto alone = [&](const Ray& ray) { return march_max_mip(target, ray); };
+  if (!walks_over(target)) return max_mip::answer_alone(rays, hits, alone);
+  max_mip::answer_by_length(*target.field, kFewCells, rays, hits, alone, [&](auto some, auto answers) {
+    HWY_DYNAMIC_DISPATCH(walk_closest)(target, some, answers.data(), options, t_stats);
+  });
 }
 
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                            const VectorOptions& options) {
-  if (walks_over(target)) {
-    HWY_DYNAMIC_DISPATCH(walk_any)(target, rays, blocked.data(), options, t_stats);
-  } else {
-    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded_max_mip(target, rays[i]);
-  }
+  const auto alone = [&](const Ray& ray) -> std::uint8_t { return occluded_max_mip(target, ray); };
+  if (!walks_over(target)) return max_mip::answer_alone(rays, blocked, alone);
+  max_mip::answer_by_length(*target.field, kFewCells, rays, blocked, alone, [&](auto some, auto answers) {
+    HWY_DYNAMIC_DISPATCH(walk_any)(target, some, answers.data(), options, t_stats);
+  });
 }
 
 void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits) {

@@ -17,7 +17,7 @@
 //
 // Source: T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs", HPG 2009 (refilled lanes,
 // postponed leaves); the traversal is that of max_mip.h. Cost: no memory besides the pyramid; pays off from about 32
-// rays on.
+// rays on. Rays over less than a cell are traced by march_max_mip() and occluded_max_mip() (short_rays.h).
 #pragma once
 
 #include <cstdint>

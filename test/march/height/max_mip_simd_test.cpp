@@ -346,6 +346,28 @@ TEST(MaxMipSimd, HandlesRaysFromNodesInVectors) {
   }
 }
 
+// Preparing vectors takes longer than the walk of a ray over one cell: such rays are traced one by one, in place.
+TEST(MaxMipSimd, TracesRaysOverOneCellAlone) {
+  Random random(76);
+  const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  std::vector<Ray> feet, mixed;
+  for (int i = 0; i < 500; ++i) {
+    const double x = uniform(random, 1, field.width() - 1), y = uniform(random, 1, field.depth() - 1);
+    const double cell = field.settings().cell_x;
+    const dvec3 knee(x, y, field.height(x, y).value() + 0.5);
+    feet.push_back({.origin = knee, .direction = {i % 2 ? 0.0 : 0.2 * cell, 0, -1}, .t_max = 2});
+    mixed.push_back(feet.back());
+    if (i % 3) mixed.push_back({.origin = knee, .direction = {20 * cell, 1, -1}, .t_max = 5});
+  }
+  take_vector_stats();
+  compare(target, feet, scalar(target, feet), feet.size(), {}, "feet");
+  EXPECT_EQ(take_vector_stats().block_steps, 0);
+  compare(target, mixed, scalar(target, mixed), mixed.size(), {}, "mixed");
+  EXPECT_GT(take_vector_stats().block_steps, 0);
+}
+
 TEST(MaxMipSimd, HandlesRaysFromNearTheGroundInVectors) {
   Random random(75);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
