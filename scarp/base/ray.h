@@ -51,6 +51,7 @@ enum class HitStatus : std::uint8_t {
   below,      ///< the ray starts below the surface, or enters below it through the border, and hits nothing
   exhausted,  ///< the march reached its step limit, or the last cell of a wrapped field that it can index; the ray
               ///< beyond t is unknown
+  invalid,    ///< the ray cannot be traced; only in batches with BadRays::answer_invalid (scene/cast.h)
 };
 
 /// Result of a closest-hit query. `status` is always set, `t` only for `hit` and `exhausted`, all other members only

@@ -73,7 +73,7 @@ Ray ray_at(const RayArrays& rays, std::size_t i) {
 
 // Calls answer(first, rays) for pieces of the batch. Errors name the ray by its index in the whole batch.
 template <class Answer>
-void for_each_piece(const RayArrays& rays, const Scene& scene, const Answer& answer) {
+void for_each_piece(const RayArrays& rays, const Scene& scene, BadRays bad, const Answer& answer) {
   const std::size_t count = rays.origin_x.size();
   std::vector<Ray> piece;
   for (std::size_t first = 0; first < count; first += kRaysAtOnce) {
@@ -82,8 +82,13 @@ void for_each_piece(const RayArrays& rays, const Scene& scene, const Answer& ans
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
         piece[i] = ray_at(rays, first + i);
     });
-    require_valid(piece, {}, scene, first, count);
-    answer(first, std::span<const Ray>(piece));
+    std::vector<std::size_t> invalid;
+    if (bad == BadRays::refuse) {
+      require_valid(piece, {}, scene, first, count);
+    } else {
+      invalid = replace_invalid(piece, {}, scene);
+    }
+    answer(first, std::span<const Ray>(piece), std::span<const std::size_t>(invalid));
   }
 }
 
@@ -110,24 +115,28 @@ void put(const Scene& scene, const Ray& ray, const Hit& hit, const HitArrays& hi
 
 }  // namespace
 
-void cast(const Scene& scene, const RayArrays& rays, const HitArrays& hits) {
+void cast(const Scene& scene, const RayArrays& rays, const HitArrays& hits, BadRays bad) {
   require_hits(hits, require_rays(rays));
   std::vector<Hit> answers;
-  for_each_piece(rays, scene, [&](std::size_t first, std::span<const Ray> piece) {
+  const auto answer = [&](std::size_t first, std::span<const Ray> piece, std::span<const std::size_t> invalid) {
     answers.resize(piece.size());
     scene.closest_hits(piece, answers);
+    for (const std::size_t i : invalid) answers[i] = Hit{}, answers[i].status = HitStatus::invalid;
     parallel_for(static_cast<std::int64_t>(piece.size()), kRaysPerColumn, [&](std::int64_t begin, std::int64_t end) {
       for (auto j = static_cast<std::size_t>(begin); j < static_cast<std::size_t>(end); ++j)
         put(scene, piece[j], answers[j], hits, first + j);
     });
-  });
+  };
+  for_each_piece(rays, scene, bad, answer);
 }
 
-void occluded(const Scene& scene, const RayArrays& rays, std::span<std::uint8_t> blocked) {
+void occluded(const Scene& scene, const RayArrays& rays, std::span<std::uint8_t> blocked, BadRays bad) {
   require_length(blocked.size(), require_rays(rays), "blocked", false);
-  for_each_piece(rays, scene, [&](std::size_t first, std::span<const Ray> piece) {
+  const auto answer = [&](std::size_t first, std::span<const Ray> piece, std::span<const std::size_t> invalid) {
     scene.occluded(piece, blocked.subspan(first, piece.size()));
-  });
+    for (const std::size_t i : invalid) blocked[first + i] = kInvalidRay;
+  };
+  for_each_piece(rays, scene, bad, answer);
 }
 
 }  // namespace scarp

@@ -12,7 +12,7 @@
 #include <limits>
 #include <span>
 
-#include "scarp/scene/scene.h"
+#include "scarp/scene/cast.h"
 
 namespace scarp {
 
@@ -41,9 +41,10 @@ struct HitArrays {
 };
 
 /// Finds the closest hits of a batch. Throws Error for spans of different lengths, for an incomplete pair or triple,
-/// and as cast() does, naming the first invalid ray.
-void cast(const Scene& scene, const RayArrays& rays, const HitArrays& hits);
+/// and as cast() of rays does, naming the first invalid ray unless `bad` is BadRays::answer_invalid.
+void cast(const Scene& scene, const RayArrays& rays, const HitArrays& hits, BadRays bad = BadRays::refuse);
 /// Sets blocked[i] to 1 if anything blocks ray i, else to 0. Throws as cast() does.
-void occluded(const Scene& scene, const RayArrays& rays, std::span<std::uint8_t> blocked);
+void occluded(const Scene& scene, const RayArrays& rays, std::span<std::uint8_t> blocked,
+              BadRays bad = BadRays::refuse);
 
 }  // namespace scarp

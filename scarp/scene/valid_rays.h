@@ -14,4 +14,7 @@ namespace scarp {
 void require_valid(std::span<const Ray> rays, std::span<const Hit* const> from, const Scene& scene, std::size_t first,
                    std::size_t all);
 
+/// The rays of a batch that cannot be traced. At their indices `rays` and `from` get a ray that can.
+std::vector<std::size_t> replace_invalid(std::span<Ray> rays, std::span<const Hit*> from, const Scene& scene);
+
 }  // namespace scarp

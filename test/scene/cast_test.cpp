@@ -11,6 +11,7 @@
 
 #include "base/refusal.h"
 #include "scarp/scarp.h"
+#include "scarp/scene/ray_arrays.h"
 
 namespace scarp {
 namespace {
@@ -108,6 +109,59 @@ TEST(Cast, AcceptsEmptyBatches) {
   const Terrain terrain = roof();
   cast(terrain, std::span<const Ray>(), std::span<Hit>());
   occluded(terrain, std::span<const Ray>(), std::span<std::uint8_t>());
+}
+
+// One bad ray among good ones, in batches that are traced one by one and in larger ones.
+TEST(Cast, AnswersBadRaysInvalid) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const Terrain terrain = roof(), wrapped = roof(Wrap::periodic);
+  const Scene scene = combine({{terrain}, {terrain, {.origin = {100, 0, 0}}}});
+  const Hit no_hit;
+  for (const Scene* of : {&terrain.scene(), &wrapped.scene(), &scene}) {
+    for (const std::size_t count : {std::size_t{5}, std::size_t{16}, std::size_t{300}}) {
+      std::vector<Ray> rays;
+      for (std::size_t i = 0; i < count; ++i) {
+        rays.push_back(down(5 + 0.1 * static_cast<double>(i)));
+        rays.back().t_max = 100;
+      }
+      const std::vector<Ray> good = rays;
+      std::vector<const Hit*> from(count, nullptr);
+      rays[0].origin.x = nan, rays[1].direction = dvec3(0.0), rays[2].t_min = 200;
+      rays[3].direction.z = -inf, from[4] = &no_hit;
+      if (of->wraps()) rays.back().t_max = inf;
+      std::vector<Hit> hits(count);
+      std::vector<std::uint8_t> blocked(count);
+      EXPECT_NE(refusal([&] { cast(*of, rays, hits, from); }), "");
+      cast(*of, rays, hits, from, BadRays::answer_invalid);
+      occluded(*of, rays, blocked, from, BadRays::answer_invalid);
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool bad = i < 5 || (of->wraps() && i + 1 == count);
+        Hit expected = bad ? Hit{} : cast(*of, good[i]);
+        if (bad) expected.status = HitStatus::invalid;
+        EXPECT_EQ(hits[i], expected) << i;
+        EXPECT_EQ(blocked[i], bad ? kInvalidRay : std::uint8_t{occluded(*of, good[i])}) << i;
+      }
+      EXPECT_NE(refusal([&] { cast(*of, rays, std::span(hits).subspan(1), from, BadRays::answer_invalid); }), "");
+      EXPECT_NE(refusal([&] { cast(*of, rays, hits, std::span(from).subspan(1), BadRays::answer_invalid); }), "");
+    }
+  }
+}
+
+// The same in arrays of components.
+TEST(Cast, AnswersBadRaysInArraysInvalid) {
+  const Terrain terrain = roof();
+  const std::vector<float> ox{15, NAN, 15}, oy{20, 20, 20}, oz{30, 30, 30}, dx{0, 0, 0}, dz{-1, -1, 0};
+  const RayArrays rays{
+      .origin_x = ox, .origin_y = oy, .origin_z = oz, .direction_x = dx, .direction_y = dx, .direction_z = dz};
+  std::vector<HitStatus> status(3);
+  std::vector<float> t(3);
+  std::vector<std::uint8_t> blocked(3);
+  EXPECT_NE(refusal([&] { cast(terrain, rays, {.t = t}); }), "");
+  cast(terrain, rays, {.t = t, .status = status}, BadRays::answer_invalid);
+  occluded(terrain, rays, blocked, BadRays::answer_invalid);
+  EXPECT_EQ(status, (std::vector{HitStatus::hit, HitStatus::invalid, HitStatus::invalid}));
+  EXPECT_EQ(blocked, (std::vector<std::uint8_t>{1, kInvalidRay, kInvalidRay}));
+  EXPECT_TRUE(std::isinf(t[1]));
 }
 
 }  // namespace

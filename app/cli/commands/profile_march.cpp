@@ -146,6 +146,7 @@ std::string caption_of(const HeightMarchEntry& march, const MarchPanel& panel, c
       text += fmt::format(", hit after {:.6g} m", panel.hit.t * metre);
       break;
     case HitStatus::miss:
+    case HitStatus::invalid:  // only in batches that ask for it
       text += ", no hit";
       break;
     case HitStatus::below:
