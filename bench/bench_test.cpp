@@ -80,6 +80,13 @@ TEST(ScarpBench, CAnswersAsCpp) {
 }
 #endif
 
+TEST(ScarpBench, CallsRunsAllTasks) {
+  const json all = output_of("calls --sizes 65 --of heights,normals,feet --points 1000 --repeats 1");
+  expect_documented(all, "calls");
+  EXPECT_GT(all["rows"].size(), 3u);
+  for (const json& row : all["rows"]) EXPECT_GT(row["ratio"], 0) << row;
+}
+
 TEST(ScarpBench, ExtentsMatchWindows) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
   expect_documented(all, "extents");

@@ -10,6 +10,7 @@ void add_heights(cli::Program& program);
 void add_survey(cli::Program& program);
 void add_naive(cli::Program& program);
 void add_batches(cli::Program& program);
+void add_calls(cli::Program& program);
 void add_simd(cli::Program& program);
 void add_volumes(cli::Program& program);
 void add_pyramid(cli::Program& program);

@@ -18,6 +18,7 @@ cli::Program bench_program() {
   add_survey(program);
   add_naive(program);
   add_batches(program);
+  add_calls(program);
   add_simd(program);
   add_volumes(program);
   add_pyramid(program);
