@@ -17,7 +17,7 @@
 
 namespace scarp {
 
-/// What a batch does with rays that cannot be traced.
+/// Behaviour of a batch for rays that cannot be traced.
 enum class BadRays : std::uint8_t {
   refuse,          ///< throw Error, before any answer is written
   answer_invalid,  ///< answer them HitStatus::invalid, or kInvalidRay in `blocked`, and all other rays as usual
