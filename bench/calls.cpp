@@ -107,13 +107,13 @@ void look_up(const OwnGround& g, const Points& points, std::vector<double>& heig
 }
 
 // One way to do a task, for all of its items.
-struct Way {
+struct CallWay {
   std::string name;
   std::function<void()> run;
 };
 
 // Median nanoseconds per item of each way; the ways take turns.
-std::vector<double> measure_ways(const std::vector<Way>& ways, int items, int repeats) {
+std::vector<double> measure_ways(const std::vector<CallWay>& ways, int items, int repeats) {
   std::vector<std::vector<double>> passes(ways.size());
   for (int pass = 0; pass <= repeats; ++pass) {
     for (std::size_t w = 0; w < ways.size(); ++w) {
@@ -163,7 +163,7 @@ class Calls {
     std::vector<double> heights(points_.x.size());
     std::vector<dvec3> normals(points_.x.size());
     const Points& p = points_;
-    std::vector<Way> ways;
+    std::vector<CallWay> ways;
     ways.push_back({"obvious loop", [&] {
                       with_normals ? look_up<true>(own, p, heights, normals) : look_up<false>(own, p, heights, normals);
                     }});
@@ -210,7 +210,7 @@ class Calls {
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
     const Scene& scene = terrain.scene();
-    std::vector<Way> ways;
+    std::vector<CallWay> ways;
     ways.push_back({"cast, single", [&] {
                       for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = cast(scene, rays[i]);
                     }});
@@ -238,7 +238,7 @@ class Calls {
   }
 
   // Ratios are to the way with this index.
-  void add_rows(const std::string& task, const std::vector<Way>& ways, std::size_t reference) {
+  void add_rows(const std::string& task, const std::vector<CallWay>& ways, std::size_t reference) {
     const std::vector<double> ns = measure_ways(ways, options_.points, options_.repeats);
     for (std::size_t w = 0; w < ways.size(); ++w) {
       Json row;

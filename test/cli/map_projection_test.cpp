@@ -236,12 +236,12 @@ double blocked_by(const Height& height, int col, int row, int cols, int rows, do
 // Over 670 km, grid north turns by 6 degrees: blocks of pixels have the sun at their middles.
 TEST_F(MapProjection, ShadowsHaveTheNorthOfTheirBlock) {
   constexpr int kCols = 335, kRows = 140;
-  constexpr double kCell = 2000, kAltitude = 4 * kRadians;
+  constexpr double kWideCell = 2000, kAltitude = 4 * kRadians;
   const auto height = [](int col, int row) {
     const unsigned hash = (static_cast<unsigned>(col) * 2654435761u) ^ (static_cast<unsigned>(row) * 40503u * 65537u);
     return static_cast<float>((hash >> 13) % 97 < 5 ? 300 + (hash >> 5) % 1200 : (hash >> 7) % 20);
   };
-  const std::string dem = write({32633, kCols, kRows, 165000, 5280000, kCell}, "wide.tif", height);
+  const std::string dem = write({32633, kCols, kRows, 165000, 5280000, kWideCell}, "wide.tif", height);
   const Names words{"shadow", dem, "--sun", "300,4"};
   ASSERT_EQ(run(words + Names{"-o", path("s.tif")}).status, 0);
   const auto dataset = open(path("s.tif"));
@@ -252,19 +252,19 @@ TEST_F(MapProjection, ShadowsHaveTheNorthOfTheirBlock) {
   for (int row = 1; row < kRows; row += 3)
     for (int col = 1; col < kCols; ++col) {
       const auto direction = [&](double at_col, double at_row) {
-        const double x = 165000 + at_col * kCell, y = 5280000 - at_row * kCell;
+        const double x = 165000 + at_col * kWideCell, y = 5280000 - at_row * kWideCell;
         return (300 - judge.way(x, y - 50, x, y + 50).azimuth) * kRadians;
       };
       const int left = col / 128 * 128, top = row / 128 * 128;
       const double own =
           direction(0.5 * (left + std::min(left + 128, kCols) - 1), 0.5 * (top + std::min(top + 128, kRows) - 1));
-      const double above = blocked_by(height, col, row, kCols, kRows, kCell, own, kAltitude);
+      const double above = blocked_by(height, col, row, kCols, kRows, kWideCell, own, kAltitude);
       // Rays near the ground are left out: the judge rounds.
       if (std::abs(above) < 2) continue;
       ASSERT_EQ(pixels.at(col, row) != 0, above > 0) << col << ' ' << row << ": " << above;
       shaded += above > 0;
       const double centre = direction(0.5 * (kCols - 1), 0.5 * (kRows - 1));
-      other += (blocked_by(height, col, row, kCols, kRows, kCell, centre, kAltitude) > 0) != (above > 0);
+      other += (blocked_by(height, col, row, kCols, kRows, kWideCell, centre, kAltitude) > 0) != (above > 0);
     }
   EXPECT_GT(shaded, 500);
   EXPECT_GT(other, 50) << "pixels that the north of the centre gets wrong";

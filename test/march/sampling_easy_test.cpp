@@ -68,6 +68,7 @@ int status_of(const Hit& hit) {
     case HitStatus::exhausted:
       return glsl::kScarpExhausted;
     case HitStatus::miss:
+    case HitStatus::invalid:
       break;
   }
   return glsl::kScarpMiss;
