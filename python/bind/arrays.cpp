@@ -46,6 +46,8 @@ Samples samples_of(const py::array& array, bool south_up) {
     throw Error(
         "heights: the samples of a row are not next to one another in memory (pass copy=True, or convert the array: "
         "numpy.ascontiguousarray(heights))");
+  if (!one_row && array.strides(0) == 0)
+    throw Error("heights: all rows are the same memory (pass copy=True, or convert the array: numpy.array(heights))");
   Samples samples{*type, array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), 0};
   samples.row_stride = one_row ? samples.cols : array.strides(0) / item;
   if (south_up && !one_row) {

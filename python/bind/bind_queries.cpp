@@ -221,10 +221,11 @@ void heights(const SceneObject& self, const Doubles& xs, const Doubles& ys, py::
 py::tuple all_hits(const TerrainObject& self, const py::array& origins, const py::array& directions,
                    const py::object& t_min, const py::object& t_max) {
   const Rays rays(origins, directions, t_min, t_max);
-  std::vector<Hit> found;
-  std::vector<std::int64_t> first{0};
-  {
-    const Query query(self);
+  require_memory(self);
+  auto [found, first] = result_of_task(py::none(), [&](const Progress& report) {
+    const auto locks = shared_locks(self);
+    std::vector<Hit> found_here;
+    std::vector<std::int64_t> first_here{0};
     const Scene& scene = self.scene();
     const HeightTarget target = self.terrain().target();
     for (std::size_t i = 0; i < rays.count(); ++i) {
@@ -236,15 +237,19 @@ py::tuple all_hits(const TerrainObject& self, const py::array& origins, const py
       }
     }
     std::vector<std::vector<Hit>> of_ray(rays.count());
-    parallel_for(static_cast<std::int64_t>(rays.count()), kRaysOfAllHits, [&](std::int64_t begin, std::int64_t end) {
-      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-        if (all_hits_max_mip(target, rays[i], of_ray[i]) != HitStatus::hit) of_ray[i].clear();
-    });
+    parallel_for(
+        static_cast<std::int64_t>(rays.count()), kRaysOfAllHits,
+        [&](std::int64_t begin, std::int64_t end) {
+          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            if (all_hits_max_mip(target, rays[i], of_ray[i]) != HitStatus::hit) of_ray[i].clear();
+        },
+        report);
     for (const auto& hits : of_ray) {
-      found.insert(found.end(), hits.begin(), hits.end());
-      first.push_back(static_cast<std::int64_t>(found.size()));
+      found_here.insert(found_here.end(), hits.begin(), hits.end());
+      first_here.push_back(static_cast<std::int64_t>(found_here.size()));
     }
-  }
+    return std::pair(std::move(found_here), std::move(first_here));
+  });
   const auto starts = static_cast<py::ssize_t>(first.size());
   auto kept = std::make_unique<std::vector<Hit>>(std::move(found));
   const auto bytes = static_cast<py::ssize_t>(kept->size() * sizeof(Hit));

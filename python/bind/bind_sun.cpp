@@ -114,6 +114,9 @@ py::tuple horizon_maps(const TerrainObject& terrain, const std::vector<double>& 
       map_of(terrain, rows, progress, [&](const HeightField& field, const RowBand& band, const Progress& report) {
         const Horizons horizons(field, settings, [&](double) { return report(0); });
         HorizonRows found;
+        const auto all_nodes = azimuths.size() * shape_of(terrain, band)[0] * shape_of(terrain, band)[1];
+        found.angle.reserve(all_nodes);
+        if (distances) found.distance.reserve(all_nodes);
         for (std::size_t i = 0; i < azimuths.size(); ++i) {
           HorizonRows of_one =
               horizons.rows(azimuths[i], band.first, band.last, distances,
@@ -130,15 +133,23 @@ py::tuple horizon_maps(const TerrainObject& terrain, const std::vector<double>& 
   return py::make_tuple(handed_over<float>(std::move(all.angle), shape), metres);
 }
 
-// Horizons of one place: rows of angle (radians) and distance (NaN without ground); None over holes and outside.
+constexpr std::size_t kPlacesPerSignal = 128;  // numbers of a table between two looks for Ctrl-C
+
+// Horizons of one place, with the lengths of cells there: rows of angle (radians) and distance (NaN without ground);
+// None over holes and outside.
 py::object horizon_at(const TerrainObject& terrain, double col, double row, const std::vector<double>& azimuths,
-                      double eye_height, double max_distance, double coefficient, double diameter) {
+                      double eye_height, double max_distance, double coefficient, double diameter, double cell_x,
+                      double cell_y) {
   const HorizonSettings settings = horizon_settings(eye_height, max_distance, coefficient, diameter, "exact");
   std::vector<double> table;
   {
     const Query query(terrain);
+    const HeightFieldSettings& own = terrain.field().settings();
+    const bool same = own.cell_x == cell_x && own.cell_y == cell_y;
+    const HeightField field = same ? terrain.field() : terrain.field_with_cells(cell_x, cell_y);
     for (const double azimuth : azimuths) {
-      const auto view = horizon_from(terrain.field(), col, row, azimuth, settings);
+      if (table.size() % kPlacesPerSignal == 0) check_signals();
+      const auto view = horizon_from(field, col, row, azimuth, settings);
       if (!view) break;
       table.push_back(view->angle);
       table.push_back(view->distance.value_or(std::numeric_limits<double>::quiet_NaN()));
@@ -253,7 +264,8 @@ void bind_sun(py::module_& module) {
              py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"),
              py::arg("distances"), py::arg("rows"), py::arg("progress"));
   module.def("horizon_at", &horizon_at, py::arg("terrain"), py::arg("col"), py::arg("row"), py::arg("azimuths"),
-             py::arg("eye_height"), py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"));
+             py::arg("eye_height"), py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"),
+             py::arg("cell_x"), py::arg("cell_y"));
   module.def("sky_view", &sky_maps, py::arg("terrain"), py::arg("measures"), py::arg("azimuths"), py::arg("eye_height"),
              py::arg("max_distance"), py::arg("coefficient"), py::arg("diameter"), py::arg("engine"), py::arg("rows"),
              py::arg("progress"));

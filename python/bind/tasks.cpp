@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "scarp/base/error.h"
 
@@ -19,17 +20,23 @@ constexpr std::chrono::milliseconds kPause(50);
 
 thread_local bool in_callback = false;
 
-// Calls the user's function; returns whether to go on.
+// Callbacks may run tasks with callbacks of their own.
+class InCallback {
+ public:
+  InCallback() : before_(std::exchange(in_callback, true)) {}
+  ~InCallback() { in_callback = before_; }
+  InCallback(const InCallback&) = delete;
+  InCallback& operator=(const InCallback&) = delete;
+
+ private:
+  bool before_;
+};
+
+// Calls the user's function; returns whether to go on: unless it answers False, of Python or NumPy.
 bool call(const py::object& progress, double fraction) {
-  in_callback = true;
-  try {
-    const py::object answer = progress(fraction);
-    in_callback = false;
-    return !answer.is(py::bool_(false));
-  } catch (...) {
-    in_callback = false;
-    throw;
-  }
+  const InCallback inside;
+  const py::object answer = progress(fraction);
+  return answer.is_none() || static_cast<bool>(py::bool_(answer));
 }
 
 }  // namespace

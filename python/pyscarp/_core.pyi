@@ -149,6 +149,8 @@ def horizon_at(
     max_distance: float,
     coefficient: float,
     diameter: float,
+    cell_x: float,
+    cell_y: float,
 ) -> Optional[np.ndarray]: ...
 def sky_view(
     terrain: Terrain,

@@ -15,6 +15,9 @@ from ._core import Error
 _X_NAMES = {"x", "lon", "longitude", "easting", "eastings", "projection_x_coordinate"}
 _Y_NAMES = {"y", "lat", "latitude", "northing", "northings", "projection_y_coordinate"}
 _DEGREES = {"lon", "longitude", "lat", "latitude"}
+# Units of coordinates, as the CF conventions have them.
+_DEGREE_UNITS = {"degrees", "degree", "degrees_east", "degree_east", "degrees_north", "degree_north"}
+_METRE_UNITS = {"m", "metre", "meter", "metres", "meters"}
 #: Metres per vertical unit.
 _UNITS = {
     "m": 1.0,
@@ -124,8 +127,11 @@ def _of_dataarray(data: Any) -> Source:
     if source.map_from_node:
         source.map_from_node, source.south_up = rows_from_north(source.map_from_node, data.shape[0])
     source.crs = crs_text(_crs_of(data))
-    if not source.crs and {str(x).lower(), str(y).lower()} <= _DEGREES:
+    units = {str(data.coords[c].attrs.get("units", "")).lower() for c in (x, y) if c in data.coords} - {""}
+    if not source.crs and ({str(x).lower(), str(y).lower()} <= _DEGREES or (units and units <= _DEGREE_UNITS)):
         source.crs = crs_text("EPSG:4326")
+    elif source.map_from_node and not source.crs and units and not units & (_DEGREE_UNITS | _METRE_UNITS):
+        raise Error(f"heights: coordinates in {', '.join(sorted(units))} (convert them to metres, or give transform)")
     for name in ("_FillValue", "missing_value", "nodata"):
         if attrs.get(name) is not None:
             source.nodata = float(np.asarray(attrs[name]).reshape(-1)[0])
@@ -156,7 +162,10 @@ def _map_from_coordinates(data: Any, x: Any, y: Any) -> Optional[tuple[float, ..
             continue
         step = (values[-1] - values[0]) / (len(values) - 1)
         even = values[0] + step * np.arange(len(values))
-        if not (math.isfinite(step) and step != 0 and np.abs(values - even).max() <= _UNEVEN * abs(step)):
+        # Coordinates in float32 are rounded.
+        kind = data.coords[name].dtype
+        rounding = np.finfo(kind).eps * np.abs(values).max() if kind.kind == "f" else 0
+        if not (math.isfinite(step) and step != 0 and np.abs(values - even).max() <= _UNEVEN * abs(step) + rounding):
             raise Error(f"heights: the coordinates of '{name}' are not evenly spaced (interpolate the DataArray first)")
         steps.append((values[0], step))
     if steps[0][1] < 0:

@@ -130,6 +130,9 @@ class Rays(SceneBase):
         """
         if out is not None and not isinstance(out, Hits):
             raise TypeError(f"out: {type(out).__name__} is not a Hits (make room with pyscarp.Hits(shape))")
+        starts = out is not None and out._scene is not None and start is out
+        if out is not None and not starts:
+            out._scene = None  # until all answers are there, no rays may start from them
         if (
             out is not None
             and t_min is None

@@ -183,8 +183,10 @@ def _line(
         if np.ndim(place) != 1 or len(place) not in (2, 3):
             raise Error(f"{name}: {place!r} (expected x, y or x, y, height)")
         col, row = terrain._node(place[0], place[1], coords)
-        if not (0 <= col <= terrain.shape[1] - 1 and 0 <= row <= terrain.shape[0] - 1):
+        if not (-0.5 <= col <= terrain.shape[1] - 0.5 and -0.5 <= row <= terrain.shape[0] - 0.5):
             raise Error(f"{name} {place[0]:.10g},{place[1]:.10g}: is outside the terrain")
+        # Places in the outer half of a border's cell are at the border, as for the command line.
+        col, row = min(max(col, 0), terrain.shape[1] - 1), min(max(row, 0), terrain.shape[0] - 1)
         own = len(place) == 3
         ends += [col, row, number(place[2] if own else height, name), own and heights == "sea"]
         places.append((round(col * 1024) / 1024, round(row * 1024) / 1024))  # as lines of sight round their ends

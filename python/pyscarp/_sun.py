@@ -251,7 +251,7 @@ def horizon(
     if at is not None:
         col, row = terrain._node(at[0], at[1], coords)
         ground = terrain._ground(col, row, max_distance)
-        table = _core.horizon_at(terrain, col, row, (np.radians(degrees) - ground.grid_north).tolist(), *settings)
+        table = _core.horizon_at(terrain, col, row, (np.radians(degrees) - ground.grid_north).tolist(), *settings, *ground.cell)
         if table is None:
             raise Error(f"place {at[0]:.10g},{at[1]:.10g}: is outside the terrain or over a hole")
         elevations = np.degrees(table[:, 0])

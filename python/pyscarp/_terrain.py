@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import os
 from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
@@ -86,6 +87,7 @@ class Terrain(Rays, _core.Terrain):
         self._south_up = source.south_up
         self._plane_error = plane_error
         self._cell_given = cell is not None
+        self._north_given = grid_north is not None
         factor = geo.metres_per_unit(source.unit if unit is None else unit)
         super().__init__(
             array,
@@ -140,7 +142,7 @@ class Terrain(Rays, _core.Terrain):
         self._template = None
         self._south_up = False
         self._plane_error = plane_error
-        self._cell_given = False
+        self._cell_given = self._north_given = False
         _core.Terrain.__init__(
             self, os.fspath(path), band, nodata, geo.crs_text(crs), unit, window, exaggeration, surface, wrap, solid
         )
@@ -265,6 +267,8 @@ class Terrain(Rays, _core.Terrain):
         return self._checked(geo.ground_along(map_from_node, crs, self.shape, start, end))
 
     def _checked(self, ground: geo.Ground) -> geo.Ground:
+        if self._north_given:
+            ground = dataclasses.replace(ground, grid_north=self._georeference[3])
         if ground.error_cells > self._plane_error:
             raise Error(
                 f"samples are up to {ground.error_cells:.2g} cells off the metric plane, limit {self._plane_error} "
@@ -398,12 +402,15 @@ class Terrain(Rays, _core.Terrain):
         present, map_from_node, crs, north = self._georeference
         settings = self._settings
         arguments = (array, self._south_up, *settings, tuple(map_from_node) if present else None, crs, north)
-        return _rebuilt, (arguments, self._template, self._south_up, self._plane_error, self._cell_given)
+        return _rebuilt, (arguments, self._template, self._south_up, self._plane_error, self._cell_given, self._north_given)
 
-    def _repr_png_(self) -> bytes:
+    def _repr_png_(self) -> Optional[bytes]:
         from ._picture import png, render
 
-        return png(render(self, (640, 360)))
+        try:
+            return png(render(self, (640, 360)))
+        except Error:
+            return None  # nothing to draw, for example only nodata: notebooks show the text
 
     def __repr__(self) -> str:
         if "_token" not in self.__dict__:
@@ -418,7 +425,7 @@ class Terrain(Rays, _core.Terrain):
 
 
 def _rebuilt(
-    arguments: tuple[Any, ...], template: Any, south_up: bool, plane_error: float, cell_given: bool
+    arguments: tuple[Any, ...], template: Any, south_up: bool, plane_error: float, cell_given: bool, north_given: bool
 ) -> Terrain:
     """Returns the terrain of a pickle or a copy; a copy is over the same array."""
     terrain = Terrain.__new__(Terrain)
@@ -426,6 +433,7 @@ def _rebuilt(
     terrain._south_up = south_up
     terrain._plane_error = plane_error
     terrain._cell_given = cell_given
+    terrain._north_given = north_given
     array, *others = arguments
     # Arrays that came over a network may lie at any address.
     _core.Terrain.__init__(terrain, np.require(array, requirements="A"), *others)
@@ -459,10 +467,12 @@ def _samples(heights: Any, nodata: Optional[float], copy: bool) -> tuple[np.ndar
                     "heights: a masked array keeps its holes apart (pass copy=True, or heights.filled(value) "
                     "and nodata=value)"
                 )
-            if heights.dtype.kind == "f":
-                heights = heights.filled(np.nan)
+            if heights.dtype.kind == "f" or nodata is None:
+                # Integers have no value that is certainly none of theirs.
+                heights = heights.astype(np.result_type(heights.dtype, np.float32)).filled(np.nan)
             else:
-                nodata = float(heights.fill_value) if nodata is None else nodata
+                if not (nodata == int(nodata) and np.can_cast(np.min_scalar_type(int(nodata)), heights.dtype)):
+                    raise Error(f"nodata: {nodata:g} is not a value of {heights.dtype} (choose another one)")
                 heights = heights.filled(int(nodata))
         heights = np.asarray(heights.data if isinstance(heights, np.ma.MaskedArray) else heights)
     return (_converted(heights, nodata) if copy else heights), nodata

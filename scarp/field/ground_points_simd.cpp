@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::ScalableTag<double> dd;
 constexpr hn::Rebind<std::int32_t, decltype(dd)> di;
 constexpr hn::Rebind<float, decltype(dd)> df;
-constexpr hn::Rebind<std::int64_t, decltype(dd)> dl;
+[[maybe_unused]] constexpr hn::Rebind<std::int64_t, decltype(dd)> dl;  // only with gathers
 using VD = hn::Vec<decltype(dd)>;
 using VI = hn::Vec<decltype(di)>;
 using MD = hn::Mask<decltype(dd)>;

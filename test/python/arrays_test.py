@@ -90,9 +90,7 @@ def test_masked_arrays_need_a_copy():
     with pytest.raises(TypeError, match="masked"):
         Terrain(masked, cell=1)
     assert np.array_equal(np.isnan(Terrain(masked, cell=1, copy=True).heights), np.eye(3, dtype=bool))
-    whole = Terrain(
-        np.ma.masked_array(np.ones((3, 3), np.int16), np.eye(3, dtype=bool), fill_value=-9), cell=1, copy=True
-    )
+    whole = Terrain(np.ma.masked_array(np.ones((3, 3), np.int16), np.eye(3, dtype=bool)), cell=1, nodata=-9, copy=True)
     assert whole.heights[0].tolist() == [-9, 1, 1] and whole.range == (1, 1)
 
 
@@ -202,3 +200,19 @@ def test_edits_count_rows_of_the_array():
     terrain.cast([2, 1, 5], [0, 0, -1])
     terrain.edit(7, rows=slice(1, 2), cols=slice(2, 3))
     assert terrain.cast([2, 1, 50], [0, 0, -1]).t == 43 and terrain.heights_at(2, 1) == 7
+
+
+def test_rows_that_are_one_memory_are_refused():
+    row = np.arange(5, dtype=np.float32)
+    with pytest.raises(Error, match="all rows are the same memory"):
+        Terrain(np.broadcast_to(row, (4, 5)), cell=1)
+    copied = Terrain(np.broadcast_to(row, (4, 5)), cell=1, copy=True)
+    assert copied.heights.tolist() == [row.tolist()] * 4
+
+
+def test_masked_integers_are_holes_whatever_their_fill():
+    heights = np.ma.masked_array(np.full((3, 3), 16959, np.int16), np.eye(3, dtype=bool))
+    terrain = Terrain(heights, cell=1, copy=True)  # NumPy's own fill, 999999, would be 16959 in 16 bits
+    assert np.isnan(np.diag(terrain.heights)).all() and terrain.range == (16959, 16959)
+    with pytest.raises(Error, match="nodata: 70000 is not a value of int16"):
+        Terrain(heights, cell=1, nodata=70000, copy=True)

@@ -308,3 +308,65 @@ def test_suns_equal_those_of_the_command_line(dem, tmp_path, scarp_program):
         pyscarp.shadow(terrain, time="2026-12-21T00:00Z", sun_per_cell=True)
     with pytest.raises(Error, match="needs a CRS"):
         pyscarp.shadow(Terrain(hills(9, 9), cell=1), (135, 20), sun_per_cell=True)
+
+
+def test_coordinates_in_float32_are_even_enough():
+    # A second of arc at 10 degrees east.
+    x, y = (np.float32(10) + np.arange(60) / 3600).astype(np.float32), (45 - np.arange(50) / 3600).astype(np.float32)
+    data = xarray.DataArray(hills(50, 60), dims=("lat", "lon"), coords={"lat": y, "lon": x})
+    assert np.allclose(Terrain(data).cell, (21.9, 30.9), rtol=0.01) if HAS_FILES else Terrain(data, cell=30)
+
+
+def test_units_of_coordinates_count():
+    def of(units, step):
+        data = data_array(hills(20, 30), 10, 45, step, crs=None)
+        for name in ("x", "y"):
+            data.coords[name].attrs["units"] = units
+        return data
+
+    if HAS_FILES:
+        assert np.allclose(Terrain(of("degrees_east", 1 / 3600)).cell, (21.9, 30.9), rtol=0.01)
+    assert Terrain(of("m", 30)).cell == (30, 30)
+    with pytest.raises(Error, match="coordinates in km"):
+        Terrain(of("km", 0.03))
+
+
+@needs_files
+def test_horizons_at_a_place_have_its_cells_and_north(tmp_path):
+    # 8 degrees of latitude: cells at the north are far narrower than at the centre.
+    heights = np.zeros((81, 81), np.float32)
+    heights[:, 45] = 3000
+    terrain = Terrain(
+        xarray.DataArray(
+            heights, dims=("lat", "lon"), coords={"lat": 60 - 0.1 * np.arange(81), "lon": 10 + 0.1 * np.arange(81)}
+        )
+    )
+    for row in (5, 75):
+        lat = 60 - 0.1 * row
+        _, elevation = pyscarp.horizon(terrain, [90], at=(14.3, lat), coords="lonlat", max_distance=30_000, cc=0)
+        # Two columns away, on the ellipsoid's parallel.
+        a, f = 6378137, 1 / 298.257223563
+        e2 = f * (2 - f)
+        radius = a * np.cos(np.radians(lat)) / np.sqrt(1 - e2 * np.sin(np.radians(lat)) ** 2)
+        assert np.isclose(elevation[0], np.degrees(np.arctan(3000 / (radius * np.radians(0.2)))), rtol=1e-4)
+
+
+@needs_files
+def test_a_given_north_counts_everywhere():
+    data = data_array(hills(60, 60), x0=300_000)
+    terrain = Terrain(data, grid_north=30)
+    place = terrain.to_map(*terrain.to_local(300_900, 5_199_100))
+    at = pyscarp.horizon(terrain, [75], at=place)[1][0]
+    plain = Terrain(np.asarray(data.values), cell=terrain.cell, grid_north=30)
+    assert np.isclose(at, pyscarp.horizon(plain, [75], at=terrain.to_local(*place), coords="local")[1][0], rtol=1e-4)
+
+
+@needs_files
+def test_border_samples_are_inside():
+    rng = np.random.default_rng(1)
+    for _ in range(40):
+        x0, y0, step = rng.uniform(3e5, 7e5), rng.uniform(4e6, 6e6), rng.uniform(1, 90)
+        terrain = Terrain(data_array(hills(20, 30), x0, y0, step))
+        corners = [terrain.to_map(c * terrain.cell[0], r * terrain.cell[1]) for c in (0, 29) for r in (0, 19)]
+        for corner in corners:
+            assert pyscarp.line_of_sight(terrain, corner, corners[0] if corner != corners[0] else corners[1]) is not None

@@ -182,3 +182,31 @@ def test_terrains_do_not_leak():
         round_trip()
     # A leaked map has 90 kB, a leaked terrain a pyramid of 60 kB.
     assert resident() - before < 60 * 30_000
+
+
+def test_callbacks_may_run_tasks_of_their_own(large):
+    small = Terrain(hills(40, 40), cell=10)
+    refused = []
+
+    def nested(fraction):
+        pyscarp.horizon(small, 4, progress=lambda f: None)
+        with pytest.raises(Error, match="cannot edit"):
+            large.edit(5, slice(0, 2), slice(0, 2))
+        refused.append(fraction)
+
+    pyscarp.horizon(large, 40, progress=nested)
+    assert refused
+
+
+def test_a_false_of_numpy_stops_a_task(large):
+    with pytest.raises(pyscarp.Interrupted if hasattr(pyscarp, "Interrupted") else Error):
+        long_task(large, progress=lambda fraction: np.bool_(False))
+
+
+def test_ctrl_c_stops_all_hits(large, interruptible):
+    rays = (3_000_000, 3)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        large.all_hits(np.broadcast_to(np.array([10.0, 10.0, 150.0]), rays), np.broadcast_to(np.array([1.0, 0.7, 0.001]), rays))
+    assert timer.finished.is_set()
