@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "scarp/base/ellipsoid.h"
 #include "scarp/base/error.h"
@@ -202,6 +203,13 @@ GroundScale GroundScales::at(double x, double y) const {
   throw Error("the coordinate reference system is neither geographic nor projected (choose another with --crs)");
 }
 
-GroundScale ground_scale_at(const std::string& crs, double x, double y) { return GroundScales(crs).at(x, y); }
+std::shared_ptr<const GroundScales> ground_scales_of(const std::string& crs) {
+  // To read a CRS costs milliseconds, and most programs have one.
+  thread_local std::pair<std::string, std::shared_ptr<const GroundScales>> last;
+  if (!last.second || last.first != crs) last = {crs, std::make_shared<const GroundScales>(crs)};
+  return last.second;
+}
+
+GroundScale ground_scale_at(const std::string& crs, double x, double y) { return ground_scales_of(crs)->at(x, y); }
 
 }  // namespace scarp

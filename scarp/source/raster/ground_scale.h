@@ -46,6 +46,10 @@ class GroundScales {
   std::unique_ptr<Crs> crs_;
 };
 
+/// Returns the ground scales of a CRS, those of the last call of this thread if it asked for the same; only for this
+/// thread. Throws Error as the constructor.
+std::shared_ptr<const GroundScales> ground_scales_of(const std::string& crs);
+
 /// Returns the ground scale at one point, as GroundScales::at().
 GroundScale ground_scale_at(const std::string& crs, double x, double y);
 

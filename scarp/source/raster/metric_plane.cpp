@@ -131,9 +131,10 @@ bool is_geographic(const Georeference& georeference) {
 }
 
 struct MetricPlanes::Ground {
-  Ground(const Georeference& geo, const OGRSpatialReference& crs) : scales(geo.crs_wkt), positions(geo, crs) {}
+  Ground(const Georeference& geo, const OGRSpatialReference& crs)
+      : scales(ground_scales_of(geo.crs_wkt)), positions(geo, crs) {}
 
-  GroundScales scales;
+  std::shared_ptr<const GroundScales> scales;
   Positions positions;
 };
 
@@ -148,7 +149,7 @@ MetricPlanes::~MetricPlanes() = default;
 
 MetricPlane MetricPlanes::local(const dvec2& at) const {
   const auto& m = georeference_.map_from_node;
-  const GroundScale scale = ground_->scales.at(m[0] + at.x * m[1], m[3] + at.y * m[5]);
+  const GroundScale scale = ground_->scales->at(m[0] + at.x * m[1], m[3] + at.y * m[5]);
   return {scale.metres_per_x * m[1], scale.metres_per_y * -m[5], scale.grid_north_azimuth, 0};
 }
 
