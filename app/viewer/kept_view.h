@@ -21,7 +21,7 @@ struct KeptView {
 };
 
 /// The file of these inputs, named after the first one and the paths of all; empty if there is no settings folder, or
-/// an input is no file.
+/// an input is something else than a file.
 std::string view_file(const std::string& settings_file, const std::vector<std::string>& inputs);
 /// Reads the file; lines that are wrong have no effect.
 KeptView read_view(const std::string& file);

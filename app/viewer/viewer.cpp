@@ -85,7 +85,7 @@ void Viewer::show_first_view(std::unique_ptr<Subject> subject) {
 
 std::string Viewer::kept_file() const { return view_file(settings_file(), subject_->opening().options->inputs); }
 
-// What the last window on this input showed, unless a view was asked for.
+// Shows what the last window on this input showed, unless a view was asked for.
 void Viewer::restore_view() {
   const KeptView kept = read_view(kept_file());
   const double exaggeration = subject_->prepared().exaggeration();

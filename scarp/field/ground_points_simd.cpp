@@ -151,7 +151,7 @@ HWY_INLINE void store_normals(const FieldVectors& f, const Corners& h, VD u, VD 
 
 template <class T>
 HWY_INLINE MD is_nodata(const SampleGrid<T>& grid, VD sample) {
-  return hn::Or(hn::Eq(sample, hn::Set(dd, static_cast<double>(grid.nodata))), hn::Ne(sample, sample));
+  return hn::Or(hn::Eq(sample, hn::Set(dd, static_cast<double>(grid.nodata))), hn::IsNaN(sample));
 }
 
 template <class T, bool holes, bool with_normals>

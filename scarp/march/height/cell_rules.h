@@ -169,7 +169,8 @@ class CellRules : public WalkRay<T, Holes, Wraps, ask> {
     if constexpr (ask == Ask::any) return true;
     answer_.t = t;
     answer_.cell = {col_, row_};
-    assert(bisects() || rim(grid_ray()).is_height_of_ground(t, wall));
+    // Callers may claim that a ray starts on a surface that is elsewhere.
+    assert(bisects() || strict_ || rim(grid_ray()).is_height_of_ground(t, wall));
     answer_.u = place ? place->x : x_.place(t, col_);
     answer_.v = place ? place->y : y_.place(t, row_);
     answer_.height = ground_.metres(ray_height(t));
