@@ -431,8 +431,8 @@ TEST_F(WithoutEffect, IsRejectedForLooks) {
       EXPECT_TRUE(picture(look, c.options, c.others) != without[key]) << what;
     }
   }
-  // A new option must be listed here with the looks that read it.
-  const Names of_all = {"--size", "--look", "--no-plinth", "--lowres", "--reach"};
+  // A new option must be listed above with the looks that read it, or here: of all looks, or of scene files only.
+  const Names of_all = {"--size", "--look", "--no-plinth", "--lowres", "--reach", "--no-water"};
   using cli::Topic;
   for (const auto& [topic, options] : cli::options_by_topic(render)) {
     const Topic all[] = {Topic::picture, Topic::light, Topic::ground, Topic::water, Topic::fog, Topic::comanche};

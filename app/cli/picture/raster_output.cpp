@@ -60,7 +60,7 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
   command.add(&options.part, {.names = "--part",
                               .value = "I/N",
                               .help = "part I of N of the output, as a separate raster (scarp merge joins them)",
-                              .note = "bands of rows, from north to south; auto, auto/N: the task of a job array",
+                              .note = "rows from north to south; auto, auto/N: of a job array",
                               .fallback = "all",
                               .common = true,
                               .excludes = excludes});
