@@ -47,7 +47,7 @@ ivec3 normal_of(VoxelFace face) {
 // perpendicular to the vector.
 VoxelTies::VoxelTies(const glm::dmat3& grid_from_world, VoxelTies frame) {
   static const std::array<double, 3> by_rank{1.0, std::cbrt(0.5), std::cbrt(0.25)};
-  dvec3 upwards;
+  dvec3 upwards{0.0};
   for (int axis = 0; axis < 3; ++axis)
     upwards[axis] = frame.up(axis) * by_rank[static_cast<std::size_t>(frame.rank(axis))];
   const dvec3 parts = grid_from_world * upwards;
