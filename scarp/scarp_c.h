@@ -16,7 +16,8 @@
 // then. No C++ exception leaves a function. Pointers must not be NULL unless stated. Any number of threads may query a
 // scene at once, but not while it is edited; scarp_live supports both at once.
 //
-// Lengths, coordinates of placements and scales are at most 1e30, and scales and sides at least 1e-30.
+// Lengths, coordinates of placements and scales are at most 1e30, and scales and sides at least 1e-30, because boxes of
+// scenes are compared in floats, whose largest value is 3e38.
 //
 // Structures with `struct_size` may grow at their end: set it to the size of the structure. Members that are 0 have
 // their default. All other structures keep their layout.

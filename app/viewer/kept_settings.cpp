@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/viewer/kept_settings.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -37,14 +39,18 @@ KeptSettings read_settings(const std::string& file) {
   return settings;
 }
 
-bool write_settings(const std::string& file, const KeptSettings& settings) {
+bool write_kept(const std::string& file, const std::string& text) {
   if (file.empty()) return false;
   std::error_code none;
   std::filesystem::create_directories(std::filesystem::path(file).parent_path(), none);
   std::ofstream out(file);
-  out << "size " << settings.width << ' ' << settings.height << "\npanel " << settings.panel << '\n';
+  out << text;
   out.close();
   return static_cast<bool>(out);
+}
+
+bool write_settings(const std::string& file, const KeptSettings& settings) {
+  return write_kept(file, fmt::format("size {} {}\npanel {:d}\n", settings.width, settings.height, settings.panel));
 }
 
 }  // namespace scarp::viewer

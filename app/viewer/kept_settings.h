@@ -15,6 +15,8 @@ struct KeptSettings {
 std::string settings_file();
 /// Reads the file; keeps the defaults for everything missing or wrong.
 KeptSettings read_settings(const std::string& file);
+/// Writes a text, and the folders of the file if they are missing. Returns false if that fails.
+bool write_kept(const std::string& file, const std::string& text);
 /// Returns false if the file cannot be written.
 bool write_settings(const std::string& file, const KeptSettings& settings);
 

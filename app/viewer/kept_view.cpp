@@ -10,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "app/viewer/kept_settings.h"
+
 namespace scarp::viewer {
 namespace {
 
@@ -77,20 +79,16 @@ KeptView read_view(const std::string& file) {
 }
 
 bool write_view(const std::string& file, const KeptView& view) {
-  if (file.empty()) return false;
-  std::error_code none;
-  std::filesystem::create_directories(std::filesystem::path(file).parent_path(), none);
-  std::ofstream out(file);
-  if (view.pose) out << "view " << text_of(*view.pose) << '\n';
+  std::string text;
+  if (view.pose) text += fmt::format("view {}\n", text_of(*view.pose));
   for (std::size_t i = 0; i < view.bookmarks.size(); ++i) {
-    if (view.bookmarks[i]) out << "bookmark " << i + 1 << ' ' << text_of(*view.bookmarks[i]) << '\n';
+    if (view.bookmarks[i]) text += fmt::format("bookmark {} {}\n", i + 1, text_of(*view.bookmarks[i]));
   }
   if (view.line) {
     const auto& [from, to] = *view.line;
-    out << fmt::format("line {} {} {} {} {} {}\n", from.x, from.y, from.z, to.x, to.y, to.z);
+    text += fmt::format("line {} {} {} {} {} {}\n", from.x, from.y, from.z, to.x, to.y, to.z);
   }
-  out.close();
-  return static_cast<bool>(out);
+  return write_kept(file, text);
 }
 
 }  // namespace scarp::viewer

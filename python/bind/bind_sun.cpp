@@ -60,21 +60,29 @@ std::vector<Shade> with_nodata(std::vector<Shade> shades) {
   return shades;
 }
 
+// Shares of light in [0, 1], or codes, by functions of the field, a band and the progress.
+template <class Shares, class Codes>
+py::array light_map(const TerrainObject& terrain, bool fraction, const RowPair& rows, const py::object& progress,
+                    const Shares& shares, const Codes& codes) {
+  const auto shape = shape_of(terrain, {rows.first, rows.second});
+  if (fraction)
+    return handed_over<float>(
+        map_of(terrain, rows, progress, [&](const auto&... asked) { return with_nan(shares(asked...)); }), shape);
+  return handed_over<std::uint8_t>(
+      map_of(terrain, rows, progress, [&](const auto&... asked) { return with_nodata(codes(asked...)); }), shape);
+}
+
 py::array shadow_map(const TerrainObject& terrain, double azimuth, double altitude, bool fraction, const RowPair& rows,
                      const py::object& progress) {
   const SunDirection sun{azimuth, altitude};
-  const auto shape = shape_of(terrain, {rows.first, rows.second});
-  if (fraction)
-    return handed_over<float>(map_of(terrain, rows, progress,
-                                     [&](const HeightField& field, const RowBand& band, const Progress& report) {
-                                       return with_nan(lit_share(field, sun, band, report));
-                                     }),
-                              shape);
-  return handed_over<std::uint8_t>(map_of(terrain, rows, progress,
-                                          [&](const HeightField& field, const RowBand& band, const Progress& report) {
-                                            return with_nodata(shadow_rows(field, sun, band, report));
-                                          }),
-                                   shape);
+  return light_map(
+      terrain, fraction, rows, progress,
+      [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        return lit_share(field, sun, band, report);
+      },
+      [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        return shadow_rows(field, sun, band, report);
+      });
 }
 
 #if defined(SCARP_ERFA) && defined(SCARP_PYTHON_FILES)
@@ -90,18 +98,14 @@ py::array local_shadow_map(const TerrainObject& terrain, const std::optional<std
   } else {
     sun.fixed = SunDirection{azimuth, altitude};
   }
-  const auto shape = shape_of(terrain, {rows.first, rows.second});
-  if (fraction)
-    return handed_over<float>(map_of(terrain, rows, progress,
-                                     [&](const HeightField& field, const RowBand& band, const Progress& report) {
-                                       return with_nan(local_lit_share(field, sun, band, report));
-                                     }),
-                              shape);
-  return handed_over<std::uint8_t>(map_of(terrain, rows, progress,
-                                          [&](const HeightField& field, const RowBand& band, const Progress& report) {
-                                            return with_nodata(local_shadow(field, sun, band, report));
-                                          }),
-                                   shape);
+  return light_map(
+      terrain, fraction, rows, progress,
+      [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        return local_lit_share(field, sun, band, report);
+      },
+      [&](const HeightField& field, const RowBand& band, const Progress& report) {
+        return local_shadow(field, sun, band, report);
+      });
 }
 #endif
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/c/scene_handle.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -85,7 +87,7 @@ Placement placement_from(const scarp_part& part) {
 void require_reach(const Placement& placement) {
   const dvec3 far = glm::abs(placement.origin);
   if (!(std::max({far.x, far.y, far.z, placement.scale, 1 / placement.scale}) <= kReach))
-    throw Error("part: its origin or scale is beyond 1e30, or not a number");
+    throw Error(fmt::format("part: its origin or scale is beyond {}, or not a number", kReach));
 }
 
 ScenePart part_from(const scarp_part& part) {

@@ -26,14 +26,14 @@ inline bool flag(std::int32_t value, const char* name) {
 inline double or_one(double value, const char* name) {
   if (value == 0) return 1;
   if (!(value >= 1 / kReach && value <= kReach))
-    throw Error(fmt::format("{} is {} (must be 1e-30..1e30, or 0 for 1)", name, value));
+    throw Error(fmt::format("{} is {} (must be {}..{}, or 0 for 1)", name, value, 1 / kReach, kReach));
   return value;
 }
 
 template <class Given>
 HeightFieldSettings ground_from(const Given& given) {
   if (!(std::abs(given.offset) <= kReach))
-    throw Error(fmt::format("heights: offset is {} (must be within 1e30)", given.offset));
+    throw Error(fmt::format("heights: offset is {} (must be within {})", given.offset, kReach));
   HeightFieldSettings settings{.cell_x = or_one(given.cell_x, "heights: cell_x"),
                                .cell_y = or_one(given.cell_y, "heights: cell_y"),
                                .scale = or_one(given.scale, "heights: scale"),

@@ -117,11 +117,12 @@ std::string difference(const Part& a, const Part& b) {
       return "it has other options, or its input had another size or time (compute it again)";
     return fmt::format("{} '{}' instead of '{}'", y.first.empty() ? x.first : y.first, y.second, x.second);
   }
-  // Rounding of the first row moves it by less than a thousandth of a cell.
+  // Text formats keep ten digits of coordinates: millimetres below 10^7 m, a thousandth of cells of a metre.
+  constexpr double kSamePlace = 1e-3;  // cells
   const std::array<double, 6> cell{a.transform[1], a.transform[1], a.transform[5],
                                    a.transform[5], a.transform[5], a.transform[5]};
   for (std::size_t i = 0; i < cell.size(); ++i)
-    if (!(std::abs(a.transform[i] - b.transform[i]) <= 1e-3 * std::abs(cell[i]))) return "it is at another place";
+    if (!(std::abs(a.transform[i] - b.transform[i]) <= kSamePlace * std::abs(cell[i]))) return "it is at another place";
   return {};
 }
 

@@ -411,10 +411,15 @@ TEST(C, TilesAnswerAsOneField) {
     EXPECT_EQ(hit.status == SCARP_HIT, whole.status == SCARP_HIT);
     if (hit.status != SCARP_HIT || whole.status != SCARP_HIT) continue;
     ++hits;
-    EXPECT_NEAR(hit.t, whole.t, 1e-12 * std::max(1.0, whole.t));
     scarp_surface surface{};
     surface.struct_size = sizeof surface;
     EXPECT_EQ(scarp_surface_at(scene.get(), &ray, &hit, &surface), SCARP_OK) << scarp_last_error();
+    // In frames of their own, tiles round coordinates below 256 m some tens of times; a ray that grazes the ground
+    // moves along it by more.
+    constexpr double kRoundings = 64 * 256 * 0x1p-53;
+    double across = 0;  // of the ray, towards the ground, per unit of t
+    for (int axis = 0; axis < 3; ++axis) across += ray.direction[axis] * surface.normal[axis];
+    EXPECT_LE(std::abs(hit.t - whole.t) * std::abs(across), kRoundings);
     hit.part = 2;
     EXPECT_EQ(scarp_surface_at(scene.get(), &ray, &hit, &surface), SCARP_REFUSED);
   }
