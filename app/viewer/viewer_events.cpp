@@ -111,6 +111,7 @@ void Viewer::measure(const dvec3& point) {
   measure(*line_from_, point);
   line_from_.reset();
   panel_.measures = false;
+  panel_.message = {};
   worked_ = true;
 }
 
