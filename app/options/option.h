@@ -106,7 +106,8 @@ struct Option {
   std::vector<std::string> choices{};   ///< allowed words; checked if `closed`
   bool closed = false;                  ///< no other words than `choices`
   bool unlisted = false;                ///< `choices` are too many for the help; only completion lists them
-  std::string files{};                  ///< extensions of files for completion, "png exr"; "*": any file
+  std::string files{};                  ///< extensions of files, "png exr"; "*": any file
+  bool writes = false;                  ///< the files are written, not read
   std::string note{};                   ///< further details: "0: none"
   bool repeats = false;                 ///< for several values: one per mention; otherwise any number
   std::string fallback{};               ///< the default in words; empty: the value of the variable

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -139,6 +140,42 @@ TEST(Help, ListsEveryOptionAndTopic) {
   // Regardless of other options.
   EXPECT_EQ(run({"render", "--watr", "3", "--fov", "x", "--help", "fog"}).status, 0);
   EXPECT_EQ(run({"--help", "cast"}).out, run({"cast", "--help"}).out);
+}
+
+// Forms, such as those of the plugin of QGIS, are built from this.
+TEST(Options, AreDescribedAsJson) {
+  const auto all = nlohmann::json::parse(run({"options", "--json"}).out);
+  ASSERT_EQ(all["subcommands"].size(), declared().commands().size());
+  std::map<std::string, int> kinds;
+  for (std::size_t i = 0; i < declared().commands().size(); ++i) {
+    const cli::Command& command = *declared().commands()[i];
+    const auto& described = all["subcommands"][i];
+    EXPECT_EQ(described["name"], command.name());
+    ASSERT_EQ(described["options"].size(), command.options().size());
+    for (const auto& one : described["options"]) {
+      const cli::Declared& option = *command.find(std::string(one["name"]));
+      EXPECT_EQ(one["help"], option.meaning());
+      EXPECT_EQ(one["default"], option.default_text);
+      EXPECT_EQ(one["restrictions"], option.restrictions());
+      EXPECT_EQ(one["kind"] == "flag", option.flag()) << option.name;
+      ++kinds[std::string(one["kind"])];
+      // A value that is accepted as a number is in the range described.
+      const bool number = one["kind"] == "number" || one["kind"] == "integer";
+      for (const char* bound : {"least", "most"}) {
+        if (!number || !one["range"].contains(bound)) continue;
+        const double limit = one["range"][bound];
+        const std::string beyond = fmt::format("{}", limit + (*bound == 'l' ? -1 : 1));
+        EXPECT_THROW(cli::set_value(option, beyond), cli::WrongUsage) << option.name << " " << beyond;
+      }
+      // Every output is a file that is written, and no input is.
+      if (option.name == "--output" || option.name == "--preview") {
+        EXPECT_TRUE(one["writes"]) << command.name();
+      } else if (option.positional() || option.name == "--observers") {
+        EXPECT_FALSE(one["writes"]) << command.name();
+      }
+    }
+  }
+  for (const char* kind : {"flag", "integer", "number", "text"}) EXPECT_GT(kinds[kind], 10) << kind;
 }
 
 // No value is dropped in favour of another: an option of each type of variable.

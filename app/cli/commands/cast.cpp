@@ -440,6 +440,7 @@ void add_cast(Program& program) {
                            .value = "FILE",
                            .help = "table of the steps of each ray's march: .csv",
                            .files = "csv",
+                           .writes = true,
                            .fallback = "none",
                            .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree",
                                       "marches of scenes have several objects"},

@@ -14,6 +14,9 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
 
 /// doc/user/options.md.
 std::string options_markdown(const Program& program);
+/// The subcommands and their options as one JSON object, for programs that build forms: their names, texts, kinds of
+/// values, ranges, choices, files and restrictions.
+std::string options_json(const Program& program);
 /// scarp(1), and scarp-COMMAND(1) of a subcommand.
 std::string man_page(const Program& program);
 std::string man_page(const Command& command);

@@ -38,15 +38,17 @@ void write_share(const Program& program, const fs::path& share) {
 void add_options(Program& program) {
   Command& command = program.add("options", "Write the documents generated from the options", true);
   struct OptionsOptions {
-    bool markdown = false;
+    bool markdown = false, json = false;
     std::string share;
   };
   const auto options = std::make_shared<OptionsOptions>();
   command.add(&options->markdown, {.names = "--markdown", .help = "doc/user/options.md to standard output"});
+  command.add(&options->json, {.names = "--json", .help = "every subcommand and option, as JSON, to standard output"});
   command.add(&options->share,
               {.names = "--share", .value = "FOLDER", .help = "completion scripts and man pages below FOLDER"});
   command.runs([options, &program] {
     if (options->markdown) fmt::print("{}", options_markdown(program));
+    if (options->json) fmt::print("{}", options_json(program));
     if (!options->share.empty()) write_share(program, options->share);
   });
 }

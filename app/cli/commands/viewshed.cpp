@@ -554,6 +554,7 @@ void add_viewshed(Program& program) {
                            .value = "FILE",
                            .help = "table of the area that each observer sees",
                            .files = "csv",
+                           .writes = true,
                            .fallback = "none",
                            .common = true});
   command.add(&o.each, {.names = "--per-observer",

@@ -13,6 +13,7 @@ void add_output_option(Command& command, std::string& output, const std::string&
                         .value = "FILE",
                         .help = help,
                         .files = files,
+                        .writes = true,
                         .fallback = fallback,
                         .common = true,
                         .required = fallback.empty()});

@@ -14,7 +14,8 @@ Command& declare_view(Program& program, ViewOptions& o) {
     option.topic = Topic::window;
     command.add(std::move(to), std::move(option));
   };
-  add(&o.record, {.names = "--record", .value = "FILE", .help = "file to record input events in", .files = "*"});
+  add(&o.record,
+      {.names = "--record", .value = "FILE", .help = "file to record input events in", .files = "*", .writes = true});
   add(&o.play, {.names = "--play",
                 .value = "FILE",
                 .help = "recording to play at 60 steps per recorded second; then the window closes",
@@ -24,9 +25,13 @@ Command& declare_view(Program& program, ViewOptions& o) {
                       .value = "FILE",
                       .help = "PNG screenshot, taken when the last view of --play is complete",
                       .files = "png",
+                      .writes = true,
                       .rules = {needs("--play FILE", [&o] { return !o.play.empty(); })}});
-  add(&o.timings,
-      {.names = "--timings", .value = "FILE", .help = "table of event and picture-presentation times", .files = "csv"});
+  add(&o.timings, {.names = "--timings",
+                   .value = "FILE",
+                   .help = "table of event and picture-presentation times",
+                   .files = "csv",
+                   .writes = true});
   add(&o.window_device, {.names = "--window-device",
                          .value = "NAME",
                          .help = "Vulkan device that shows the window: auto or part of a name",

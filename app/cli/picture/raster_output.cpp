@@ -71,6 +71,7 @@ void add_raster_output_options(Command& command, RasterOutput& options, const st
                                  .value = "FILE",
                                  .help = "picture of the first band over the shaded model, with a legend",
                                  .files = "png jpg pdf",
+                                 .writes = true,
                                  .fallback = "none",
                                  .common = true,
                                  .excludes = excludes});
