@@ -9,6 +9,9 @@ import pytest
 
 import pyscarp
 
+# A program, which QGIS's interpreter runs.
+collect_ignore = ["qgis_script.py"]
+
 hypothesis.settings.register_profile("fixed", derandomize=True, max_examples=40, deadline=None, database=None)
 hypothesis.settings.load_profile("fixed")
 
