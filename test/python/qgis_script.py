@@ -101,6 +101,7 @@ found = {
         algorithm.name(): {one.name(): one.help() for one in algorithm.parameterDefinitions()}
         for algorithm in provider.algorithms()
     },
+    "layers": {one.name(): one.parameterDefinition("OUTPUT").description() for one in provider.algorithms()},
     "runs": [ran(*one) for one in asked.get("runs", [])],
     "cancel": [cancelled(*one) for one in asked.get("cancel", [])],
     "styles": [drawn(*one) for one in asked.get("styles", [])],

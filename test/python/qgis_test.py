@@ -223,6 +223,7 @@ def test_algorithms_are_those_of_the_program(answer, declared):
     assert set(answer["algorithms"]) == set(offered)
     for name, form in offered.items():
         assert answer["algorithms"][name] == {forms.parameter_name(o): forms.hint(o) for o in form.options}
+    assert answer["layers"]["viewshed"] == "Viewshed" and answer["layers"]["horizonatpoints"] == "Horizon at points"
 
 
 @pytest.mark.parametrize("index", range(len(CASES)))

@@ -77,6 +77,7 @@ class Algorithm(QgsProcessingAlgorithm):
         if option["name"] != "--output":
             filters = ";;".join(f"{one.upper()} (*.{one})" for one in option["files"])
             return QgsProcessingParameterFileDestination(name, text, filters, None, True, False)
+        text = self._form.title  # the name of the layer, too
         files = self._form.output_files
         if set(files) & set(RASTERS):
             return QgsProcessingParameterRasterDestination(name, text)

@@ -72,7 +72,7 @@ def label(option):
     """Returns the text beside the field: "Maximum distance of targets in metres (unlimited)"."""
     text = option["help"].split("; ")[0]
     default = f" ({option['default']})" if option["default"] else ""
-    name = "" if option["positional"] or option["name"] == "--output" else f" [{option['name']}]"
+    name = "" if option["positional"] else f" [{option['name']}]"
     return text[0].upper() + text[1:] + default + name
 
 
