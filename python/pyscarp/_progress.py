@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import warnings
 from typing import Callable, Iterator, Optional, Union
 
 #: None: none; True: a bar (tqdm where it is installed); or a function of the fraction done, 0 to 1, which may return
@@ -23,7 +24,9 @@ def reporting(progress: Progress) -> Iterator[Optional[Callable[[float], Optiona
         yield progress
     else:
         try:
-            from tqdm.auto import tqdm  # type: ignore[import]
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # notebooks without widgets show its bar as text
+                from tqdm.auto import tqdm  # type: ignore[import]
         except ImportError:
             yield _percent
             return

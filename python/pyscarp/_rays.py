@@ -225,6 +225,16 @@ class Rays(SceneBase):
         self._heights_at(np.ascontiguousarray(xs), np.ascontiguousarray(ys), out)
         return out
 
+    def _repr_png_(self) -> Optional[bytes]:
+        """Returns the picture that notebooks show; None if there is nothing to see."""
+        from ._core import Error
+        from ._picture import png, render
+
+        try:
+            return png(render(self, (640, 360)))
+        except Error:
+            return None
+
     def _starts(self, start: Hits, shape: tuple[int, ...]) -> np.ndarray:
         from ._core import Error
 

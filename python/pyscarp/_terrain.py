@@ -404,14 +404,6 @@ class Terrain(Rays, _core.Terrain):
         arguments = (array, self._south_up, *settings, tuple(map_from_node) if present else None, crs, north)
         return _rebuilt, (arguments, self._template, self._south_up, self._plane_error, self._cell_given, self._north_given)
 
-    def _repr_png_(self) -> Optional[bytes]:
-        from ._picture import png, render
-
-        try:
-            return png(render(self, (640, 360)))
-        except Error:
-            return None  # nothing to draw, for example only nodata: notebooks show the text
-
     def __repr__(self) -> str:
         if "_token" not in self.__dict__:
             return "<pyscarp.Terrain, not built>"

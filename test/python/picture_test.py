@@ -60,9 +60,14 @@ def test_pictures_are_those_of_the_command_line(ground, tmp_path, scarp_program)
         assert np.array_equal(pyscarp.render(ten_metres, (160, 90), **settings), wanted), settings
 
 
-def test_notebooks_show_a_terrain(ground):
-    picture = decoded(ground._repr_png_())
-    assert picture.shape == (360, 640, 3) and len(np.unique(picture.reshape(-1, 3), axis=0)) > 100
+def test_notebooks_show_what_there_is_to_see(ground):
+    voxels = pyscarp.Voxels(np.ones((4, 4, 4), np.uint8), palette=[(0, 0, 0), (255, 0, 0)])
+    for scene, colours in (ground, 100), (voxels, 2), (pyscarp.Scene([ground, voxels]), 100):
+        picture = decoded(scene._repr_png_())
+        assert picture.shape == (360, 640, 3) and len(np.unique(picture.reshape(-1, 3), axis=0)) > colours
+    for heights in np.full((5, 5), np.nan, np.float32), np.zeros((1, 5), np.float32):
+        assert pyscarp.Terrain(heights, cell=1)._repr_png_() is None
+    assert pyscarp.Voxels(np.zeros((2, 2, 2), np.uint8))._repr_png_() is None
 
 
 def test_renders_scenes_and_alpha(ground):

@@ -3,6 +3,7 @@
 
 import os
 import signal
+import sys
 import threading
 import time
 
@@ -210,3 +211,14 @@ def test_ctrl_c_stops_all_hits(large, interruptible):
     with pytest.raises(KeyboardInterrupt):
         large.all_hits(np.broadcast_to(np.array([10.0, 10.0, 150.0]), rays), np.broadcast_to(np.array([1.0, 0.7, 0.001]), rays))
     assert timer.finished.is_set()
+
+
+@pytest.mark.parametrize("with_tqdm", [True, False])
+def test_a_bar_shows_progress(large, capfd, monkeypatch, with_tqdm):
+    if with_tqdm:
+        pytest.importorskip("tqdm")
+    else:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    pyscarp.shadow(large, sun=(135, 20), progress=True)
+    shown = capfd.readouterr().err
+    assert ("100%|" if with_tqdm else "\r100 %\n") in shown
