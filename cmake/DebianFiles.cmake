@@ -14,7 +14,7 @@ function(compress)
 endfunction()
 
 string(REGEX MATCH "^[0-9]+\\.[0-9]+" soversion ${CPACK_PACKAGE_VERSION})
-foreach(pair app:scarp dev:libscarp-dev clib:libscarp-c${soversion})
+foreach(pair app:scarp dev:libscarp-dev clib:libscarp-c${soversion} python:python3-pyscarp)
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 group)
   list(GET pair 1 package)

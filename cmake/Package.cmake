@@ -1,5 +1,5 @@
-# Debian packages, made by ./dev package: `scarp`, the command line, `libscarp-dev`, the library with its headers, and
-# `libscarp-c0.1`, the C interface as programs load it.
+# Debian packages, made by ./dev package: `scarp`, the command line, `libscarp-dev`, the library with its headers,
+# `libscarp-c0.1`, the C interface as programs load it, and `python3-pyscarp`, the Python package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Scarp authors <scarp@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray engine for height fields and voxel grids")
@@ -55,6 +55,22 @@ set(CPACK_COMPONENTS_ALL app core files)
 if(SCARP_C)
   list(APPEND CPACK_COMPONENTS_ALL c c_dev)
 endif()
+if(SCARP_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  # The module works in this release of Python only.
+  string(REGEX MATCH "^([0-9]+)[.]([0-9]+)" release ${SCARP_PYTHON_RELEASE})
+  math(EXPR next "${CMAKE_MATCH_2} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pyscarp)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= ${release}~), python3 (<< ${CMAKE_MATCH_1}.${next}), python3-numpy (>= 1:1.20)")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "scarp, python3-xarray, python3-rioxarray, python3-tqdm")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/postinst
+      ${CMAKE_CURRENT_LIST_DIR}/debian/prerm)
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python package: ray queries, viewsheds, shadows, horizons and pictures of
+elevation models and voxels, on NumPy arrays and DataArrays without copies.")
+endif()
 include(CPack)
 cpack_add_component_group(app)
 cpack_add_component_group(dev)
@@ -65,4 +81,8 @@ if(SCARP_C)
   cpack_add_component_group(clib)
   cpack_add_component(c GROUP clib)
   cpack_add_component(c_dev GROUP dev)
+endif()
+if(SCARP_PYTHON)
+  cpack_add_component_group(python)
+  cpack_add_component(python GROUP python)
 endif()
