@@ -20,13 +20,15 @@ def pack(path):
     """Writes the archive, whose one folder QGIS puts among its plugins."""
     folder = os.path.join(HERE, "scarp_qgis")
     files = sorted(name for name in os.listdir(folder) if name.endswith((".py", ".txt")))
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(path, "w") as archive:
         for source in [os.path.join(folder, name) for name in files] + [os.path.join(ROOT, "LICENSE")]:
             with open(source, encoding="utf-8") as file:
                 text = file.read()
             if source.endswith("metadata.txt"):
                 text = text.replace("@VERSION@", version())
-            archive.writestr(zipfile.ZipInfo(f"scarp_qgis/{os.path.basename(source)}"), text)
+            entry = zipfile.ZipInfo(f"scarp_qgis/{os.path.basename(source)}")  # of 1980
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, text, zipfile.ZIP_DEFLATED)
 
 
 if __name__ == "__main__":

@@ -103,6 +103,18 @@ def test_one_line_says_that_the_program_is_missing(tmp_path, monkeypatch):
         program.subcommands(sys.executable)
 
 
+def test_the_archive_is_one_folder_that_everybody_can_read(tmp_path):
+    for name in "a.zip", "b.zip":
+        subprocess.run([sys.executable, os.path.join(SOURCE, "python/qgis/pack.py"), tmp_path / name], check=True)
+    assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
+    with zipfile.ZipFile(tmp_path / "a.zip") as archive:
+        for entry in archive.infolist():
+            assert entry.filename.startswith("scarp_qgis/") and entry.external_attr >> 16 == 0o644
+        with open(os.path.join(SOURCE, "CMakeLists.txt"), encoding="utf-8") as file:
+            version = file.read().partition("project(scarp VERSION ")[2].split()[0]
+        assert f"version={version}\n" in archive.read("scarp_qgis/metadata.txt").decode()
+
+
 @pytest.fixture(scope="module")
 def plugins(tmp_path_factory):
     """The packed plugin, unpacked as QGIS does it."""
