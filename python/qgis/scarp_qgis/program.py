@@ -15,7 +15,7 @@ SETTING = "SCARP_PROGRAM"
 
 # Seconds between looks at the cancel button, and until the program is asked again, by force in the end. It stops at once
 # when it is asked a second time.
-_POLL, _PATIENCE = 0.05, 0.15
+_POLL, _PATIENCE = 0.05, 0.1
 
 # The line that a terminal shows: "shadow 0...10...20".
 _PROGRESS = re.compile(r"^[^:]* (?:\d+\.{3})*(\d+)(\.{0,3})$")
