@@ -7,6 +7,7 @@
 
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -39,6 +40,20 @@ TEST_F(MapMerge, MergeRefusesPartsThatDoNotFit) {
   const std::string text = text_of(c);
   std::ofstream(c, std::ios::binary) << text.substr(0, text.size() / 2);
   expect_refused(Names{"merge", a, b, c} + out, "c.tif: ");
+}
+
+TEST_F(MapMerge, JoinsPartsWhoseInputWasSpelledInOtherWays) {
+  const std::string dem = model("dem.tif", 30, 40, GDT_Int16);
+  const std::string around = (std::filesystem::path(dem).parent_path() / "." / "dem.tif").string();
+  ASSERT_NE(dem, around);
+  int number = 0;
+  Names merge{"merge", "-o", path("joined.tif")};
+  for (const std::string& input : {dem, around}) {
+    const std::string name = fmt::format("spelled{}.tif", ++number);
+    written({"shadow", input, "--sun", "135,20", "--part", fmt::format("{}/2", number)}, name);
+    merge.push_back(path(name));
+  }
+  EXPECT_EQ(run(merge).status, 0);
 }
 
 TEST_F(MapMerge, RefusesPartsOfOtherCommandsAndInputs) {

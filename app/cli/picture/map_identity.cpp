@@ -13,11 +13,11 @@
 namespace scarp::cli {
 namespace {
 
-// Options that change no pixel: the machine and how much of it is used, names and formats of outputs, other outputs,
-// and the part, which is compared on its own.
-constexpr std::string_view kWithoutEffect[] = {"--threads", "--memory", "--scratch", "--resume",     "--quiet",
-                                               "--preview", "--draw",   "--summary", "--draw-label", "--output",
-                                               "--of",      "--co",     "--part",    "--dry-run"};
+// Words that change no pixel: the machine and how much of it is used, names and formats of outputs, other outputs; the
+// part, which is compared on its own; and paths of rasters, which are compared as files.
+constexpr std::string_view kWithoutEffect[] = {
+    "IN",     "--ground",  "--threads",    "--memory", "--scratch", "--resume", "--quiet", "--preview",
+    "--draw", "--summary", "--draw-label", "--output", "--of",      "--co",     "--part",  "--dry-run"};
 
 void append_place(std::string& text, const TablePlace& place) {
   text += fmt::format("{},{},{};", place.x, place.y, place.z ? fmt::format("{}", *place.z) : "");
@@ -30,7 +30,8 @@ std::string file_identity(const std::string& path) {
   const auto size = std::filesystem::file_size(path, failed);
   if (failed) return fmt::format("{}\n", path);  // in an archive, or on the network
   const auto time = std::filesystem::last_write_time(path, failed).time_since_epoch().count();
-  return fmt::format("{} {} {}\n", path, size, time);
+  // Without its folder, which other machines and working directories spell otherwise.
+  return fmt::format("{} {} {}\n", std::filesystem::path(path).filename().string(), size, time);
 }
 
 std::string table_identity(const PlaceTable& table) {

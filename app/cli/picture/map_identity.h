@@ -17,7 +17,7 @@ namespace scarp::cli {
 /// that the subcommand has read.
 std::string map_identity(const Command& command, const MapInput& input, const std::vector<std::string>& more);
 
-/// Returns a file's name, size and time, for map_identity().
+/// Returns a file's name without its folder, its size and time, for map_identity().
 std::string file_identity(const std::string& path);
 
 /// Returns a line that changes with the places and columns of a table, for map_identity(). The table may come from
