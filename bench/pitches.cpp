@@ -33,7 +33,8 @@ struct PitchesOptions {
   int width = 640, height = 480;  // pixels; the width is rounded down to a multiple of 32
   int step = 10;                  // degrees
   int repeats = 3;                // timed passes of each; the median counts
-  double wrapped = 0;             // range of the rays in widths of the field, which wraps; 0: no wrap, no limit
+  double exaggeration = 1;
+  double wrapped = 0;  // range of the rays in widths of the field, which wraps; 0: no wrap, no limit
 };
 
 using Json = nlohmann::ordered_json;
@@ -46,12 +47,22 @@ struct View {
   double over;  // eye over the highest ground, in widths of the field; negative: over the ground below it, metres
   double roll;
 };
-constexpr View kViews[] = {{"high", 0.3, 0}, {"above", 0.05, 0}, {"above, roll", 0.05, 0.3}, {"near", -100, 0}};
+constexpr View kViews[] = {
+    {"high", 0.3, 0}, {"above", 0.05, 0}, {"above, roll", 0.05, 0.3}, {"near", -100, 0}, {"ground", -2, 0}};
 
-// The rays of a picture: columns of tiles, in each all rows, in each 32 pixels.
-std::vector<Ray> camera_rays(const HeightField& field, const View& view, double pitch, int width, int height,
-                             double t_max) {
-  dvec3 eye(0.4 * field.width(), 0.35 * field.depth(), 0);
+// A camera, with directions of pixels as pictures make them.
+struct PixelCamera {
+  dvec3 eye, corner, right, down;  // direction of the first pixel's centre, and steps to its neighbours
+
+  dvec3 direction(int x, int y) const {
+    return corner + static_cast<double>(x) * right + static_cast<double>(y) * down;
+  }
+};
+
+PixelCamera camera_of(const HeightField& field, const View& view, double pitch, int width, int height) {
+  PixelCamera camera;
+  dvec3& eye = camera.eye;
+  eye = {0.4 * field.width(), 0.35 * field.depth(), 0};
   eye.z = view.over > 0 ? field.max_height() + view.over * field.width()
                         : field.height(eye.x, eye.y).value_or(field.max_height()) - view.over;
   const double yaw = 0.7;
@@ -59,15 +70,21 @@ std::vector<Ray> camera_rays(const HeightField& field, const View& view, double 
   const dvec3 forward = std::cos(pitch) * ahead - dvec3(0, 0, std::sin(pitch)), over = cross(level, forward);
   const dvec3 right = std::cos(view.roll) * level + std::sin(view.roll) * over, up = cross(right, forward);
   const double half = std::tan(45.0 / 2 * kPi / 180), pixel = 2 * half / height;
+  camera.right = pixel * right, camera.down = -pixel * up;
+  camera.corner = forward + (0.5 - 0.5 * width) * camera.right + (0.5 - 0.5 * height) * camera.down;
+  return camera;
+}
+
+// The rays of a picture: columns of tiles, in each all rows, in each 32 pixels.
+std::vector<Ray> camera_rays(const PixelCamera& camera, int width, int height, double t_max) {
   std::vector<Ray> rays;
   for (int x0 = 0; x0 < width; x0 += kSide) {
     for (int y = 0; y < height; ++y) {
       for (int x = x0; x < x0 + kSide; ++x) {
         Ray ray;
-        ray.origin = eye;
+        ray.origin = camera.eye;
         ray.t_max = t_max;
-        ray.direction =
-            normalize(forward + pixel * (x + 0.5 - 0.5 * width) * right + pixel * (0.5 * height - y - 0.5) * up);
+        ray.direction = camera.direction(x, y);
         rays.push_back(ray);
       }
     }
@@ -92,15 +109,18 @@ void by_batch(const HeightTarget& target, std::span<const Ray> rays, std::span<H
   }
 }
 
-void by_fan(const HeightTarget& target, std::span<const Ray> rays, int height, bool always, std::span<Hit> hits) {
+void by_fan(const HeightTarget& target, const PixelCamera& camera, std::span<const Ray> rays, int height, bool always,
+            std::span<Hit> hits) {
   const auto rows = static_cast<std::size_t>(height), area = rows * kSide;
   std::vector<float> dx(area), dy(area), dz(area);
   std::vector<FanSight> sights(area);
   FanOptions options;
   options.always = always;
   for (std::size_t first = 0; first < rays.size(); first += area) {
+    const int x0 = static_cast<int>(first / rows);
     for (std::size_t i = 0; i < area; ++i) {
-      const dvec3 d = rays[first + i].direction;
+      const int x = static_cast<int>(i % kSide), y = static_cast<int>(i / kSide);
+      const dvec3 d = camera.direction(x0 + x, y);
       dx[i] = static_cast<float>(d.x), dy[i] = static_cast<float>(d.y), dz[i] = static_cast<float>(d.z);
     }
     Fan fan;
@@ -125,7 +145,7 @@ HeightField periodic(const HeightField& field) {
 }
 
 void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
-  const BenchField ground = load_field(options.field);
+  const BenchField samples = load_field(options.field), ground = exaggerated(samples, options.exaggeration);
   const HeightField field = options.wrapped > 0 ? periodic(ground.field) : HeightField(ground.field);
   const double t_max = options.wrapped > 0 ? options.wrapped * field.width() : std::numeric_limits<double>::infinity();
   const MaxPyramid pyramid(field);
@@ -136,7 +156,8 @@ void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
                                                "batch of rows", "one call", "fan's unknown %", "choice's %"}};
   for (const View& view : kViews) {
     for (int down = 0; down <= 90; down += options.step) {
-      const std::vector<Ray> rays = camera_rays(field, view, down * kPi / 180, width, height, t_max);
+      const PixelCamera camera = camera_of(field, view, down * kPi / 180, width, height);
+      const std::vector<Ray> rays = camera_rays(camera, width, height, t_max);
       std::vector<Hit> truth(rays.size()), hits(rays.size());
       std::vector<Ray> in_rows(rays.size());
       for_each_in_rows(width, height, [&](std::size_t i, std::size_t place) { in_rows[place] = rays[i]; });
@@ -148,7 +169,7 @@ void run_pitches(const PitchesOptions& options, const ReportOptions& report) {
         take_vector_stats();
         const Stopwatch watch;
         if (way == 0) by_batch(target, rays, truth);
-        if (way == 1 || way == 2) by_fan(target, rays, height, way == 1, hits);
+        if (way == 1 || way == 2) by_fan(target, camera, rays, height, way == 1, hits);
         if (way == 3) by_batch(target, in_rows, hits);
         if (way == 4) closest_hits(target, in_rows, hits);
         seconds[way].push_back(watch.cpu_s());
@@ -191,6 +212,7 @@ void add_pitches(cli::Program& program) {
       {.names = "--width", .help = "columns, down to a multiple of 32", .unit = "pixels", .range = {32, 1 << 13}});
   command.add(&o.height, {.names = "--height", .help = "rows", .unit = "pixels", .range = {1, 1 << 13}});
   add_repeats_option(command, o.repeats, "timed passes of each");
+  command.add(&o.exaggeration, {.names = "--exaggeration", .help = "factor of the heights", .range = {0.01, 1000}});
   command.add(&o.wrapped, {.names = "--wrapped",
                            .help = "range of the rays in widths of the field, which repeats",
                            .range = {0, 1000},

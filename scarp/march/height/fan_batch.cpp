@@ -11,6 +11,7 @@
 #include "scarp/base/kept_memory.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/max_mip_fan.h"
+#include "scarp/march/height/max_mip_fan_walk.h"
 #include "scarp/march/height/max_mip_simd.h"
 #include "scarp/march/usual_ray.h"
 
@@ -22,8 +23,10 @@ constexpr std::size_t kLeastRun = 16;       // shorter ones are not looked for
 constexpr std::size_t kRaysPerLook = 8192;  // of several strips, for the threads
 constexpr std::int64_t kFanRaysPerPiece = 2048;
 constexpr std::size_t kRaysPerGroup = 1 << 19;  // whose sights, 4 MiB, a thread keeps memory for
-// Sine of 85 degrees. Half of the rays of a camera that looks straight down inherit nothing from one another.
-constexpr double kStraightDown = 0.996;
+// Copying rays into a fan takes a third of the time of a batch, so it must save time for most of them: rays that are
+// worth a walk, and that neither miss nor hit within a few cells, which batches answer at once.
+constexpr double kLeastWalked = 0.75, kLeastFar = 0.25;
+constexpr double kFarCells = 8;
 // Slopes of a scanner's row differ by less, relative: their directions may be floats, off by 3 roundings of 2^-24.
 constexpr double kSameSlope = 0x1p-22;
 // Longer ones would need more memory than a group of rays has.
@@ -59,12 +62,53 @@ std::size_t first_run(std::span<const Ray> rays) {
   return 0;
 }
 
+// Cells that a ray crosses up to a time, along its major axis.
+double cells_to(const HeightField& field, const Ray& ray, double t) {
+  const HeightField::GridScales scales = field.grid_scales();
+  return t * std::max(std::abs(ray.direction.x) * scales.per_cell_x, std::abs(ray.direction.y) * scales.per_cell_y);
+}
+
+// Tries some strips of a fan, and rays in the middle of each.
+bool is_worth_copying(const HeightTarget& target, const FanBatch& batch, const Fan& fan, std::span<const Ray> rays) {
+  const int strips = std::clamp(fan.columns / 128, 1, 4), rows = std::clamp(fan.rows / 8, 4, 24);
+  const int columns = std::min<int>(kStripColumns, fan.columns);
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  KeptVector<float> dx(count), dy(count), dz(count);
+  KeptVector<Ray> some;
+  double walked = 0;
+  for (int strip = 0; strip < strips; ++strip) {
+    const int left = (2 * strip + 1) * (fan.columns - columns) / (2 * strips);
+    std::size_t at = 0;
+    for (int i = 0; i < rows; ++i) {
+      const auto row = static_cast<std::size_t>((2 * i + 1) * fan.rows / (2 * rows));
+      for (int c = 0; c < columns; ++c, ++at) {
+        const auto column = static_cast<std::size_t>(left + c);
+        const Ray& ray = rays[batch.columns ? column * batch.run + row : row * batch.run + column];
+        const dvec3 d = ray.direction;
+        dx[at] = static_cast<float>(d.x), dy[at] = static_cast<float>(d.y), dz[at] = static_cast<float>(d.z);
+        if (c == columns / 2) some.push_back(ray);
+      }
+    }
+    Fan sample = fan;
+    sample.dx = dx.data(), sample.dy = dy.data(), sample.dz = dz.data();
+    sample.columns = columns, sample.rows = rows, sample.row_stride = columns;
+    walked += max_mip::share_to_walk(target, sample);
+  }
+  if (walked < kLeastWalked * strips) return false;
+  KeptVector<Hit> hits(some.size());
+  closest_hits_max_mip_simd(target, some, hits);
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < some.size(); ++i)
+    far += hits[i] && cells_to(*target.field, some[i], hits[i].t) > kFarCells;
+  return static_cast<double>(far) >= kLeastFar * static_cast<double>(some.size());
+}
+
 // The share of its length by which a step is vertical.
 double rise(const dvec3& step) { return std::abs(step.z) / std::max(length(step), 0x1p-1000); }
 
 }  // namespace
 
-std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays) {
+std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays, const FanOptions& options) {
   const std::size_t n = rays.size();
   if (n < kLeastRun * kLeastRun) return {};
   const dvec3& origin = rays[0].origin;
@@ -77,14 +121,13 @@ std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ra
   const dvec3& first = rays[0].direction;
   batch.columns = rise(rays[1].direction - first) > rise(rays[batch.run].direction - first);
   const std::size_t runs = n / batch.run;
-  const dvec3& middle = rays[runs / 2 * batch.run + batch.run / 2].direction;
-  if (std::abs(middle.z) > kStraightDown * length(middle)) return {};
   Fan fan;
   fan.origin = origin;
   fan.t_max = std::max({rays[0].t_max, rays[1].t_max, rays[n / 2].t_max, rays[n - 1].t_max});
   fan.columns = static_cast<int>(batch.columns ? runs : batch.run);
   fan.rows = static_cast<int>(batch.columns ? batch.run : runs);
   if (!looks_by_fan(target, fan, first, rays[runs * batch.run - 1].direction)) return {};
+  if (!options.always && !is_worth_copying(target, batch, fan, rays)) return {};
   return batch;
 }
 
@@ -188,6 +231,10 @@ class FanGroup {
 };
 
 }  // namespace
+
+std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays) {
+  return fan_batch(target, rays, {});
+}
 
 void closest_hits_in_fan(const HeightTarget& target, const FanBatch& batch, std::span<const Ray> rays,
                          std::span<Hit> hits) {

@@ -13,6 +13,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/height/max_mip_fan.h"
 
 namespace scarp {
 
@@ -21,8 +22,11 @@ struct FanBatch {
   bool columns = false;  ///< consecutive rays are a column
 };
 
-/// Looks at one run and some other rays. Returns nullopt if it finds no runs, and if a fan is not likely to be faster.
+/// Looks at one run, and tries up to 1,536 other rays. Returns nullopt if it finds no runs, and if a fan is not likely
+/// to be faster.
 std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays);
+/// `always`: also where a batch is likely to be faster.
+std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays, const FanOptions& options);
 
 /// hits[i] is march_max_mip() of rays[i], bit for bit, whatever the order of the rays: others than the batch seems to
 /// have only take longer. Runs on all threads. The target is the one that fan_batch() accepted.

@@ -87,38 +87,33 @@ std::int32_t first_line(const Octant<Sample>& o, const StripLanes& lanes, const 
   return line == 0 && o.fx == 1 ? 1 : line;
 }
 
-// Whether most rays are likely to inherit, by some of them and the ground that the middle ray of a lane crosses.
-template <class Sample>
-bool worthwhile(const Octant<Sample>& o, const StripLanes& lanes, const FanHeights& heights, const ReliefMap& map,
-                float cell_relief, std::int32_t end) {
-  constexpr std::int32_t kSamples = 24;
+// Whether a walk over these rays, a sample of a pass, is likely to take less time than a batch: whether most of them
+// inherit. `last_line(i)`: the line up to which ray i of the middle lane goes; called only where the steepest edge of
+// the field does not decide.
+template <class Sample, class LastLine>
+bool pass_pays(const Octant<Sample>& o, const StripLanes& lanes, const ReliefMap& map, float cell_relief,
+               std::int32_t first, const LastLine& last_line) {
   constexpr std::size_t kLaneStep = 5;
-  constexpr double kFar = 0x1p17;
-  // A ray by the batch takes about twice the time of one in a fan; bad links are guessed from the worst ground.
-  constexpr float kMostBroken = 0.3f;
-  const auto inherit = [&](float steepest) {
+  // With more of them broken, the batch that answers their rays takes the time that the walk saves.
+  constexpr float kMostBroken = 0.1f;
+  const std::int32_t rows = *std::max_element(lanes.count, lanes.count + N);
+  const auto inherit = [&](const auto& steepest_of) {
     int links = 0, broken = 0;
-    for (std::size_t l = 0; l < N; l += kLaneStep) {
-      const std::int32_t step = std::max(1, lanes.count[l] / kSamples);
-      for (std::int32_t i = 1; i < lanes.count[l]; i += step) {
+    for (std::int32_t i = 1; i < rows; ++i) {
+      const float steepest = steepest_of(i);
+      for (std::size_t l = 0; l < N; l += kLaneStep) {
+        if (i >= lanes.count[l]) continue;
         const std::size_t at = static_cast<std::size_t>(i) * N + l;
         ++links, broken += !inherits(lanes.m[at - N], lanes.s[at - N], lanes.m[at], lanes.s[at], steepest);
       }
     }
     return static_cast<float>(broken) <= kMostBroken * static_cast<float>(links);
   };
-  if (inherit(cell_relief)) return true;
-  const std::int32_t first = std::max(first_line(o, lanes, heights, end) - 1, 0);
-  std::int32_t last = first;
-  for (std::size_t l = 0; l < N; l += kLaneStep) {
-    if (lanes.count[l] == 0) continue;
-    const float s = lanes.s[static_cast<std::size_t>(lanes.count[l] / 2) * N + l];
-    const double T = s < 0 ? static_cast<double>(heights.lowest) / static_cast<double>(s) : kFar;
-    last = std::max(last, static_cast<std::int32_t>(std::min(T, static_cast<double>(std::max(end, 0)))));
-  }
+  if (inherit([&](std::int32_t) { return cell_relief; })) return true;
   WedgeRelief<Sample> relief(o, map, first, static_cast<double>(lanes.strip_least_m),
                              static_cast<double>(lanes.strip_most_m));
-  return inherit(relief.up_to(last));
+  std::int32_t last = first;
+  return inherit([&](std::int32_t i) { return relief.up_to(last = std::max(last, last_line(i))); });
 }
 
 }  // namespace

@@ -92,10 +92,31 @@ class FanWalk {
     for (int column = begin; column < end; column += N) strip(column, std::min<int>(N, end - column));
   }
 
+  double share_to_walk() {
+    std::int64_t walked = 0;
+    for (int column = 0; column < fan_.columns; column += N) {
+      set_strip(column, std::min<int>(N, fan_.columns - column));
+      const VI octants = hn::Set(di, worthwhile_octants());
+      for (int i = 0; i < fan_.rows; ++i) {
+        const MF walks = hn::RebindMask(df, hn::Ne(hn::And(octant_bit(row(i)), octants), hn::Zero(di)));
+        walked += std::popcount(bits_of(walks) & ((std::uint64_t{1} << width_) - 1));
+      }
+    }
+    return static_cast<double>(walked) / (static_cast<double>(fan_.columns) * fan_.rows);
+  }
+
  private:
   void strip(int column, int width) {
     ++stats_.strips;
     stats_.rays += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(fan_.rows);
+    set_strip(column, width);
+    const std::int32_t walked = options_.always ? kAllOctants : worthwhile_octants();
+    if (walked == 0 && sights_) return leave_strip();
+    prepare(walked);
+    sights_ ? answer_sights() : answer();
+  }
+
+  void set_strip(int column, int width) {
     const bool falls = slope_at(0, column + width / 2) > slope_at(fan_.rows - 1, column + width / 2);
     const int first = falls ? fan_.rows - 1 : 0;
     begin_ = max_mip::place_of(fan_, column, first);
@@ -107,8 +128,63 @@ class FanWalk {
     } else {
       copy_rays();
     }
-    prepare();
-    sights_ ? answer_sights() : answer();
+  }
+
+  // Octants that are worth a walk, as bits, by some of the rows: links between rows that are far apart are about as
+  // steep as those between neighbours.
+  HWY_NOINLINE std::int32_t worthwhile_octants() {
+    constexpr int kRows = 24;
+    const int every = std::max(1, fan_.rows / kRows);
+    VI seen = hn::Zero(di);
+    for (int i = 0; i < fan_.rows; i += every) seen = hn::Or(seen, octant_bit(row(i)));
+    std::int32_t worthwhile = 0;
+    StripLanes lanes;
+    lanes.m = m_.data(), lanes.s = s_.data();
+    row_of_.resize(m_.size());
+    for (std::int32_t all = bits_of_lanes(seen); all != 0; all &= all - 1) {
+      const int o = std::countr_zero(static_cast<unsigned>(all));
+      take(o, lanes, every);
+      const std::int32_t end = std::max(end_line(octants_[o], lanes, fan_.t_max), 0);
+      const std::int32_t first = std::max(first_line(octants_[o], lanes, heights_, end) - 1, 0);
+      const auto last_line = [&](std::int32_t i) { return std::min(line_of_hit(i, lanes), end); };
+      if (pass_pays(octants_[o], lanes, pyramid_.relief(), cell_relief_, first, last_line)) worthwhile |= 1 << o;
+    }
+    return worthwhile;
+  }
+  static constexpr std::int32_t kAllOctants = 0xff;
+  // The line behind the hit of a ray in the middle of the lanes; far away if it misses.
+  std::int32_t line_of_hit(std::int32_t i, const StripLanes& lanes) const {
+    constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max();
+    constexpr std::size_t kLane = N / 2;
+    if (i >= lanes.count[kLane]) return 0;
+    const std::ptrdiff_t at = row_of_[static_cast<std::size_t>(i) * N + kLane] * rays_.stride + kLane;
+    Ray ray;
+    ray.origin = fan_.origin;
+    ray.direction = {static_cast<double>(rays_.dx[at]), static_cast<double>(rays_.dy[at]),
+                     static_cast<double>(rays_.dz[at])};
+    ray.t_max = fan_.t_max;
+    const Hit hit = resume_max_mip({&field_, &pyramid_}, ray, max_mip::kNotClear);
+    const double lines = hit.t * std::max(std::abs(ray.direction.x) * static_cast<double>(std::abs(scales_.per_x)),
+                                          std::abs(ray.direction.y) * static_cast<double>(std::abs(scales_.per_y)));
+    return hit && lines < kMostLines ? static_cast<std::int32_t>(lines) + 2 : kFar;
+  }
+
+  // Octants of the rays that are taken, as bits.
+  static HWY_INLINE VI octant_bit(const RowRays& r) {
+    return hn::IfThenElseZero(hn::RebindMask(di, r.taken), hn::Shl(hn::Set(di, 1), r.octant));
+  }
+  static std::int32_t bits_of_lanes(VI v) {
+    alignas(64) std::int32_t lanes[N];
+    hn::Store(v, di, lanes);
+    std::int32_t all = 0;
+    for (const std::int32_t one : lanes) all |= one;
+    return all;
+  }
+
+  // Sights of a strip of which nothing is known.
+  void leave_strip() {
+    for (int i = 0; i < fan_.rows; ++i)
+      std::fill_n(sights_ + begin_ + i * step_, width_, FanSight{-std::numeric_limits<float>::infinity(), 0});
   }
 
   float slope_at(int row, int column) const {
@@ -131,8 +207,8 @@ class FanWalk {
 
   HWY_INLINE RowRays row(int i) const { return row_rays(rays_, i, scales_); }
 
-  // Tables of m and s, and the walks: one per octant that the strip's rays are in.
-  HWY_NOINLINE void prepare() {
+  // Tables of m and s, and the walks: one per octant of `walked` that the strip's rays are in.
+  HWY_NOINLINE void prepare(std::int32_t walked) {
     const RowRays first = row(0);
     VI seen = hn::Zero(di);
     bool all_taken = true;
@@ -144,19 +220,18 @@ class FanWalk {
       const RowRays r = row(i);
       const auto at = static_cast<std::size_t>(i) * N;
       hn::StoreU(r.m, df, m_.data() + at), hn::StoreU(r.s, df, s_.data() + at);
-      hn::StoreU(hn::IfThenElse(r.taken, hn::Set(df, kNoTime), hn::Set(df, -kNoTime)), df, T_.data() + at);
-      all_taken &= hn::AllTrue(df, r.taken);
-      const VI one = hn::Shl(hn::Set(di, 1), r.octant);
-      seen = hn::Or(seen, hn::IfThenElseZero(hn::RebindMask(di, r.taken), one));
+      const VI one = octant_bit(r);
+      const MI walks = hn::Ne(hn::And(one, hn::Set(di, walked)), hn::Zero(di));
+      const MF taken = hn::RebindMask(df, walks);
+      hn::StoreU(hn::IfThenElse(taken, hn::Set(df, kNoTime), hn::Set(df, -kNoTime)), df, T_.data() + at);
+      all_taken &= hn::AllTrue(df, taken);
+      seen = hn::Or(seen, one);
       least = hn::Min(least, r.m), most = hn::Max(most, r.m), per_major = hn::Min(per_major, r.per_major);
       const MI breaks = hn::RebindMask(di, hn::Not(inherits(m0, s0, r.m, r.s, relief)));
       broken = hn::IfThenElse(breaks, hn::Set(di, i), broken);
       m0 = r.m, s0 = r.s;
     }
-    alignas(64) std::int32_t octants[N];
-    hn::Store(seen, di, octants);
-    std::int32_t all = 0;
-    for (const std::int32_t o : octants) all |= o;
+    std::int32_t all = bits_of_lanes(seen) & walked;
     StripLanes lanes;
     lanes.m = m_.data(), lanes.s = s_.data();
     if (all_taken && std::has_single_bit(static_cast<unsigned>(all))) {
@@ -173,19 +248,19 @@ class FanWalk {
     row_of_.resize(m_.size());
     for (; all != 0; all &= all - 1) {
       const int o = std::countr_zero(static_cast<unsigned>(all));
-      take(o, lanes);
+      take(o, lanes, 1);
       rows_ = row_of_.data();
       walk(octants_[o], lanes);
     }
   }
 
-  // Tables of the rays in one octant alone.
-  HWY_NOINLINE void take(int octant, StripLanes& lanes) {
+  // Tables of the rays in one octant alone, of every `every`-th row.
+  HWY_NOINLINE void take(int octant, StripLanes& lanes, int every) {
     std::fill_n(lanes.count, N, 0), std::fill_n(lanes.broken, N, -1), std::fill_n(lanes.least_m, N, 2.0f);
     std::fill_n(m_.begin(), N, 0.0f), std::fill_n(s_.begin(), N, 0.0f);
     float most = 0, least_per_major = kNoTime;
     alignas(64) float m[N], s[N], per_major[N];
-    for (int i = 0; i < fan_.rows; ++i) {
+    for (int i = 0; i < fan_.rows; i += every) {
       const RowRays r = row(i);
       const MF in = hn::And(r.taken, hn::RebindMask(df, hn::Eq(r.octant, hn::Set(di, octant))));
       std::uint64_t bits = bits_of(in) & ((std::uint64_t{1} << width_) - 1);
@@ -207,18 +282,10 @@ class FanWalk {
 
   void walk(const Octant<Sample>& o, const StripLanes& lanes) {
     const std::int32_t end = end_line(o, lanes, fan_.t_max);
-    if (!options_.always && !worthwhile(o, lanes, heights_, pyramid_.relief(), cell_relief_, end)) return leave(lanes);
     // Rays that get to the end miss; wrapped ground goes on, and they are above it up to there.
     const std::int32_t far = o.wraps ? std::min(far_line(lanes, heights_), end) : end;
     const float last = !o.wraps ? kNoTime : far < end ? -kNoTime : -1 - o.T_at(end);
     triangles_ ? walk_over<true>(o, lanes, far, last) : walk_over<false>(o, lanes, far, last);
-  }
-
-  // Leaves the rays of a pass to the batch.
-  void leave(const StripLanes& lanes) {
-    for (std::size_t l = 0; l < N; ++l) {
-      for (std::int32_t j = 0; j < lanes.count[l]; ++j) T_[slot(static_cast<std::size_t>(j), l)] = -kNoTime;
-    }
   }
 
   template <bool triangles>
@@ -644,6 +711,15 @@ void look(const HeightTarget& target, const Fan& fan, FanSight* sights, int begi
   });
 }
 
+double share(const HeightTarget& target, const Fan& fan) {
+  std::vector<max_mip::FanRest> none;
+  FanStats stats;
+  return target.field->visit([&](const auto& grid) {
+    using Sample = std::remove_cvref_t<decltype(grid.data[0])>;
+    return FanWalk<Sample>(target, grid, fan, {}, nullptr, {}, none, stats).share_to_walk();
+  });
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace scarp
@@ -655,12 +731,17 @@ namespace {
 
 HWY_EXPORT(walk);
 HWY_EXPORT(look);
+HWY_EXPORT(share);
 
 }  // namespace
 
 void max_mip::walk_fan(const HeightTarget& target, const Fan& fan, const FanHits& hits, int begin, int end,
                        const FanOptions& options, std::vector<FanRest>& rest, FanStats& stats) {
   HWY_DYNAMIC_DISPATCH(walk)(target, fan, hits, begin, end, options, rest, stats);
+}
+
+double max_mip::share_to_walk(const HeightTarget& target, const Fan& fan) {
+  return HWY_DYNAMIC_DISPATCH(share)(target, fan);
 }
 
 void max_mip::look_fan(const HeightTarget& target, const Fan& fan, FanSight* sights, int begin, int end,

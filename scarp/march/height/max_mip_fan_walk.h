@@ -26,6 +26,10 @@ struct FanRest {
 /// Whether vectors walk over the field and from the origin: otherwise all rays go to the batch.
 bool walks_fan(const HeightTarget& target, const Fan& fan);
 
+/// Returns the share of the rays of a fan, 0 to 1, that a walk is likely to answer in less time than a batch.
+/// Requires walks_fan().
+double share_to_walk(const HeightTarget& target, const Fan& fan);
+
 /// Whether a cell or a neighbour of it is so. Neighbours over a seam are those in the next copy.
 template <class Is>
 bool any_cell_beside(const HeightField& field, const Cell& at, const Is& is) {

@@ -25,6 +25,14 @@ Ray ray_along(const dvec3& eye, const dvec3& direction) {
   return ray;
 }
 
+// Options that take a fan wherever it is possible.
+FanOptions always_options() {
+  FanOptions options;
+  options.always = true;
+  return options;
+}
+const FanOptions always = always_options();
+
 // Rows of pixels from above down, of a camera turned by these angles.
 std::vector<Ray> camera(const dvec3& eye, double heading, double down, double roll, bool unit) {
   const dvec3 level(std::sin(heading), std::cos(heading), 0), aside(level.y, -level.x, 0);
@@ -63,13 +71,14 @@ testing::AssertionResult is(const Hit& hit, const Hit& expected, std::size_t ray
   return testing::AssertionFailure() << "ray " << ray << ": t " << hit.t << " instead of " << expected.t;
 }
 
-void expect_single_answers(const HeightTarget& target, const std::vector<Ray>& rays) {
+void expect_single_answers(const HeightTarget& target, const std::vector<Ray>& rays,
+                           const std::optional<FanBatch>& batch = {}) {
   std::vector<Hit> hits(rays.size());
-  closest_hits(target, rays, hits);
+  batch ? closest_hits_in_fan(target, *batch, rays, hits) : closest_hits(target, rays, hits);
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(is(hits[i], march_max_mip(target, rays[i]), i));
 }
 
-HeightField hills(Wrap wrap = Wrap::none) {
+HeightField hills(Wrap wrap = Wrap::none, double exaggeration = 1) {
   constexpr int kCols = 150, kRows = 140;
   const int shared = wrap == Wrap::shared_border;
   std::vector<float> samples;
@@ -79,7 +88,8 @@ HeightField hills(Wrap wrap = Wrap::none) {
       samples.push_back(static_cast<float>(10 * std::sin(0.2 * x) * std::cos(0.15 * y) + std::sin(1.7 * x)));
     }
   }
-  return HeightField::own(std::move(samples), kCols, kRows, {.cell_x = 2, .cell_y = 3, .wrap = wrap});
+  return HeightField::own(std::move(samples), kCols, kRows,
+                          {.cell_x = 2, .cell_y = 3, .exaggeration = exaggeration, .wrap = wrap});
 }
 
 TEST(FanBatch, FindsRowsOfCamerasAndScannersAndFirings) {
@@ -90,9 +100,13 @@ TEST(FanBatch, FindsRowsOfCamerasAndScannersAndFirings) {
   for (const double down : {-0.3, 0.0, 0.5, 1.2}) {
     for (const double roll : {0.0, 0.3, kPi / 2}) {
       for (const bool unit : {false, true}) {
-        const auto batch = fan_batch(target, camera(eye, 0.7, down, roll, unit));
+        const std::vector<Ray> rays = camera(eye, 0.7, down, roll, unit);
+        const auto batch = fan_batch(target, rays, always);
         ASSERT_TRUE(batch) << down << " " << roll << " " << unit;
         EXPECT_EQ(batch->run, static_cast<std::size_t>(kWidth));
+        if (down < 1) {
+          EXPECT_TRUE(fan_batch(target, rays)) << down << " " << roll;
+        }
         // Seen steeply from above, rows are as good as columns.
         if (down < 1) {
           EXPECT_EQ(batch->columns, roll > 1) << down << " " << roll;
@@ -146,6 +160,13 @@ TEST(FanBatch, LeavesOtherBatchesAlone) {
   EXPECT_FALSE(fan_batch(target, std::span(rays).first(kWidth))) << "one row";
   EXPECT_FALSE(fan_batch(target, std::vector<Ray>(2000, rays[0]))) << "one direction";
   EXPECT_FALSE(fan_batch(target, camera(eye, 0.7, kPi / 2, 0, true))) << "straight down";
+  const HeightField steep = hills(Wrap::none, 30);
+  const MaxPyramid of_steep(steep);
+  const HeightTarget steep_target{&steep, &of_steep};
+  const dvec3 over(101, 140, 330);
+  EXPECT_FALSE(fan_batch(steep_target, camera(over, 0.7, 0.7, 0.3, true))) << "links break";
+  EXPECT_FALSE(fan_batch(target, camera(over, 0.7, -0.3, 0, true))) << "most miss";
+  EXPECT_FALSE(fan_batch(target, camera({101, 140, 13}, 0.7, 1.3, 0, true))) << "all hit at once";
   EXPECT_FALSE(fan_batch(target, camera({101, 140, -50}, 0.7, 0.3, 0, true))) << "below the ground";
   // From above, few rows that cross many lines take longer together.
   const HeightField wide = HeightField::own(std::vector<float>(3001 * 5, 1.0f), 3001, 5, {});
@@ -185,7 +206,10 @@ TEST(FanBatch, AnswersAreThoseOfSingleRays) {
       if (field.wraps()) {
         for (Ray& ray : rays) ray.t_max = 20 * field.width();
       }
-      followed += fan_batch(target, rays).has_value();
+      if (const auto batch = fan_batch(target, rays, always)) {
+        ++followed;
+        expect_single_answers(target, rays, batch);
+      }
       expect_single_answers(target, rays);
       // The end is missing, and some rays are of other kinds.
       rays.resize(rays.size() - 7);

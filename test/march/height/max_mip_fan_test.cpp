@@ -607,5 +607,35 @@ TEST(MaxMipFan, FewRowsFromAboveGoToTheBatch) {
   EXPECT_GT(strips(32, -0.4, -0.5), 0u);
 }
 
+// A rolled camera that looks down from 2 cells above a slope: its rays inherit over gentle ground only.
+std::uint64_t lines_of_rolled_camera(float slope, float spike) {
+  constexpr int kSide = 257;
+  std::vector<float> samples;
+  for (int i = 0; i < kSide * kSide; ++i) samples.push_back(slope * static_cast<float>(i % kSide + i / kSide % 3));
+  // In view, behind the ground that ends the rays; and a pit that lies lower than all rays get.
+  samples[static_cast<std::size_t>(128 * kSide + 200)] += spike;
+  samples[0] -= 1000;
+  const HeightField field = HeightField::own(samples, kSide, kSide);
+  const MaxPyramid pyramid(field);
+  const dvec3 eye(128.5, 128.5, *field.height(128.5, 128.5) + 2);
+  const dvec3 forward = direction_to(0.5 * kPi, -0.5), level(0, -1, 0), over = cross(level, forward);
+  const dvec3 right = std::cos(0.3) * level + std::sin(0.3) * over, up = cross(right, forward);
+  Rays rays(eye, 32, 240, true);
+  for (int c = 0; c < rays.columns; ++c) {
+    for (int r = 0; r < rays.rows; ++r) rays.put(c, r, forward + 0.002 * (c - 16.0) * right + 0.002 * (120.0 - r) * up);
+  }
+  std::vector<FanSight> sights(rays.dx.size());
+  take_fan_stats();
+  look_max_mip_fan({&field, &pyramid}, rays.fan(), sights.data(), 0, rays.columns);
+  return take_fan_stats().lines;
+}
+
+// Steep ground breaks the links of a rolled camera's columns; steep ground that no ray reaches does not.
+TEST(MaxMipFan, SteepGroundIsLeftToTheBatchWhereRaysReachIt) {
+  EXPECT_GT(lines_of_rolled_camera(0.01f, 0), 0u);
+  EXPECT_GT(lines_of_rolled_camera(0.01f, 500), 0u);
+  EXPECT_EQ(lines_of_rolled_camera(20, 0), 0u);
+}
+
 }  // namespace
 }  // namespace scarp::test
