@@ -53,7 +53,9 @@ std::vector<std::string> metadata_of(GDALDataset& dataset) {
   std::vector<std::string> pairs;
   for (char** pair = dataset.GetMetadata(); pair && *pair; ++pair) {
     const std::string_view text = *pair;
-    if (!text.starts_with("PART=") && !text.starts_with("RUN=") && !text.starts_with("AREA_OR_POINT="))
+    // SOURCE is the path as it was typed; RUN has the name of the file.
+    constexpr std::string_view kOfPart[] = {"PART=", "RUN=", "SOURCE=", "AREA_OR_POINT="};
+    if (std::none_of(std::begin(kOfPart), std::end(kOfPart), [&](auto name) { return text.starts_with(name); }))
       pairs.emplace_back(text);
   }
   return pairs;

@@ -68,21 +68,22 @@ void require_size(const std::string& input, const ivec3& size, int axis) {
 }
 
 // An empty body in the layer: the columns and rows around its centre that its radius reaches.
-struct Body {
+struct SectionBody {
   int col, row, radius;
 };
 
 // Bodies that cover all empty voxels with a radius, the largest first, and of equal ones the first of the layer.
 // `radii`: of the voxels of the layer by rows; 0 of solid ones.
-std::vector<Body> covering_bodies(const std::vector<int>& radii, int cols, bool spheres) {
+std::vector<SectionBody> covering_bodies(const std::vector<int>& radii, int cols, bool spheres) {
   const int rows = static_cast<int>(radii.size()) / cols;
-  std::vector<Body> all, chosen;
+  std::vector<SectionBody> all, chosen;
   for (int i = 0; i < static_cast<int>(radii.size()); ++i) {
     if (const int radius = radii[static_cast<std::size_t>(i)]; radius > 0) all.push_back({i % cols, i / cols, radius});
   }
-  std::stable_sort(all.begin(), all.end(), [](const Body& a, const Body& b) { return a.radius > b.radius; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const SectionBody& a, const SectionBody& b) { return a.radius > b.radius; });
   std::vector<char> covered(radii.size(), 0);
-  for (const Body& body : all) {
+  for (const SectionBody& body : all) {
     if (covered[static_cast<std::size_t>(body.row * cols + body.col)]) continue;
     chosen.push_back(body);
     for (int row = std::max(body.row - body.radius, 0); row <= std::min(body.row + body.radius, rows - 1); ++row) {
@@ -98,7 +99,7 @@ std::vector<Body> covering_bodies(const std::vector<int>& radii, int cols, bool 
 
 // A cube is a square around its voxel. A sphere is what a ray may travel from anywhere in its voxel, a square with
 // round corners.
-std::string outline_of(const Body& body, bool spheres) {
+std::string outline_of(const SectionBody& body, bool spheres) {
   const int x = (body.col - body.radius) * kCell, y = (body.row - body.radius) * kCell;
   const int side = (2 * body.radius + 1) * kCell;
   return fmt::format(
@@ -144,7 +145,7 @@ std::string svg_of(const VoxelGrid& grid, const SectionOptions& options, int axi
   svg += "</g>\n";
   if (options.outlines) {
     const bool spheres = options.radii == "spheres";
-    for (const Body& body : covering_bodies(radii, cols, spheres)) svg += outline_of(body, spheres);
+    for (const SectionBody& body : covering_bodies(radii, cols, spheres)) svg += outline_of(body, spheres);
   }
   return svg + "</svg>\n";
 }

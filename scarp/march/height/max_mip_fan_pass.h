@@ -16,6 +16,7 @@
 
 #include "scarp/march/height/max_mip_fan_rays.h"
 #include "scarp/march/height/max_mip_fan_walk.h"
+#include "scarp/march/height/max_mip_resume.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -85,6 +86,17 @@ std::int32_t first_line(const Octant<Sample>& o, const StripLanes& lanes, const 
   }
   const auto line = static_cast<std::int32_t>(std::clamp(first, 0.0, static_cast<double>(std::max(end, 0))));
   return line == 0 && o.fx == 1 ? 1 : line;
+}
+
+// The line behind the hit of a ray, by the scalar march; far away if it misses.
+inline std::int32_t line_behind_hit(const HeightTarget& target, const Fan& fan, const dvec3& direction,
+                                    const RayScales& scales) {
+  Ray ray;
+  ray.origin = fan.origin, ray.direction = direction, ray.t_max = fan.t_max;
+  const Hit hit = resume_max_mip(target, ray, max_mip::kNotClear);
+  const double lines = hit.t * std::max(std::abs(direction.x * static_cast<double>(scales.per_x)),
+                                        std::abs(direction.y * static_cast<double>(scales.per_y)));
+  return hit && lines < kMostLines ? static_cast<std::int32_t>(lines) + 2 : std::numeric_limits<std::int32_t>::max();
 }
 
 // Whether a walk over these rays, a sample of a pass, is likely to take less time than a batch: whether most of them

@@ -61,6 +61,18 @@ HWY_INLINE RowRays row_rays(const StripRays& rays, int i, const RayScales& scale
   return r;
 }
 
+// Octants of the rays that are taken, as bits.
+HWY_INLINE VI octant_bit(const RowRays& r) {
+  return hn::IfThenElseZero(hn::RebindMask(di, r.taken), hn::Shl(hn::Set(di, 1), r.octant));
+}
+HWY_INLINE std::int32_t bits_of_lanes(VI v) {
+  alignas(64) std::int32_t lanes[N];
+  hn::Store(v, di, lanes);
+  std::int32_t all = 0;
+  for (const std::int32_t one : lanes) all |= one;
+  return all;
+}
+
 // Rounding of m and s, and of the comparison: numerics.md, Fans.
 constexpr float kLinkRounding = 1.25f * 0x1p-20f;
 

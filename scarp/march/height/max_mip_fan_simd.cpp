@@ -23,6 +23,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h must come first.
 #include "hwy/highway.h"
+#include "scarp/march/height/max_mip_fan_answers.h"
 #include "scarp/march/height/max_mip_fan_lines.h"
 #include "scarp/march/height/max_mip_fan_pass.h"
 #include "scarp/march/height/max_mip_fan_rays.h"
@@ -32,8 +33,6 @@ HWY_BEFORE_NAMESPACE();
 namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
-
-constexpr float kNoTime = std::numeric_limits<float>::infinity();
 
 template <class Sample>
 class FanWalk {
@@ -152,33 +151,12 @@ class FanWalk {
     return worthwhile;
   }
   static constexpr std::int32_t kAllOctants = 0xff;
-  // The line behind the hit of a ray in the middle of the lanes; far away if it misses.
+  // The line behind the hit of a ray in the middle of the lanes.
   std::int32_t line_of_hit(std::int32_t i, const StripLanes& lanes) const {
-    constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max();
     constexpr std::size_t kLane = N / 2;
     if (i >= lanes.count[kLane]) return 0;
     const std::ptrdiff_t at = row_of_[static_cast<std::size_t>(i) * N + kLane] * rays_.stride + kLane;
-    Ray ray;
-    ray.origin = fan_.origin;
-    ray.direction = {static_cast<double>(rays_.dx[at]), static_cast<double>(rays_.dy[at]),
-                     static_cast<double>(rays_.dz[at])};
-    ray.t_max = fan_.t_max;
-    const Hit hit = resume_max_mip({&field_, &pyramid_}, ray, max_mip::kNotClear);
-    const double lines = hit.t * std::max(std::abs(ray.direction.x) * static_cast<double>(std::abs(scales_.per_x)),
-                                          std::abs(ray.direction.y) * static_cast<double>(std::abs(scales_.per_y)));
-    return hit && lines < kMostLines ? static_cast<std::int32_t>(lines) + 2 : kFar;
-  }
-
-  // Octants of the rays that are taken, as bits.
-  static HWY_INLINE VI octant_bit(const RowRays& r) {
-    return hn::IfThenElseZero(hn::RebindMask(di, r.taken), hn::Shl(hn::Set(di, 1), r.octant));
-  }
-  static std::int32_t bits_of_lanes(VI v) {
-    alignas(64) std::int32_t lanes[N];
-    hn::Store(v, di, lanes);
-    std::int32_t all = 0;
-    for (const std::int32_t one : lanes) all |= one;
-    return all;
+    return line_behind_hit({&field_, &pyramid_}, fan_, {rays_.dx[at], rays_.dy[at], rays_.dz[at]}, scales_);
   }
 
   // Sights of a strip of which nothing is known.
@@ -571,7 +549,7 @@ class FanWalk {
       const RowRays r = row(i);
       const VF zero = hn::Zero(df), one = hn::Set(df, 1), never = hn::Set(df, kNoTime);
       VF T = hn::LoadU(df, T_.data() + static_cast<std::size_t>(i) * N);
-      if (limited) T = limit(T, r.per_major);
+      if (limited) T = limit(fan_, T, r.per_major);
       const VI cell = hn::LoadU(di, cell_.data() + static_cast<std::size_t>(i) * N);
       const MF hit = hn::And(hn::Lt(T, never), hn::Ge(T, zero));
       const MI hits = hn::RebindMask(di, hit);
@@ -594,9 +572,9 @@ class FanWalk {
       const VF v = within(gy, in_cell_y_, row_, origin_cell_.row, grid_.cell_rows);
       const VI none = hn::Set(di, -1);
       const std::ptrdiff_t to = begin_ + i * step_;
-      put(t, hits_.t + to, direct), put(u, hits_.u + to, direct), put(v, hits_.v + to, direct);
-      put(hn::IfThenElse(hits, col, none), hits_.col + to, direct);
-      put(hn::IfThenElse(hits, row_, none), hits_.row + to, direct);
+      put(t, hits_.t + to, direct, width_), put(u, hits_.u + to, direct, width_), put(v, hits_.v + to, direct, width_);
+      put(hn::IfThenElse(hits, col, none), hits_.col + to, direct, width_);
+      put(hn::IfThenElse(hits, row_, none), hits_.row + to, direct, width_);
       const std::uint64_t some = (std::uint64_t{1} << width_) - 1;
       if (hits_.status) {
         const std::uint64_t bits = bits_of(hit);
@@ -631,40 +609,6 @@ class FanWalk {
       FanSight* to = sights_ + begin_ + i * step_;
       for (int l = 0; l < width_; ++l) to[l] = {clear[l], static_cast<std::uint32_t>(cells[l])};
     }
-  }
-  // Turns hits outside the range of the rays into misses, and doubtful ones into unknown times.
-  HWY_NOINLINE VF limit(VF T, VF per_major) const {
-    const VF never = hn::Set(df, kNoTime), zero = hn::Zero(df);
-    const auto time = [](double t) { return static_cast<float>(std::clamp(t, -0x1p126, 0x1p126)); };
-    const VF near = hn::Div(hn::Set(df, time(fan_.t_min)), per_major);
-    const VF far = hn::Div(hn::Set(df, time(fan_.t_max)), per_major);
-    const MF hit = hn::And(hn::Ge(T, zero), hn::Lt(T, never));
-    // A hit is within its step, floats are off by less than another one.
-    const VF slack =
-        hn::MulAdd(hn::Set(df, 0x1p-20f), hn::Add(hn::Abs(T), hn::Max(hn::Abs(near), zero)), hn::Set(df, 3));
-    const MF late = hn::And(hit, hn::Gt(hn::Sub(T, slack), far));
-    // No hit is before the origin.
-    const VF begin = fan_.t_min > 0 ? near : hn::Set(df, -kNoTime);
-    const MF early = hn::And(hit, hn::Lt(hn::Sub(T, slack), begin));
-    const MF at_end = hn::And(hit, hn::Ge(hn::Add(T, slack), far));
-    const VF unknown = hn::Set(df, -kNoTime);
-    // Above the ground to the end; not if nothing is known, where both sides are infinite.
-    const VF until = hn::Sub(hn::Set(df, -1), T), rounded = hn::MulAdd(hn::Set(df, 0x1p-19f), hn::Abs(until), far);
-    const MF clear = hn::And(hn::Lt(T, zero), hn::Gt(hn::Sub(until, hn::Set(df, 1)), rounded));
-    // Before a late hit the ray is above, but t_min may be behind it.
-    T = hn::IfThenElse(hn::Or(early, at_end), unknown, T);
-    return hn::IfThenElse(hn::Or(hn::AndNot(early, late), clear), never, T);
-  }
-  template <class V, class E>
-  HWY_INLINE void put(V v, E* to, bool direct) const {
-    constexpr hn::Simd<E, N, 0> d;
-    if (direct) {
-      hn::StoreU(v, d, to);
-      return;
-    }
-    alignas(64) E all[N];
-    hn::Store(v, d, all);
-    for (int i = 0; i < width_; ++i) to[i] = all[i];
   }
 
   const HeightField& field_;
