@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -261,12 +262,13 @@ bool Scene::blocks(const StartedRay& ray, std::uint32_t object) const {
 // `own` is the ray in the object's space.
 Hit Scene::accepted_hit(const StartedRay& ray, std::uint32_t object, const Ray& own, MarchStats* stats) const {
   const SceneRules& rules = *ray.rules;
-  const HitFilter accept = [&](Hit hit) {
+  const auto in_scene = [&](Hit hit) {
     // No hit of the scene: see take_hit().
     if (hit.wall && hit.height < walls_end_) return true;
     hit.object = object;
     return rules.accept(ray.ray, hit);
   };
+  const HitFilter accept = std::ref(in_scene);  // allocates nothing
   // A free ray by `own`, as the march of the field expects it.
   return field_of(object).accepted_hit(own, ray.from_on(object), {rules.sides, rules.accept ? &accept : nullptr},
                                        stats);

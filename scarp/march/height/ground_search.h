@@ -12,9 +12,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "scarp/accel/max_pyramid.h"
+#include "scarp/base/kept_memory.h"
 #include "scarp/base/world_box.h"
 #include "scarp/march/closest_of.h"
 #include "scarp/march/height/height_target.h"
@@ -133,7 +133,7 @@ class GroundSearch {
   const MaxPyramid& pyramid_;
   Query& query_;
   double flat_;
-  std::vector<Node> nodes_;  // a heap with the smallest bound on top
+  KeptVector<Node> nodes_;  // a heap with the smallest bound on top
 };
 
 }  // namespace scarp

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "scarp/base/kept_memory.h"
 #include "scarp/base/march_trace.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip_resume.h"
@@ -29,7 +30,8 @@ template <Ask ask>
 Hit march_along_line(const HeightTarget& target, const Ray& ray, const Wanted& wanted, MarchStats* stats) {
   if (ask != Ask::as_wanted || wanted.bisects) return march_exhaustive(target, ray, {}, stats);
   Hit hit;
-  std::vector<Hit> own, &hits = wanted.all ? *wanted.all : own;
+  KeptVector<Hit> own;
+  std::vector<Hit>& hits = wanted.all ? *wanted.all : own;
   hit.status = (wanted.from_below ? all_hits_from_below_exhaustive : all_hits_exhaustive)(target, ray, hits);
   if (wanted.all) return hit;
   for (const Hit& one : hits) {

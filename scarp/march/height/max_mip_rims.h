@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/base/kept_memory.h"
 #include "scarp/march/height/cells_beside.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/rim_time.h"
@@ -190,7 +191,9 @@ struct Rim {
     if (!clip_to_heights(field, ray, ground.lowest(), ground.highest(), begin, end)) return false;
     Side& side = to.side;
     bool first = true;
-    for (RimStretch s : stretches(begin, end, box)) {
+    KeptVector<RimStretch> all;
+    find_stretches(begin, end, box, all);
+    for (RimStretch s : all) {
       if (!std::exchange(first, false) && s.end <= reached) continue;
       if (s.begin > reached) to = {};
       // Cells that share a rim overlap: the ray has been followed up to here.
@@ -234,8 +237,7 @@ struct Rim {
   }
 
   // Sorted by start. The clearance has a kink where the ray passes the end of an edge.
-  std::vector<RimStretch> stretches(double begin, double end, const RimBox& box) const {
-    std::vector<RimStretch> found;
+  void find_stretches(double begin, double end, const RimBox& box, std::vector<RimStretch>& found) const {
     for (int row = box.north; row <= box.south; ++row) {
       for (int col = box.west; col <= box.east; ++col) {
         const int own_col = x.within(col), own_row = y.within(row);
@@ -263,7 +265,6 @@ struct Rim {
       }
     }
     std::sort(found.begin(), found.end(), [](const RimStretch& a, const RimStretch& b) { return a.begin < b.begin; });
-    return found;
   }
 };
 

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
+
+#include "scarp/base/kept_memory.h"
 
 namespace scarp {
 namespace {
@@ -27,7 +28,8 @@ void search(const VoxelGrid& grid, const Bound& bound, const Solid& solid, const
   int side = VoxelGrid::kBrick;
   while (side < std::max({grid.size().x, grid.size().y, grid.size().z})) side *= 2;
   const auto later = [](const Block& a, const Block& b) { return a.bound > b.bound; };
-  std::vector<Block> blocks{{0, ivec3(0), side}};  // a heap, the smallest bound on top
+  KeptVector<Block> blocks;  // a heap, the smallest bound on top
+  blocks.push_back({0, ivec3(0), side});
   while (!blocks.empty()) {
     std::pop_heap(blocks.begin(), blocks.end(), later);
     const Block block = blocks.back();
