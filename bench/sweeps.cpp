@@ -22,6 +22,7 @@
 #include "bench/trace_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/height/closest_point.h"
 #include "scarp/march/height/ground_contact.h"
 #include "scarp/march/voxel/voxel_contact.h"
 
@@ -44,7 +45,7 @@ struct Moving {
   dvec3 motion;
 };
 
-HeightField as_triangles(const HeightField& field) {
+HeightField in_metres(const HeightField& field, Surface surface) {
   std::vector<float> samples;
   field.visit([&](const auto& grid) {
     for (int row = 0; row < grid.rows; ++row) {
@@ -52,7 +53,7 @@ HeightField as_triangles(const HeightField& field) {
         samples.push_back(static_cast<float>(field.height_from_sample(static_cast<double>(grid.at(col, row)))));
     }
   });
-  return HeightField::own(std::move(samples), field.cols(), field.rows(), {.surface = Surface::triangles});
+  return HeightField::own(std::move(samples), field.cols(), field.rows(), {.surface = surface});
 }
 
 struct Class {
@@ -108,7 +109,7 @@ void time_pass(const std::vector<Moving>& sweeps, const Sweep& sweep, std::vecto
 void measure_beside_bullet(const SweepsOptions& options, Json& rows) {
   FieldOptions ground;
   ground.size = options.size;
-  const HeightField field = as_triangles(load_field(ground).field);
+  const HeightField field = in_metres(load_field(ground).field, Surface::triangles);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
   const BulletSweeper peer(field);
@@ -150,6 +151,53 @@ void measure_beside_bullet(const SweepsOptions& options, Json& rows) {
   }
   fmt::print("{} x {} samples, triangles; processor time of one thread per sweep, median of {}\n", options.size,
              options.size, options.repeats);
+  print_table(lines, 1);
+}
+
+// Contacts of the same bodies with the same samples as triangles and as a bilinear surface.
+void compare_surfaces(const SweepsOptions& options, Json& rows) {
+  FieldOptions ground;
+  ground.size = options.size;
+  const HeightField loaded = load_field(ground).field;
+  const HeightField triangles = in_metres(loaded, Surface::triangles), bilinear = in_metres(loaded, Surface::bilinear);
+  const MaxPyramid own(triangles), other(bilinear);
+  const HeightTarget targets[] = {{&triangles, &own}, {&bilinear, &other}};
+  std::vector<std::vector<std::string>> lines{{"", "calls", "triangles us", "bilinear us", "ratio"}};
+  const auto measure = [&](const std::string& name, const std::vector<Moving>& bodies, const auto& query) {
+    std::vector<double> us[2];
+    Timed unused;
+    for (int i = 0; i <= options.repeats; ++i) {
+      for (const int surface : {0, 1}) {
+        time_pass(
+            bodies, [&](const Moving& moving) { return query(targets[surface], moving); }, us[surface], unused);
+      }
+    }
+    const double first = median({us[0].begin() + 1, us[0].end()}), second = median({us[1].begin() + 1, us[1].end()});
+    Json row;
+    row["class"] = fmt::format("surfaces: {}", name);
+    row["sweeps"] = bodies.size();
+    row["triangles_us"] = first;
+    row["bilinear_us"] = second;
+    row["ratio"] = second / first;
+    rows.push_back(row);
+    lines.push_back({name, short_number(row["sweeps"], 9), short_number(row["triangles_us"]),
+                     short_number(row["bilinear_us"]), short_number(row["ratio"])});
+  };
+  const auto touch = [](const HeightTarget& target, const Moving& moving) -> std::optional<double> {
+    const auto hit = sweep(target, moving.capsule, moving.motion);
+    return hit ? std::optional(hit->t) : std::nullopt;
+  };
+  for (const Class& kind : kClasses)
+    measure(kind.name, sweeps_of(kind, triangles, std::max(1, options.sweeps / kind.fewer), options.seed), touch);
+  std::vector<Moving> beside = sweeps_of(kClasses[0], triangles, options.sweeps, options.seed);
+  measure("box of 1 m that just touches", beside, [](const HeightTarget& target, const Moving& moving) {
+    return std::optional(overlaps(target, TurnedBox{moving.capsule.a, dvec3(0.5)}) ? 1.0 : 0.0);
+  });
+  measure("point 1 m above the ground", beside, [](const HeightTarget& target, const Moving& moving) {
+    return std::optional(closest_point(target, moving.capsule.a, 10)->distance);
+  });
+  fmt::print("{} x {} samples; processor time of one thread per call, median of {}\n", options.size, options.size,
+             options.repeats);
   print_table(lines, 1);
 }
 
@@ -288,6 +336,7 @@ std::int64_t judge_random(const SweepsOptions& options, Json& rows) {
 void run_sweeps(const SweepsOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   if (options.sweeps > 0) measure_beside_bullet(options, rows);
+  if (options.sweeps > 0) compare_surfaces(options, rows);
   const std::int64_t wrong = judge_random(options, rows);
   write_json(report, rows);
   if (wrong > 0) throw Error(fmt::format("sweeps: {} of {} are wrong", wrong, options.judged));

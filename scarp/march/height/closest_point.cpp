@@ -18,7 +18,10 @@ double square(double x) { return x * x; }
 class Search {
  public:
   Search(const HeightField& field, const dvec3& p, double max_distance)
-      : field_(field), p_(p), best_(std::nextafter(max_distance, std::numeric_limits<double>::infinity())) {}
+      : field_(field),
+        p_(p),
+        slack_(GroundSearch<Search>::slack(field)),
+        best_(std::nextafter(max_distance, std::numeric_limits<double>::infinity())) {}
 
   double best() const { return best_; }
   double bound(const WorldBox& box) const {
@@ -37,6 +40,11 @@ class Search {
   // Returns whether the quarters of the part contain nothing better. Both the point found so far and the closest one
   // are within GroundPart::off of the triangles.
   bool compare(const GroundPart& part, bool flat) {
+    if (part.off > 0) {
+      const PatchPoint found = closest_of_patch(part.patch(), p_, slack_);
+      take(found.point, part.cell, part.u + part.side * found.u, part.v + part.side * found.v);
+      if (found.proven) return true;
+    }
     const HeightFieldSettings& settings = field_.settings();
     double nearest = std::numeric_limits<double>::infinity();
     for (const Triangle& triangle : part.triangles) {
@@ -73,6 +81,7 @@ class Search {
 
   const HeightField& field_;
   dvec3 p_;
+  double slack_;
   double best_;
   bool found_ = false;
   ClosestPoint answer_;

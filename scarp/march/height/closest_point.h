@@ -2,8 +2,8 @@
 // The point of the ground that is closest to a given one: for contacts, clearances and distance checks.
 //
 //            . p          blocks of the pyramid, the nearest first: a block whose box is farther than the best point
-//           /             so far holds nothing closer. A cell's triangles are compared in closed form; a bilinear
-//   ___    x___           cell is split until it is as flat as two triangles (ground_search.h).
+//           /             so far holds nothing closer. A cell's triangles are compared in closed form, a bilinear
+//   ___    x___           cell by Newton's method (patch_contact.h).
 //      \__/
 //
 // Guarantee: exact for `triangles`, to rounding. For `bilinear` the distance is too large by at most 2^-20 of the

@@ -21,7 +21,8 @@ void require_ground(const HeightTarget& target) {
 // A query of GroundSearch: times.
 class SweepSearch {
  public:
-  SweepSearch(const Capsule& capsule, const dvec3& motion) : capsule_(capsule), motion_(motion) {}
+  SweepSearch(const Capsule& capsule, const dvec3& motion, double slack)
+      : capsule_(capsule), motion_(motion), slack_(slack) {}
 
   double best() const { return best_; }
   double bound(const WorldBox& box) const {
@@ -35,12 +36,13 @@ class SweepSearch {
     return first;
   }
   bool compare(const GroundPart& part, bool flat) {
-    if (!flat) return false;
+    if (!flat) return touches_patch(part);
     for (const Triangle& triangle : part.triangles) {
       const auto t = sweep_time(capsule_, motion_, triangle, std::min(best_, 1.0));
       if (!t || !(*t < best_)) continue;
       best_ = *t;
       triangle_ = triangle;
+      curved_.reset();
       cell_ = part.cell;
     }
     return true;
@@ -48,13 +50,27 @@ class SweepSearch {
 
   std::optional<GroundContact> answer() const {
     if (best_ == kNever) return {};
-    return GroundContact{contact_at(capsule_, motion_, triangle_, best_), cell_};
+    return GroundContact{curved_ ? *curved_ : contact_at(capsule_, motion_, triangle_, best_), cell_};
   }
 
  private:
+  // Returns whether the first contact with the part is known.
+  bool touches_patch(const GroundPart& part) {
+    const auto contact = patch_contact(part.patch(), capsule_, motion_, std::min(best_, 1.0), slack_);
+    if (!contact) return false;
+    if (contact->t < best_) {
+      best_ = contact->t;
+      curved_ = *contact;
+      cell_ = part.cell;
+    }
+    return contact->proven;
+  }
+
   const Capsule& capsule_;
   dvec3 motion_;
+  double slack_;
   double best_ = kNever;
+  std::optional<Contact> curved_;  // with a curved part; else triangle_ is touched
   Triangle triangle_{};
   Cell cell_{};
 };
@@ -76,13 +92,27 @@ class BoxSearch {
     return scarp::overlaps(wider, north_west) || scarp::overlaps(wider, south_east) ? 0 : kNever;
   }
   bool compare(const GroundPart& part, bool flat) {
-    if (!flat) return false;
+    if (!flat) {
+      found_ = contains_point_of(part);
+      return found_;
+    }
     for (const Triangle& triangle : part.triangles) found_ = found_ || scarp::overlaps(box_, triangle);
     return true;
   }
   bool found() const { return found_; }
 
  private:
+  // Tests points of the surface near the middle of the box.
+  bool contains_point_of(const GroundPart& part) const {
+    const Patch patch = part.patch();
+    for (const Triangle& triangle : part.triangles) {
+      const dvec3 q = closest_of_triangle(box_.centre, triangle) - patch.corner;
+      const dvec3 p = (patch.at(q.x / patch.along_u.x, q.y / patch.along_v.y) - box_.centre) * box_.turn;
+      if (std::abs(p.x) <= box_.half.x && std::abs(p.y) <= box_.half.y && std::abs(p.z) <= box_.half.z) return true;
+    }
+    return false;
+  }
+
   const TurnedBox& box_;
   bool found_ = false;
 };
@@ -92,7 +122,7 @@ class BoxSearch {
 std::optional<GroundContact> sweep(const HeightTarget& target, const Capsule& capsule, const dvec3& motion) {
   require_ground(target);
   validate(capsule, motion);
-  SweepSearch search(capsule, motion);
+  SweepSearch search(capsule, motion, GroundSearch<SweepSearch>::slack(*target.field));
   GroundSearch(target, search).run();
   return search.answer();
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Tests spheres, capsules and boxes against the ground: the first contact of a moving one, and overlap.
 //
-// Guarantee: exact to rounding for `triangles` (march/sweep.h). A bilinear surface is approximated by triangles within
-// 2^-21 of the shorter side of a cell. Both sides of the surface count; the ground below it does not, nor do walls of
-// solid ground. Cost: a few blocks per level and per cell along the path, found best first in the pyramid.
+// Guarantee: exact to rounding for `triangles` (march/sweep.h). Over bilinear surfaces nothing is deeper in the ground
+// than 2^-21 of the shorter side of a cell (patch_contact.h). Both sides of the surface count; the ground below it does
+// not, nor do walls of solid ground. Cost: a few blocks per level and per cell along the path, found best first in the
+// pyramid.
 #pragma once
 
 #include <optional>

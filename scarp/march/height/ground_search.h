@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Best-first search of the ground: blocks of the pyramid, then cells, then ever smaller parts of bilinear cells until
-// two triangles approximate the part.
+// the query knows their result, or two triangles approximate the part.
 //
 //   query.bound(box)          lower bound of the result (a distance or a time) over the ground in a box, or infinity
 //   query.bound(part)         the same for a part, by its triangles and its maximum distance from them
 //   query.best()              the best result so far: boxes that cannot improve it are skipped
-//   query.compare(part, flat) compares the two triangles of a part; unless it is `flat`, its quarters follow
+//   query.compare(part, flat) examines a part, if it is `flat` by its two triangles; unless it returns true, its
+//   quarters
+//                             follow
 #pragma once
 
 #include <algorithm>
@@ -18,6 +20,7 @@
 #include "scarp/base/world_box.h"
 #include "scarp/march/closest_of.h"
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/height/patch_contact.h"
 
 namespace scarp {
 
@@ -30,6 +33,12 @@ struct GroundPart {
   std::array<Triangle, 2> triangles;
   /// Maximum distance in metres between the surface of the part and its triangles.
   double off;
+
+  /// The part of a bilinear cell.
+  Patch patch() const {
+    const auto& [nw, sw, ne] = triangles[0];
+    return {nw, ne - nw, sw - nw, nw.z - ne.z + (triangles[1][0].z - sw.z)};
+  }
 };
 
 template <class Query>
@@ -39,10 +48,12 @@ class GroundSearch {
   static constexpr double kFlat = 0x1p-20;
 
   GroundSearch(const HeightTarget& target, Query& query)
-      : field_(*target.field),
-        pyramid_(*target.pyramid),
-        query_(query),
-        flat_(kFlat * std::min(field_.settings().cell_x, field_.settings().cell_y)) {}
+      : field_(*target.field), pyramid_(*target.pyramid), query_(query), flat_(2 * slack(field_)) {}
+
+  /// Maximum error of a bilinear surface, in metres.
+  static double slack(const HeightField& field) {
+    return 0.5 * kFlat * std::min(field.settings().cell_x, field.settings().cell_y);
+  }
 
   void run() {
     if (!field_.has_cells() || field_.all_nodata()) return;

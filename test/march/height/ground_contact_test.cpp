@@ -100,6 +100,45 @@ void expect_no_tunnelling(Surface surface, int parts) {
 TEST(Sweep, NeverTunnelsThroughTriangles) { expect_no_tunnelling(Surface::triangles, 1); }
 TEST(Sweep, NeverTunnelsThroughBilinearCells) { expect_no_tunnelling(Surface::bilinear, 4); }
 
+// Points of every cell, exactly on the surface: none is passed before the contact.
+TEST(Sweep, PassesNoPointOfBilinearCells) {
+  Random random(14);
+  constexpr int kPoints = 12;
+  int contacts = 0;
+  const int rounds = cases(2000, 300, 60);
+  for (int round = 0; round < rounds; ++round) {
+    const HeightField field = rugged(random, 6, std::pow(2, uniform(random, -3, 1)), round % 3 ? 0 : 0.2, {});
+    const MaxPyramid pyramid(field);
+    const double slack = 0x1p-20 * std::min(field.settings().cell_x, field.settings().cell_y);
+    std::vector<dvec3> points;
+    for (int row = 0; row < field.cell_rows(); ++row) {
+      for (int col = 0; col < field.cell_cols(); ++col) {
+        const auto h = field.cell_heights({col, row});
+        for (int i = 0; h && i <= kPoints * (kPoints + 2); ++i) {
+          const double u = static_cast<double>(i % (kPoints + 1)) / kPoints,
+                       v = static_cast<double>(i / (kPoints + 1)) / kPoints;
+          points.push_back(field.world_from_grid(col + u, row + v, height_in_cell(Surface::bilinear, *h, u, v)));
+        }
+      }
+    }
+    const auto triangles = bench::all_triangles(field, 1);
+    for (int i = 0; i < 20; ++i) {
+      const auto [capsule, motion] = random_sweep(field, triangles, random);
+      const auto found = sweep({&field, &pyramid}, capsule, motion);
+      contacts += found.has_value();
+      if (found && found->t == 0) continue;
+      const dvec3 way = (found ? found->t : 1) * motion, &a = capsule.a, &b = capsule.b;
+      for (const dvec3& p : points) {
+        const double away = a == b ? bench::to_segment(p, a, a + way)
+                                   : std::min(bench::to_triangle(p, JudgedTriangle{a, b, b + way}),
+                                              bench::to_triangle(p, JudgedTriangle{a, b + way, a + way}));
+        ASSERT_GE(away, capsule.radius - slack) << round << ", " << i;
+      }
+    }
+  }
+  EXPECT_GT(contacts, rounds);
+}
+
 HeightField plane(int cells, float height) {
   const auto side = static_cast<std::size_t>(cells + 1);
   return HeightField::own(std::vector<float>(side * side, height), cells + 1, cells + 1);
