@@ -48,7 +48,11 @@ endfunction()
 # From <prefix>/<libdir>/pkgconfig back to the prefix, which is two folders up for lib and three for lib/<triplet>.
 set(up "")
 string(REGEX REPLACE "[^/]+" ".." up "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
-pc_file(scarp-core "Rays over height fields and voxel grids" "fmt;glm;tbb;libhwy" "${pc_core_libraries}" core)
+set(pc_core_requires fmt glm libhwy)
+if(SCARP_TBB)
+  list(APPEND pc_core_requires tbb)
+endif()
+pc_file(scarp-core "Rays over height fields and voxel grids" "${pc_core_requires}" "${pc_core_libraries}" core)
 if(SCARP_FILES)
   pc_file(scarp "Rays over height fields and voxel grids: files and pictures" "scarp-core = ${PROJECT_VERSION};${pc_files_requires}"
           "${pc_files_libraries}" files)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/base/parallel.h"
 
+#ifndef SCARP_WITHOUT_TBB
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
@@ -26,7 +28,9 @@ namespace {
 // The thread sanitizer cannot see into TBB and reports every hand-over of work as a race. Sanitizer builds compile this
 // file without instrumentation and annotate what TBB guarantees: pieces see what was written before the loop, and code
 // after the loop sees what pieces wrote. In other builds this does nothing.
-#ifdef SCARP_TSAN
+#ifdef SCARP_WITHOUT_TBB
+// The loops are serial.
+#elif defined(SCARP_TSAN)
 class HandOver {
  public:
   HandOver() { __tsan_release(&begin_); }
@@ -73,6 +77,12 @@ class Pieces {
   std::mutex reporting_;
 };
 
+#ifdef SCARP_WITHOUT_TBB
+void run_on_all_threads(std::int64_t count, std::int64_t grain, Pieces& pieces) {
+  for (std::int64_t begin = 0; begin < count && pieces.run(begin, std::min(count, begin + grain)); begin += grain) {
+  }
+}
+#else
 void run_on_all_threads(std::int64_t count, std::int64_t grain, Pieces& pieces) {
   tbb::task_group_context context;
   HandOver hand_over;
@@ -85,6 +95,7 @@ void run_on_all_threads(std::int64_t count, std::int64_t grain, Pieces& pieces) 
       },
       tbb::simple_partitioner(), context);
 }
+#endif
 
 void run_on(Executor& executor, std::int64_t count, std::int64_t grain, Pieces& pieces) {
   std::atomic<bool> over{false};
@@ -125,6 +136,10 @@ void parallel_for(std::int64_t count, std::int64_t grain, const std::function<vo
   if (progress && !progress(1.0)) throw Interrupted();
 }
 
+#ifdef SCARP_WITHOUT_TBB
+ThreadLimit::ThreadLimit(int) {}
+ThreadLimit::~ThreadLimit() = default;
+#else
 ThreadLimit::ThreadLimit(int threads) {
   if (threads > 0) {
     control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -132,5 +147,6 @@ ThreadLimit::ThreadLimit(int threads) {
 }
 
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+#endif
 
 }  // namespace scarp

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scarp/base/error.h"
+#include "scarp/base/prefetch.h"
 
 namespace scarp {
 namespace {
@@ -398,7 +399,7 @@ dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
 void HeightField::prefetch_around(Cell cell) const {
   visit([&](const auto& grid) {
     for (int row = std::max(cell.row - 1, 0); row < std::min(cell.row + 3, rows_); ++row)
-      __builtin_prefetch(grid.row(row) + cell.col);
+      prefetch(grid.row(row) + cell.col);
   });
 }
 

@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/voxel/voxel_exhaustive.h"
 
+#include <compare>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 
 namespace scarp {
 namespace {
 
-__extension__ using Wide = __int128;
+// distance * speed, for any distance and 0 <= speed < 2^31, as high * 2^32 + low: not all compilers have 128 bits.
+struct Product {
+  std::int64_t high, low;
+
+  Product(std::int64_t distance, std::int64_t speed) {
+    const std::int64_t lower = (distance & 0xffff'ffff) * speed;
+    high = (distance >> 32) * speed + (lower >> 32);
+    low = lower & 0xffff'ffff;
+  }
+  friend auto operator<=>(const Product&, const Product&) = default;
+};
 
 // The crossing of a plane: distance / speed, then the rank of the axis.
 struct Event {
@@ -15,7 +27,7 @@ struct Event {
   int axis, rank;
 
   friend bool operator<(const Event& a, const Event& b) {
-    const Wide left = Wide{a.distance} * b.speed, right = Wide{b.distance} * a.speed;
+    const Product left(a.distance, b.speed), right(b.distance, a.speed);
     return left != right ? left < right : a.rank < b.rank;
   }
 };
