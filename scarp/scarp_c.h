@@ -288,7 +288,7 @@ SCARP_C_API scarp_status scarp_cast_fan(const scarp_scene* scene, const scarp_fa
 /// A contact or a closest point.
 typedef struct scarp_contact {
   double t;          ///< of scarp_sweep(): fraction of the motion, 0..1; 0: in contact at the start
-  double distance;   ///< of scarp_closest_point(): metres
+  double distance;   ///< metres; of scarp_sweep() if t is 0: minus the way along the normal after which it only touches
   double point[3];   ///< on the surface
   double normal[3];  ///< unit, towards the moving body; outward for a closest point, 0 in a voxel
   uint32_t object;   ///< as in scarp_hit, like part, col, row and voxel

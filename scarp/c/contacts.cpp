@@ -34,7 +34,7 @@ scarp_status scarp_sweep(const scarp_scene* scene, const double a[3], const doub
     required(contact, "contact");
     const auto found = query.sweep({vector_from(a, "a"), vector_from(b, "b"), radius}, vector_from(motion, "motion"));
     *contact = found ? contact_at(found->point, found->normal, found->place, found->object) : scarp_contact{};
-    if (found) contact->t = found->t;
+    if (found) contact->t = found->t, contact->distance = -found->depth;
   });
 }
 

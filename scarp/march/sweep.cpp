@@ -127,16 +127,22 @@ std::optional<double> sweep_time(const Capsule& capsule, const dvec3& motion, co
   return t;
 }
 
+Contact overlap_at(const Capsule& capsule, const dvec3& motion, const ClosestPair& closest, const dvec3& n) {
+  const dvec3 away = closest.first - closest.second;
+  Contact contact{0, closest.second, normalize(away != dvec3(0.0) ? away : dot(n, motion) > 0 ? -n : n)};
+  // The end that is farthest behind the plane leaves it last.
+  const double above =
+      std::min(dot(contact.normal, capsule.a - closest.second), dot(contact.normal, capsule.b - closest.second));
+  contact.depth = std::max(0.0, capsule.radius - (away != dvec3(0.0) ? length(away) : std::min(above, 0.0)));
+  return contact;
+}
+
 Contact contact_at(const Capsule& capsule, const dvec3& motion, const Triangle& triangle, double t) {
-  const ClosestPair pair = closest_of_segment_and_triangle(capsule.a + t * motion, capsule.b - capsule.a, triangle);
-  const dvec3 away = pair.first - pair.second;
-  Contact contact{t, pair.second, dvec3(0.0)};
-  if (away != dvec3(0.0)) {
-    contact.normal = normalize(away);
-  } else {
-    const dvec3 n = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
-    contact.normal = normalize(dot(n, motion) > 0 ? -n : n);
-  }
+  const Capsule there{capsule.a + t * motion, capsule.b + t * motion, capsule.radius};
+  Contact contact = overlap_at(there, motion, closest_of_segment_and_triangle(there.a, there.b - there.a, triangle),
+                               cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+  contact.t = t;
+  if (t > 0) contact.depth = 0;
   return contact;
 }
 

@@ -16,6 +16,8 @@
 
 namespace scarp {
 
+struct ClosestPair;  // closest_of.h
+
 /// All points within `radius` of the segment a..b; a sphere if b is a.
 struct Capsule {
   dvec3 a{0.0}, b{0.0};
@@ -28,6 +30,7 @@ struct Contact {
   dvec3 point{0.0};   ///< where it touches
   dvec3 normal{0.0};  ///< unit, from the point towards the centre line; if that intersects the surface, the surface's
                       ///< normal towards the side that the motion comes from
+  double depth = 0;   ///< metres; if t is 0: the way along the normal after which it only touches there
 };
 
 /// Throws Error unless a capsule and a motion are finite and the radius is not negative.
@@ -35,6 +38,10 @@ void validate(const Capsule& capsule, const dvec3& motion);
 
 /// Returns the first t from 0 to `last` at which the capsule, moved by t * motion, touches the triangle.
 std::optional<double> sweep_time(const Capsule& capsule, const dvec3& motion, const Triangle& triangle, double last);
+
+/// Returns the contact of a capsule that overlaps or touches a surface at its start. `closest`: the closest points of
+/// the centre line and the surface; `n`: a normal of the surface there, of any length.
+Contact overlap_at(const Capsule& capsule, const dvec3& motion, const ClosestPair& closest, const dvec3& n);
 
 /// Returns the contact with a triangle that is touched at t.
 Contact contact_at(const Capsule& capsule, const dvec3& motion, const Triangle& triangle, double t);

@@ -120,6 +120,7 @@ std::optional<SceneContact> SceneQuery::sweep(const Capsule& capsule, const dvec
       best = SceneContact{*found, object};
       best->point = to.world_from_field(found->point);
       best->normal = to.world_from_normal(found->normal);
+      best->depth = found->depth * to.scale;
     }
     return last();
   });

@@ -301,7 +301,7 @@ TEST(C, ContactsAnswerAsInCpp) {
   const scarp::SceneQuery query(both.own_scene, {});
   std::mt19937_64 bits(3);
   std::uniform_real_distribution<double> x(0, 128), y(0, 190), z(0, 30);
-  int contacts = 0, boxes = 0;
+  int contacts = 0, boxes = 0, overlaps_at_start = 0;
   for (int i = 0; i < 200; ++i) {
     const double a[3] = {x(bits), y(bits), z(bits)}, b[3] = {a[0], a[1], a[2] + 1}, motion[3] = {5, -3, -12};
     scarp_contact contact;
@@ -312,6 +312,8 @@ TEST(C, ContactsAnswerAsInCpp) {
       ++contacts;
       EXPECT_EQ(contact.t, expected->t);
       EXPECT_EQ(contact.object, expected->object);
+      EXPECT_EQ(contact.distance, -expected->depth);
+      overlaps_at_start += expected->depth > 0;
       EXPECT_EQ(std::memcmp(contact.normal, &expected->normal, sizeof contact.normal), 0);
     }
     const double half[3] = {1, 2, 3}, turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
@@ -326,6 +328,7 @@ TEST(C, ContactsAnswerAsInCpp) {
       EXPECT_EQ(contact.distance, nearest->distance);
     }
   }
+  EXPECT_GT(overlaps_at_start, 0);
   EXPECT_GT(contacts, 40);
   EXPECT_GT(boxes, 5);
   const double at[3] = {};

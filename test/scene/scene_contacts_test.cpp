@@ -112,6 +112,7 @@ void expect_contacts_of_each_alone(const Scene& scene, std::uint32_t mask, const
         auto found =
             field.sweep({to.field_from_world(capsule.a), to.field_from_world(capsule.b), capsule.radius / to.scale},
                         to.field_from_world(Ray{.direction = motion}).direction);
+        if (found) found->depth *= to.scale;
         if (found)
           found->point = to.world_from_field(found->point), found->normal = to.world_from_normal(found->normal);
         return found;
@@ -125,6 +126,7 @@ void expect_contacts_of_each_alone(const Scene& scene, std::uint32_t mask, const
     ASSERT_EQ(contact->t, touch->first.t);
     ASSERT_EQ(contact->point, touch->first.point);
     ASSERT_EQ(contact->normal, touch->first.normal);
+    ASSERT_EQ(contact->depth, touch->first.depth);
     expect_same_place(contact->place, touch->first.place);
   }
   const auto close = first_of<FieldPoint>(

@@ -75,6 +75,60 @@ class SweepSearch {
   Cell cell_{};
 };
 
+// A query of GroundSearch: distances from the centre line of a capsule that overlaps the ground at its start.
+class DepthSearch {
+ public:
+  DepthSearch(const Capsule& capsule, double slack)
+      : capsule_(capsule), slack_(slack), best_(std::nextafter(capsule.radius, kNever)) {}
+
+  double best() const { return best_; }
+  double bound(const WorldBox& box) const {
+    const dvec3 low = min(capsule_.a, capsule_.b), high = max(capsule_.a, capsule_.b);
+    return length(max(max(box.low - high, low - box.high), dvec3(0.0)));
+  }
+  double bound(const GroundPart& part) const {
+    double nearest = kNever;
+    for (const Triangle& triangle : part.triangles) nearest = std::min(nearest, std::sqrt(closest(triangle).square()));
+    return std::max(0.0, nearest - part.off);
+  }
+  bool compare(const GroundPart& part, bool flat) {
+    if (!flat && capsule_.a == capsule_.b) {
+      const PatchPoint found = closest_of_patch(part.patch(), capsule_.a, slack_);
+      take({capsule_.a, found.point}, normal_of(part.triangles[0]), part.cell);
+      if (found.proven) return true;
+    }
+    for (const Triangle& triangle : part.triangles) {
+      if (flat) take(closest(triangle), normal_of(triangle), part.cell);
+    }
+    return flat;
+  }
+
+  /// `found`: the contact of the sweep, kept if no distance was below the radius.
+  GroundContact answer(const GroundContact& found, const dvec3& motion) const {
+    if (normal_ == dvec3(0.0)) return found;
+    return {overlap_at(capsule_, motion, pair_, normal_), cell_};
+  }
+
+ private:
+  static dvec3 normal_of(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+  ClosestPair closest(const Triangle& triangle) const {
+    return closest_of_segment_and_triangle(capsule_.a, capsule_.b - capsule_.a, triangle);
+  }
+  void take(const ClosestPair& pair, const dvec3& normal, Cell cell) {
+    const double distance = std::sqrt(pair.square());
+    if (!(distance < best_)) return;
+    best_ = distance;
+    pair_ = pair, normal_ = normal, cell_ = cell;
+  }
+
+  const Capsule& capsule_;
+  double slack_;
+  double best_;
+  ClosestPair pair_;
+  dvec3 normal_{0.0};
+  Cell cell_{};
+};
+
 // A query of GroundSearch that ends at the first triangle.
 class BoxSearch {
  public:
@@ -124,7 +178,11 @@ std::optional<GroundContact> sweep(const HeightTarget& target, const Capsule& ca
   validate(capsule, motion);
   SweepSearch search(capsule, motion, GroundSearch<SweepSearch>::slack(*target.field));
   GroundSearch(target, search).run();
-  return search.answer();
+  const auto found = search.answer();
+  if (!found || found->t > 0) return found;
+  DepthSearch depth(capsule, GroundSearch<DepthSearch>::slack(*target.field));
+  GroundSearch(target, depth).run();
+  return depth.answer(*found, motion);
 }
 
 bool overlaps(const HeightTarget& target, const TurnedBox& box) {

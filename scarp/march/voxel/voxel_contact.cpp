@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scarp/base/kept_memory.h"
+#include "scarp/march/closest_of.h"
 
 namespace scarp {
 namespace {
@@ -76,30 +77,50 @@ std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule,
   Triangle touched{};
   ivec3 touched_voxel(-1);
   const auto reach = [&] { return std::min(best, 1.0); };
-  const auto bound = [&](const dvec3& low, const dvec3& high) {
-    return sweep_bound(capsule, motion, low, high, reach());
-  };
-  const auto solid = [&](const ivec3& voxel, double least) {
+  // Calls visit(triangle) for the triangles of the faces that are not between solid voxels; `towards`: only those that
+  // the motion approaches.
+  const auto faces = [&](const ivec3& voxel, bool towards, const auto& visit) {
     for (int axis = 0; axis < 3; ++axis) {
       for (int side = 0; side < 2; ++side) {
         ivec3 beside = voxel;
         beside[axis] += side ? 1 : -1;
-        // Faces that the motion does not approach are touched at its start, or after others.
-        if (is_solid(grid, beside) || (least > 0 && (side ? motion[axis] >= 0 : motion[axis] <= 0))) continue;
+        if (is_solid(grid, beside) || (towards && (side ? motion[axis] >= 0 : motion[axis] <= 0))) continue;
         dvec3 corner(voxel), u(0.0), v(0.0);
         corner[axis] += side;
         u[(axis + 1) % 3] = 1, v[(axis + 2) % 3] = 1;
-        for (const Triangle& triangle :
-             {Triangle{corner, corner + u, corner + v}, {corner + u + v, corner + v, corner + u}}) {
-          const auto t = sweep_time(capsule, motion, triangle, reach());
-          if (!t || !(*t < best)) continue;
-          best = *t, touched = triangle, touched_voxel = voxel;
-        }
+        visit(Triangle{corner, corner + u, corner + v});
+        visit(Triangle{corner + u + v, corner + v, corner + u});
       }
     }
   };
+  const auto bound = [&](const dvec3& low, const dvec3& high) {
+    return sweep_bound(capsule, motion, low, high, reach());
+  };
+  const auto solid = [&](const ivec3& voxel, double least) {
+    // Faces that the motion does not approach are touched at its start, or after others.
+    faces(voxel, least > 0, [&](const Triangle& triangle) {
+      const auto t = sweep_time(capsule, motion, triangle, reach());
+      if (t && *t < best) best = *t, touched = triangle, touched_voxel = voxel;
+    });
+  };
   search(grid, bound, solid, [&] { return best; });
   if (best == kNever) return {};
+  if (best == 0) {
+    // The closest face, for the depth.
+    double nearest = std::nextafter(capsule.radius, kNever);
+    const dvec3 first = min(capsule.a, capsule.b), last = max(capsule.a, capsule.b);
+    search(
+        grid,
+        [&](const dvec3& low, const dvec3& high) { return length(max(max(low - last, first - high), dvec3(0.0))); },
+        [&](const ivec3& voxel, double) {
+          faces(voxel, false, [&](const Triangle& triangle) {
+            const double distance =
+                std::sqrt(closest_of_segment_and_triangle(capsule.a, capsule.b - capsule.a, triangle).square());
+            if (distance < nearest) nearest = distance, touched = triangle, touched_voxel = voxel;
+          });
+        },
+        [&] { return nearest; });
+  }
   return VoxelContact{contact_at(capsule, motion, touched, best), touched_voxel};
 }
 

@@ -20,6 +20,7 @@ std::optional<FieldContact> VoxelObjects::sweep(const Capsule& capsule, const dv
     if (!found || (best && !is_before(found->t, index, best->t, best->place.part))) return last();
     best = FieldContact{*found, {.voxel = found->voxel, .part = index}};
     best->point = turn.world_from_grid * found->point + object.origin;
+    best->depth = found->depth * length(turn.world_from_grid[0]);
     if (found->normal != dvec3(0.0)) best->normal = normalize(turn.world_from_grid * found->normal);
     return last();
   });

@@ -139,6 +139,56 @@ TEST(Sweep, PassesNoPointOfBilinearCells) {
   EXPECT_GT(contacts, rounds);
 }
 
+// The closest distance of a capsule's centre line to the triangles of a field, at its start.
+double to_all(const std::vector<JudgedTriangle>& triangles, const Capsule& capsule) {
+  double least = kInfinity;
+  for (const JudgedTriangle& triangle : triangles)
+    least = std::min(least, bench::to_triangle(capsule.a, capsule.b, triangle));
+  return least;
+}
+
+void expect_depths(Surface surface, int parts) {
+  Random random(15);
+  int overlapping = 0, crossing = 0;
+  for (int round = 0; round < cases(600, 200, 60); ++round) {
+    const HeightField field = rugged(random, 7, 2, round % 3 ? 0 : 0.2, {.surface = surface});
+    const MaxPyramid pyramid(field);
+    const auto triangles = bench::all_triangles(field, parts);
+    // The judge's triangles deviate from a bilinear surface.
+    const double off = parts == 1 ? kRounding : 2.0 / (parts * parts) + 0x1p-21;
+    for (int i = 0; i < 40; ++i) {
+      const auto [capsule, motion] = random_sweep(field, triangles, random);
+      const auto found = sweep({&field, &pyramid}, capsule, motion);
+      if (!found || found->t > 0) {
+        if (found) {
+          ASSERT_EQ(found->depth, 0);
+        }
+        continue;
+      }
+      ++overlapping;
+      const double away = to_all(triangles, capsule);
+      ASSERT_NEAR(length(found->normal), 1, kRounding);
+      // Moved out by the depth, it touches the plane at the point.
+      const auto above = [&](const dvec3& end) { return dot(found->normal, end - found->point) + found->depth; };
+      // The normal is the difference of two rounded points over their distance.
+      const double tilt = away > off ? kRounding * length(capsule.b - capsule.a) / away : 0;
+      ASSERT_NEAR(std::min(above(capsule.a), above(capsule.b)), capsule.radius, off + kRounding + tilt)
+          << round << ", " << i;
+      if (away > off) {
+        ASSERT_NEAR(found->depth, capsule.radius - away, off) << round << ", " << i;
+      } else {
+        ++crossing;
+        ASSERT_GE(found->depth, capsule.radius - off);
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 100);
+  EXPECT_GT(crossing, 10);
+}
+
+TEST(Sweep, StartsInOverlapOfTrianglesWithADepth) { expect_depths(Surface::triangles, 1); }
+TEST(Sweep, StartsInOverlapOfBilinearCellsWithADepth) { expect_depths(Surface::bilinear, 4); }
+
 HeightField plane(int cells, float height) {
   const auto side = static_cast<std::size_t>(cells + 1);
   return HeightField::own(std::vector<float>(side * side, height), cells + 1, cells + 1);
@@ -162,6 +212,12 @@ TEST(Sweep, StopsAtThePlane) {
   EXPECT_FALSE(sweep(target, {{-1, 4, 3}, {-1, 4, 3}, 0.5}, {0, 0, -9}));
   EXPECT_TRUE(sweep(target, {{-0.4, 4, 3}, {-0.4, 4, 3}, 0.5}, {0, 0, -9}));
   EXPECT_FALSE(sweep(target, {{4, 4, 3}, {4, 4, 3}, 0.5}, {0, 0, -1.4}));
+  // A ball whose centre is above the plane, and one below it; a vertical capsule through it.
+  const auto sunk = sweep(target, {{4, 4, 1.2}, {4, 4, 1.2}, 0.5}, {0, 0, -1});
+  EXPECT_NEAR(sunk->depth, 0.3, kRounding);
+  EXPECT_EQ(sunk->normal, dvec3(0, 0, 1));
+  EXPECT_EQ(sweep(target, {{4, 4, 0.75}, {4, 4, 0.75}, 0.5}, {0, 0, -1})->normal, dvec3(0, 0, -1));
+  EXPECT_NEAR(sweep(target, {{4, 4, 0.6}, {4, 4, 3}, 0.5}, {1, 0, -1})->depth, 0.9, kRounding);
   // Capsules that touch the plane from the start.
   EXPECT_EQ(sweep(target, {{4, 4, 1.5}, {4, 4, 1.5}, 0.5}, {1, 0, 0})->t, 0);
   EXPECT_EQ(sweep(target, {{4, 4, 1.2}, {4, 4, 1.2}, 0.5}, dvec3(0.0))->t, 0);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/ext/matrix_transform.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -94,6 +95,13 @@ TEST(VoxelSweep, NeverTunnels) {
       if (!found) continue;
       ASSERT_TRUE(grid.solid(found->voxel));
       ASSERT_NEAR(length(found->normal), 1, 0x1p-50);  // three products, a root, a quotient
+      double away = found->t > 0 ? capsule.radius : std::numeric_limits<double>::infinity();
+      for (const auto& face : faces) away = std::min(away, bench::to_triangle(capsule.a, capsule.b, face));
+      if (found->t > 0 || away > judged.rounding()) {
+        ASSERT_NEAR(found->depth, found->t > 0 ? 0 : capsule.radius - away, judged.rounding()) << round << ", " << i;
+      } else {
+        ASSERT_GE(found->depth, capsule.radius - judged.rounding()) << round << ", " << i;
+      }
     }
   }
   EXPECT_GT(contacts, cases(3000, 300, 50));
