@@ -53,9 +53,7 @@ std::vector<std::string> metadata_of(GDALDataset& dataset) {
   std::vector<std::string> pairs;
   for (char** pair = dataset.GetMetadata(); pair && *pair; ++pair) {
     const std::string_view text = *pair;
-    // SOURCE is the path as it was typed; RUN has the name of the file.
-    constexpr std::string_view kOfPart[] = {"PART=", "RUN=", "SOURCE=", "AREA_OR_POINT="};
-    if (std::none_of(std::begin(kOfPart), std::end(kOfPart), [&](auto name) { return text.starts_with(name); }))
+    if (!text.starts_with("PART=") && !text.starts_with("RUN=") && !text.starts_with("AREA_OR_POINT="))
       pairs.emplace_back(text);
   }
   return pairs;
@@ -63,7 +61,9 @@ std::vector<std::string> metadata_of(GDALDataset& dataset) {
 
 Traits traits_of(GDALDataset& dataset) {
   Traits traits;
-  for (const std::string& pair : metadata_of(dataset)) traits.emplace_back("metadata", pair);
+  // SOURCE is the path as it was typed; RUN has the name of the file.
+  for (const std::string& pair : metadata_of(dataset))
+    if (!pair.starts_with("SOURCE=")) traits.emplace_back("metadata", pair);
   traits.emplace_back("columns", fmt::format("{}", dataset.GetRasterXSize()));
   traits.emplace_back("bands", fmt::format("{}", dataset.GetRasterCount()));
   traits.emplace_back("CRS", dataset.GetProjectionRef());
