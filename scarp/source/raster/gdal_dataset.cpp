@@ -10,12 +10,12 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/base/vertical_unit.h"
 #include "scarp/source/raster/band_samples.h"
 #include "scarp/source/raster/decoded_dataset.h"
 #include "scarp/source/raster/default_scale.h"
 #include "scarp/source/raster/raster_place.h"
 #include "scarp/source/raster/suspected_nodata.h"
-#include "scarp/source/raster/vertical_unit.h"
 
 namespace scarp {
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "scarp/base/error.h"
 #include "scarp/source/raster/ground_scale.h"
@@ -166,18 +167,19 @@ double turn_of(const OGRSpatialReference* own, const GeoTransform& map, double c
   return options.crs != kNoCrs && like_degrees(map, cols, rows) != Degrees::no ? 360 : 0;
 }
 
+std::pair<double, std::string> vertical_unit_of(const OGRSpatialReference& crs) {
+  if (!crs.IsCompound() && !crs.IsVertical()) return {};
+  const char* name = nullptr;
+  const double unit = crs.GetTargetLinearUnits("VERT_CS", &name);
+  if (!crs.GetAttrNode("VERT_CS") && !crs.IsVertical()) return {};
+  return {unit, name ? name : ""};
+}
+
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options) {
   RasterPlace place;
   Georeference& geo = place.georeference;
   std::optional<OGRSpatialReference> crs = crs_of(dataset.GetSpatialRef(), options);
-  if (crs && (crs->IsCompound() || crs->IsVertical())) {
-    const char* name = nullptr;
-    const double unit = crs->GetTargetLinearUnits("VERT_CS", &name);
-    if (crs->GetAttrNode("VERT_CS") || crs->IsVertical()) {
-      place.vertical_unit = unit;
-      place.vertical_unit_name = name ? name : "";
-    }
-  }
+  if (crs) std::tie(place.vertical_unit, place.vertical_unit_name) = vertical_unit_of(*crs);
   const std::optional<GeoTransform> map = geotransform_of(dataset, options);
   if (!map) {
     if (!options.crs.empty() && options.crs != kNoCrs)

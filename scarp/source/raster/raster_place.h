@@ -8,6 +8,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scarp/base/georeference.h"
@@ -40,6 +41,9 @@ void check_geotransform(const GeoTransform& map, int cols, int rows, const std::
 /// file's name: an unusable CRS.
 double turn_of(const OGRSpatialReference* own, const GeoTransform& map, double cols, double rows,
                const RasterOptions& options);
+
+/// Returns metres per unit of the vertical part of a CRS, and the unit's name; 0 if it has none.
+std::pair<double, std::string> vertical_unit_of(const OGRSpatialReference& crs);
 
 /// Throws Error without the file's name: a rotated or degenerate geotransform, an unusable CRS.
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options);

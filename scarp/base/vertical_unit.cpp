@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/source/raster/vertical_unit.h"
+#include "scarp/base/vertical_unit.h"
 
 #include <cmath>
 #include <string>
