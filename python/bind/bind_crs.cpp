@@ -15,6 +15,7 @@
 #include "scarp/base/georeference.h"
 #include "scarp/source/raster/coordinates.h"
 #include "scarp/source/raster/metric_plane.h"
+#include "scarp/source/raster/raster_place.h"
 
 namespace scarp::python {
 namespace {
@@ -62,11 +63,18 @@ py::tuple line_plane(const MapFromNode& map_from_node, const std::string& crs, i
   return py::make_tuple(plane.cell_x, plane.cell_y, plane.grid_north_azimuth, plane.error_cells);
 }
 
-// Whether the CRS is in degrees, the diameter of its body in metres, and whether that is the Earth.
+// Whether the CRS is in degrees, the diameter of its body in metres, whether that is the Earth, metres per map unit of
+// other CRS, and metres per vertical unit (0: none).
 py::tuple crs_of(const std::string& crs) {
   const Georeference georeference = georeference_of({0, 1, 0, 0, 0, -1}, crs);
   const Body body = body_of(georeference);
-  return py::make_tuple(is_geographic(georeference), 2 * body.semi_major, body.earth);
+  OGRSpatialReference parsed;
+  double map_unit = 1, vertical_unit = 0;
+  if (parsed.importFromWkt(crs.c_str()) == OGRERR_NONE) {
+    if (parsed.IsProjected() || parsed.IsLocal()) map_unit = parsed.GetLinearUnits();
+    vertical_unit = vertical_unit_of(parsed).first;
+  }
+  return py::make_tuple(is_geographic(georeference), 2 * body.semi_major, body.earth, map_unit, vertical_unit);
 }
 
 // Longitude and latitude of a sample in degrees (WGS 84); None if it has none.

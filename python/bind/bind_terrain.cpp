@@ -12,6 +12,7 @@
 #include "python/bind/names.h"
 #include "python/bind/terrain_object.h"
 #include "scarp/base/error.h"
+#include "scarp/base/vertical_unit.h"
 #ifdef SCARP_PYTHON_FILES
 #include "scarp/scarp.h"
 #include "scarp/scene/file/from_raster.h"
@@ -93,6 +94,7 @@ std::unique_ptr<TerrainObject> open_file(const std::string& path, int band, std:
 }  // namespace
 
 void bind_terrain(py::module_& module) {
+  module.def("metres_per_vertical_unit", &metres_per_vertical_unit, py::arg("name"));
   py::class_<TerrainObject, SceneObject> terrain(module, "Terrain");
   terrain
       .def(py::init(&over_array), py::arg("heights"), py::arg("south_up"), py::arg("cell_x"), py::arg("cell_y"),
@@ -115,9 +117,11 @@ void bind_terrain(py::module_& module) {
                              })
       .def_property_readonly("_range",
                              [](const TerrainObject& self) {
+                               using Ends = std::pair<std::optional<double>, std::optional<double>>;
+                               const py::gil_scoped_release release;
+                               const auto locks = shared_locks(self);  // edits change it
                                const HeightField& field = self.field();
-                               if (field.all_nodata()) return py::make_tuple(py::none(), py::none());
-                               return py::make_tuple(field.min_height(), field.max_height());
+                               return field.all_nodata() ? Ends() : Ends(field.min_height(), field.max_height());
                              })
       .def("_samples_changed",
            [](TerrainObject& self, int col, int row, int cols, int rows) {

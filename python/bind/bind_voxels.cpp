@@ -111,7 +111,11 @@ void bind_voxels(py::module_& module) {
                                const ivec3 size = self.grid().size();
                                return py::make_tuple(size.x, size.y, size.z);
                              })
-      .def_property_readonly("_solid_count", [](const VoxelsObject& self) { return self.grid().solid_count(); })
+      .def_property_readonly("_solid_count",
+                             [](const VoxelsObject& self) {
+                               const Query query(self);
+                               return self.grid().solid_count();
+                             })
       .def("_indices", &indices_of)
       .def("_fill_box",
            [](VoxelsObject& self, const Whole& low, const Whole& high, std::uint32_t entry) {

@@ -13,7 +13,7 @@ Space is in metres: x east and y north from the south-west sample, z up. Angles 
 true north.
 """
 
-from ._core import Error, Interrupted, __version__, set_threads
+from ._core import Error, Interrupted, __version__
 from ._hits import AllHits, FanHits, Hits, Status
 from ._instruments import Camera, Scanner
 from ._picture import png, render, write_png
@@ -22,6 +22,7 @@ from ._sight import LineOfSight, Profile, line_of_sight, profile, viewshed
 from ._sun import horizon, shadow, sky_view, sun_position
 from ._sun_hours import SunMaps, sun_hours, sun_masks
 from ._terrain import Terrain
+from ._threads import set_threads
 
 __all__ = [
     "AllHits",

@@ -10,32 +10,18 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from . import _core
+from ._arguments import shown
 from ._core import Error
 
 _X_NAMES = {"x", "lon", "longitude", "easting", "eastings", "projection_x_coordinate"}
 _Y_NAMES = {"y", "lat", "latitude", "northing", "northings", "projection_y_coordinate"}
 _DEGREES = {"lon", "longitude", "lat", "latitude"}
 # Units of coordinates, as the CF conventions have them.
-_DEGREE_UNITS = {"degrees", "degree", "degrees_east", "degree_east", "degrees_north", "degree_north"}
-_METRE_UNITS = {"m", "metre", "meter", "metres", "meters"}
-#: Metres per vertical unit.
-_UNITS = {
-    "m": 1.0,
-    "metre": 1.0,
-    "metres": 1.0,
-    "meter": 1.0,
-    "meters": 1.0,
-    "km": 1000.0,
-    "cm": 0.01,
-    "dm": 0.1,
-    "ft": 0.3048,
-    "foot": 0.3048,
-    "feet": 0.3048,
-    "international foot": 0.3048,
-    "us-ft": 1200 / 3937,
-    "us survey foot": 1200 / 3937,
-    "us survey feet": 1200 / 3937,
+_DEGREE_UNITS = {
+    f"degree{several}{axis}" for several in ("", "s") for axis in ("", "_east", "_e", "e", "_north", "_n", "n")
 }
+#: Relative difference of lengths of one unit: that of the two US feet is 2e-6, other units differ by far more.
+_SAME_UNIT = 1e-5
 #: Coordinates may be off their even spacing by this share of a step: the accuracy of hits is the same.
 _UNEVEN = 1e-3
 
@@ -52,6 +38,7 @@ class Source:
     scale: float = 1.0
     offset: float = 0.0
     unit: str = ""
+    coordinate_units: tuple[str, ...] = ()  # lower case
     template: Any = None  # the DataArray
 
 
@@ -69,7 +56,12 @@ def crs_text(crs: Any) -> str:
             f"crs: {type(crs).__name__} is not a CRS (expected text such as EPSG:32610, or an object of "
             "rasterio or pyproj)"
         )
-    return _core.wkt_of(crs) if crs and _core.HAS_FILES else crs
+    if not (crs and _core.HAS_FILES):
+        return crs
+    try:
+        return _core.wkt_of(crs)
+    except Error:
+        raise Error(f"crs: {shown(crs)} is unknown (expected EPSG:32610, WKT or PROJ text)") from None
 
 
 def node_transform(transform: Any) -> tuple[float, ...]:
@@ -94,11 +86,47 @@ def rows_from_north(map_from_node: Sequence[float], rows: int) -> tuple[tuple[fl
 
 
 def metres_per_unit(unit: str) -> float:
-    """Returns the length of a vertical unit."""
-    try:
-        return _UNITS[unit.strip().lower()] if unit else 1.0
-    except KeyError:
-        raise Error(f"unit: '{unit}' is not a unit of heights (give unit='m' or 'ft')") from None
+    """Returns the length of a vertical unit; metres are the default."""
+    metres = _core.metres_per_vertical_unit(unit) if unit else 1.0
+    if metres is None:
+        raise Error(f"unit: {shown(unit)} is not a unit of heights (give unit='m' or 'ft')")
+    return metres
+
+
+def require_units(source: Source, body: Body) -> None:
+    """Throws Error unless the coordinates are in the unit of the CRS, as far as they say."""
+    for unit in source.coordinate_units:
+        metres = None if unit in _DEGREE_UNITS else _core.metres_per_vertical_unit(unit)
+        if body.geographic:
+            same = unit in _DEGREE_UNITS
+        else:
+            same = metres is not None and abs(metres - body.map_unit) <= _SAME_UNIT * body.map_unit
+        if not same:
+            metric = "metres" if body.map_unit == 1 else f"units of {body.map_unit:.10g} m"
+            has = "degrees" if body.geographic else metric
+            raise Error(
+                f"heights: coordinates in {unit}, but their CRS has {has} (convert the coordinates, or correct their "
+                "units or the CRS)"
+            )
+
+
+def require_lengths(source: Source) -> None:
+    """Throws Error if nothing says how far apart samples are."""
+    if source.map_from_node is None:
+        said = "a CRS does not say it (give transform, or" if source.crs else "(give"
+        raise Error(
+            f"cell: the distance between samples is unknown{': ' if source.crs else ' '}{said} cell=30 in metres"
+            f"{')' if source.crs else ', or transform and crs)'}"
+        )
+    if source.crs:
+        return
+    for unit in source.coordinate_units:
+        if unit in _DEGREE_UNITS or _core.metres_per_vertical_unit(unit) != 1:
+            raise Error(f"heights: coordinates in {unit} without a CRS (give crs, or convert them to metres)")
+    if not source.coordinate_units:
+        raise Error(
+            "cell: the unit of the transform or coordinates is unknown without a CRS (give crs, or cell=30 in metres)"
+        )
 
 
 def is_dataarray(value: Any) -> bool:
@@ -128,10 +156,9 @@ def _of_dataarray(data: Any) -> Source:
         source.map_from_node, source.south_up = rows_from_north(source.map_from_node, data.shape[0])
     source.crs = crs_text(_crs_of(data))
     units = {str(data.coords[c].attrs.get("units", "")).lower() for c in (x, y) if c in data.coords} - {""}
+    source.coordinate_units = tuple(sorted(units))
     if not source.crs and ({str(x).lower(), str(y).lower()} <= _DEGREES or (units and units <= _DEGREE_UNITS)):
         source.crs = crs_text("EPSG:4326")
-    elif source.map_from_node and not source.crs and units and not units & (_DEGREE_UNITS | _METRE_UNITS):
-        raise Error(f"heights: coordinates in {', '.join(sorted(units))} (convert them to metres, or give transform)")
     for name in ("_FillValue", "missing_value", "nodata"):
         if attrs.get(name) is not None:
             source.nodata = float(np.asarray(attrs[name]).reshape(-1)[0])
@@ -202,6 +229,8 @@ class Body:
     geographic: bool = False
     diameter: float = 2 * 6378137.0
     earth: bool = True
+    map_unit: float = 1.0  # metres; of a CRS that is not geographic
+    vertical_unit: float = 0.0  # metres; 0: no vertical CRS
 
 
 def body_of(crs: str) -> Body:
@@ -216,7 +245,15 @@ def body_of(crs: str) -> Body:
         return Body()  # cells were given
     ellipsoid = found.ellipsoid
     axis = ellipsoid.semi_major_metre if ellipsoid else 6378137.0
-    return Body(found.is_geographic, 2 * axis, abs(axis / 6378137.0 - 1) <= 0.05)
+    parts = found.sub_crs_list if found.is_compound else [found]
+    map_unit = 1.0 if found.is_geographic else _unit_of(parts[0])
+    vertical = next((_unit_of(part) for part in parts if part.is_vertical), 0.0)
+    return Body(found.is_geographic, 2 * axis, abs(axis / 6378137.0 - 1) <= 0.05, map_unit, vertical)
+
+
+def _unit_of(crs: Any) -> float:
+    """Metres per unit of the first axis."""
+    return float(crs.axis_info[0].unit_conversion_factor) if crs.axis_info else 1.0
 
 
 def ground_at(

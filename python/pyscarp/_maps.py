@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional, Sequence
 
 import numpy as np
 
+from ._arguments import shown
 from ._core import Error
 from ._progress import Progress, reporting
 from ._terrain import Terrain
@@ -81,7 +82,7 @@ def _bounds(rows: Optional[slice], count: int) -> tuple[int, int]:
     if rows is None:
         return 0, count
     if not isinstance(rows, slice):
-        raise TypeError(f"rows: {rows!r} is not a slice (expected slice(first, last))")
+        raise TypeError(f"rows: {shown(rows)} is not a slice (expected slice(first, last))")
     first, last, step = rows.indices(count)
     if step != 1 or last <= first:
         raise Error(f"rows: {rows} selects none of {count} rows, or not neighbouring ones")

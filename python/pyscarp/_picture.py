@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
+from ._arguments import flag, number, numbers, refuse_unused, text, whole
 from ._core import Error
-from ._rays import numbers
 from ._progress import Progress, reporting
 from ._scene import scene_of
 
@@ -73,28 +73,44 @@ def render(
     (18, 32, 3)
     """
     scene = scene_of(scene)
-    width, height = (int(v) for v in numbers(size, 2, "size", "width and height in pixels"))
+    width, height = (whole(v, "size") for v in numbers(size, 2, "size", "width and height in pixels"))
+    unlit, top = flag(unlit, "unlit"), flag(top, "top")
+    look, sky, samples = text(look, "look"), text(sky, "sky"), whole(samples, "samples")
+    if top:
+        refuse_unused(render, "with top", view=view, distance=distance, fov=fov, eye=eye, target=target)
+    elif eye is not None:
+        refuse_unused(render, "with eye", view=view, distance=distance)
+    else:
+        refuse_unused(render, "without eye", target=target)
+    if unlit:
+        refuse_unused(render, "with unlit", shadows=shadows, samples=samples)
+    if unlit and sky == "plain":
+        refuse_unused(render, "with unlit", sun=sun)
+    if samples == 0:
+        refuse_unused(render, "without samples", ao_distance=ao_distance)
+    if look != "shaded":
+        refuse_unused(render, f"on the look {look}", shadows=shadows, haze=haze)
     with reporting(progress) as report:
         return _core.render(
             scene,
             (width, height),
             look,
-            aa,
+            whole(aa, "aa"),
             numbers(sun, 2, "sun", "azimuth and altitude in degrees"),
             numbers(view, 2, "view", "azimuth and elevation in degrees"),
-            distance,
-            fov,
+            number(distance, "distance"),
+            number(fov, "fov"),
             top,
             _point(eye, "eye"),
             _point(target, "target"),
-            shadows,
+            flag(shadows, "shadows"),
             unlit,
-            (0.1 if isinstance(scene, _core.Terrain) else 0.0) if haze is None else haze,
+            (0.1 if isinstance(scene, _core.Terrain) else 0.0) if haze is None else number(haze, "haze"),
             samples,
-            ao_distance,
-            ramp,
+            number(ao_distance, "ao_distance"),
+            text(ramp, "ramp"),
             sky,
-            alpha,
+            flag(alpha, "alpha"),
             scene._georeference[3] if isinstance(scene, _core.Terrain) else 0.0,
             report,
         )

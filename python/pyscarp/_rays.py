@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
+from ._arguments import array_of_numbers, refuse_unused, shown
+from ._core import Error
 from ._hits import Hits
 
 if TYPE_CHECKING:
@@ -17,23 +19,17 @@ else:
     SceneBase = object
 
 
-def vectors(values: "ArrayLike") -> np.ndarray:
+def vectors(values: "ArrayLike", name: str) -> np.ndarray:
     """Returns an array of floats (..., 3), the same object if it is one."""
     if type(values) is np.ndarray and values.dtype.char in "df":
         return values
-    array = np.asarray(values)
-    if array.dtype.char not in "df":
-        if array.dtype.kind not in "iuf":
-            raise TypeError(f"rays: {array.dtype} is not a type of numbers (expected x, y and z)")
-        array = array.astype(float)
-    return array
+    array = array_of_numbers(values, name)
+    return array if array.dtype.char in "df" else array.astype(float)
 
 
 def batch(origins: "ArrayLike", directions: "ArrayLike") -> tuple[np.ndarray, np.ndarray, tuple[int, ...]]:
     """Returns both as arrays (n, 3), and the shape of the batch. Broadcasting repeats no memory."""
-    from ._core import Error
-
-    a, b = vectors(origins), vectors(directions)
+    a, b = vectors(origins, "origins"), vectors(directions, "directions")
     if a.ndim == 2 and a.shape == b.shape:
         return a, b, a.shape[:1]
     for name, array in ("origins", a), ("directions", b):
@@ -49,35 +45,14 @@ def batch(origins: "ArrayLike", directions: "ArrayLike") -> tuple[np.ndarray, np
     return a, b, shape
 
 
-def number(value: Any, name: str) -> float:
-    """Returns a float; throws TypeError naming the argument."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name}: {value!r} is not a number") from None
-
-
-def numbers(values: Any, count: int, name: str, meaning: str) -> tuple[float, ...]:
-    """Returns that many floats; throws TypeError naming the argument."""
-    try:
-        found = tuple(float(v) for v in values)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name}: {values!r} (expected {meaning})") from None
-    if len(found) != count:
-        raise TypeError(f"{name}: {len(found)} numbers (expected {meaning})")
-    return found
-
-
 def limit(value: Any, shape: tuple[int, ...], name: str) -> Any:
     """Returns None, one number, or one number per ray."""
     if value is None or isinstance(value, (int, float)):
         return value
-    from ._core import Error
-
     try:
         values = np.asarray(value, float)
     except (TypeError, ValueError):
-        raise TypeError(f"{name}: {value!r} is not a number, nor an array of numbers") from None
+        raise TypeError(f"{name}: {shown(value)} is not a number, nor an array of numbers") from None
     try:
         return np.ascontiguousarray(np.broadcast_to(values, shape))
     except ValueError:
@@ -138,6 +113,8 @@ class Rays(SceneBase):
             and t_min is None
             and t_max is None
             and start is None
+            and position
+            and normal
             and self._cast_plain(origins, directions, out._raw, out.position, out.normal)
         ):
             out._scene = self._token
@@ -146,9 +123,9 @@ class Rays(SceneBase):
         if out is None:
             out = Hits(shape, position=position, normal=normal)
         elif out._raw.shape != shape:
-            from ._core import Error
-
             raise Error(f"out: room for the shape {out._raw.shape}, but rays of the shape {shape}")
+        else:
+            refuse_unused(Rays.cast, "with out, which has them or not", position=position, normal=normal)
         self._cast(
             a,
             b,
@@ -190,8 +167,6 @@ class Rays(SceneBase):
         if out is None:
             out = np.empty(shape, bool)
         elif out.shape != shape or out.dtype != bool:
-            from ._core import Error
-
             raise Error(f"out: {out.dtype} of the shape {out.shape} (expected bool of the shape {shape})")
         self._occluded(
             a,
@@ -212,10 +187,10 @@ class Rays(SceneBase):
         >>> terrain.heights_at([2.5, 5, 99], 5).tolist()
         [2.5, 5.0, nan]
         """
-        from ._core import Error
-
         try:
-            xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+            xs, ys = np.broadcast_arrays(
+                array_of_numbers(x, "x").astype(float, copy=False), array_of_numbers(y, "y").astype(float, copy=False)
+            )
         except ValueError as error:
             raise Error(f"heights_at: x of the shape {np.shape(x)}, y of {np.shape(y)}: {error}") from None
         if out is None:
@@ -227,7 +202,6 @@ class Rays(SceneBase):
 
     def _repr_png_(self) -> Optional[bytes]:
         """Returns the picture that notebooks show; None if there is nothing to see."""
-        from ._core import Error
         from ._picture import png, render
 
         try:
@@ -236,10 +210,10 @@ class Rays(SceneBase):
             return None
 
     def _starts(self, start: Hits, shape: tuple[int, ...]) -> np.ndarray:
-        from ._core import Error
-
+        if not isinstance(start, Hits):
+            raise TypeError(f"start: {type(start).__name__} is not a Hits (pass the result of cast)")
         if start._raw.shape != shape:
             raise Error(f"start: hits of the shape {start._raw.shape} for rays of the shape {shape}")
         if start._scene is not self._token:
             raise Error("start: the hits are of another scene (cast rays against this one)")
-        return start._raw
+        return np.ascontiguousarray(start._raw)  # parts of hits may have gaps

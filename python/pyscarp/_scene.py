@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
+from ._arguments import array_of_numbers, converted, number, numbers, shown, whole, whole_numbers
 from ._core import Error
-from ._rays import Rays, number
+from ._rays import Rays
 from ._terrain import Terrain
 
 if TYPE_CHECKING:
@@ -25,10 +26,10 @@ class Voxels(Rays, _core.Voxels):
         indices: uint8 ``(z, y, x)``, sides from 1 to 16384: index of a colour, 0: empty. It is copied, as one bit per
             voxel and one index per solid voxel.
         side: of a voxel in metres, above 0.
-        palette: uint8 ``(n, 3)``, sRGB: the colours of the indices. Default: one colour.
+        palette: ``(n, 3)``, integers from 0 to 255, sRGB: the colours of the indices. Default: one colour.
 
     Raises:
-        TypeError: another type. Error: another shape, an index beyond the palette.
+        TypeError: another type. Error: another shape, an index beyond the palette, a colour that is not one.
 
     >>> voxels = Voxels(np.ones((2, 2, 2), np.uint8), side=0.5)
     >>> hits = voxels.cast([0.2, 0.7, 9], [0, 0, -1])
@@ -42,8 +43,9 @@ class Voxels(Rays, _core.Voxels):
             raise TypeError(
                 f"voxels: {array.dtype} is not uint8 (convert the array: (indices > 0).astype(numpy.uint8))"
             )
-        colours = [] if palette is None else np.asarray(palette, np.uint8).reshape(-1, 3).tolist()
+        colours = [] if palette is None else _colours(palette)
         super().__init__(np.ascontiguousarray(array), number(side, "side"), colours)
+        self._last_index = len(colours) - 1 if colours else 255
         self._token = object()
 
     @property
@@ -80,7 +82,8 @@ class Voxels(Rays, _core.Voxels):
         Positions outside the grid are ignored.
 
         Raises:
-            Error: not exactly one of box, sphere and positions; an index that does not fit.
+            Error: not exactly one of box, sphere and positions; a place or an index that is not a whole number; an
+                index beyond 255 or the palette.
 
         >>> voxels = Voxels(np.ones((4, 4, 4), np.uint8))
         >>> voxels.edit(box=((0, 0, 2), (4, 4, 4)))
@@ -89,21 +92,64 @@ class Voxels(Rays, _core.Voxels):
         """
         if sum(part is not None for part in (box, sphere, positions)) != 1:
             raise Error("edit: expected one of box, sphere and positions")
-        if positions is not None:
-            self._set(np.asarray(positions), np.asarray(index).reshape(-1))
+        if positions is None:
+            entry = whole(index, "index", 0, self._last_index)
+            if box is not None:
+                low, high = _corners(box)
+                self._fill_box(low, high, entry)
+            elif sphere is not None:
+                centre, radius = _sphere(sphere)
+                self._fill_sphere(centre, radius, entry)
             return
-        if not 0 <= int(index) <= 255:
-            raise Error(f"edit: the index {index} is not between 0 and 255")
-        if box is not None:
-            self._fill_box(tuple(map(int, box[0])), tuple(map(int, box[1])), int(index))
-        elif sphere is not None:
-            self._fill_sphere(tuple(map(float, sphere[0])), float(sphere[1]), int(index))
+        places, entries = whole_numbers(positions, "positions"), whole_numbers(index, "index").reshape(-1)
+        if places.size == 0:
+            places = places.reshape(-1, 3)
+        wrong = (entries < 0) | (entries > self._last_index)
+        if wrong.any():
+            raise Error(f"edit: the index {entries[wrong][0]} is not between 0 and {self._last_index}")
+        self._set(_as_int32(places), _as_int32(entries))
 
     def __repr__(self) -> str:
         if "_token" not in self.__dict__:
             return "<pyscarp.Voxels, not built>"
         x, y, z = self._size
         return f"<pyscarp.Voxels {x} x {y} x {z}, {self.solid_count} solid>"
+
+
+def _colours(palette: Any) -> list[list[int]]:
+    colours = array_of_numbers(palette, "palette")
+    if colours.ndim != 2 or colours.shape[1] != 3:
+        raise Error(f"palette: the array has the shape {colours.shape} (expected (n, 3): red, green and blue)")
+    if colours.dtype.kind == "f":
+        raise Error(
+            f"palette: {colours.dtype} (expected integers from 0 to 255; from shares: numpy.rint(255 * "
+            "palette).astype(numpy.uint8))"
+        )
+    return converted(colours, np.dtype(np.uint8), "palette").tolist()
+
+
+def _as_int32(values: np.ndarray) -> np.ndarray:
+    """Numbers beyond the range become its ends, which are outside of every grid."""
+    ends = np.iinfo(np.int32)
+    return np.clip(values, ends.min, ends.max).astype(np.int32)
+
+
+def _corners(box: Any) -> list[list[int]]:
+    corners = whole_numbers(box, "box")
+    if corners.shape != (2, 3):
+        raise Error(f"box: the array has the shape {corners.shape} (expected (2, 3): two corners x, y, z)")
+    return _as_int32(corners).tolist()
+
+
+def _sphere(sphere: Any) -> tuple[tuple[float, ...], float]:
+    try:
+        centre, radius = sphere
+    except (TypeError, ValueError):
+        raise TypeError(f"sphere: {shown(sphere)} (expected ((x, y, z), radius))") from None
+    found = (*numbers(centre, 3, "sphere", "a centre x, y, z"), number(radius, "sphere"))
+    if not all(map(math.isfinite, found)):
+        raise Error(f"sphere: {shown(sphere)} is not finite (expected a centre and a radius in voxels)")
+    return found[:3], found[3]
 
 
 @dataclasses.dataclass
@@ -117,7 +163,7 @@ class Part:
     turn: Union[float, "ArrayLike"] = 0.0
 
     def _rotation(self) -> list[float]:
-        turn = np.asarray(self.turn, float)
+        turn = array_of_numbers(self.turn, "turn").astype(float)
         if turn.ndim == 0:
             c, s = math.cos(math.radians(float(turn))), math.sin(math.radians(float(turn)))
             turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
@@ -146,8 +192,8 @@ class Scene(Rays, _core.Scene):
     """
 
     def __init__(self, parts: Sequence[Union[Rays, Part]]) -> None:
-        if isinstance(parts, (Rays, Part)):
-            raise TypeError("scene: expected a list of parts")
+        if isinstance(parts, (Rays, Part)) or not hasattr(parts, "__iter__"):
+            raise TypeError(f"parts: {shown(parts)} (expected a list of parts)")
         placed = tuple(part if isinstance(part, Part) else Part(part) for part in parts)
         for part in placed:
             if not isinstance(part.scene, _core.SceneBase):
@@ -155,7 +201,15 @@ class Scene(Rays, _core.Scene):
         self._parts = placed
         self._token = object()
         super().__init__(
-            tuple((part.scene, tuple(map(float, part.origin)), float(part.scale), part._rotation()) for part in placed)
+            tuple(
+                (
+                    part.scene,
+                    numbers(part.origin, 3, "origin", "x, y and z in metres"),
+                    number(part.scale, "scale"),
+                    part._rotation(),
+                )
+                for part in placed
+            )
         )
 
     @property

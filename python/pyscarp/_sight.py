@@ -10,10 +10,10 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from . import _core
+from ._arguments import array_of_numbers, number, numbers, refuse_unused, shown, text
 from ._core import Error
 from ._maps import Layer, Map, computed, terrain_of
 from ._progress import Progress
-from ._rays import number
 from ._terrain import Terrain
 
 _VISIBLE_LIGHT = 6 / 7
@@ -22,7 +22,12 @@ _VISIBLE_LIGHT = 6 / 7
 def curvature_of(terrain: Terrain, cc: Optional[float]) -> tuple[float, float]:
     """Returns the curvature coefficient and the diameter of the body in metres."""
     body = terrain._body
-    return (_VISIBLE_LIGHT if body.earth else 1.0) if cc is None else float(cc), body.diameter
+    return (_VISIBLE_LIGHT if body.earth else 1.0) if cc is None else number(cc, "cc"), body.diameter
+
+
+def _require_datum(heights: str) -> None:
+    if text(heights, "heights") not in ("ground", "sea"):
+        raise Error(f"heights: unknown name '{heights}' (expected one of: ground, sea)")
 
 
 def viewshed(
@@ -81,12 +86,22 @@ def viewshed(
     [1, 1, 1, 0, 0]
     """
     given, terrain = terrain, terrain_of(terrain)
-    places = np.atleast_2d(np.asarray(observers, float))
+    places = np.atleast_2d(array_of_numbers(observers, "observers").astype(float))
     if places.ndim != 2 or places.shape[1] not in (2, 3) or len(places) == 0:
         raise Error(f"observers: the array has the shape {places.shape} (expected (n, 2) or (n, 3): x, y, height)")
-    if heights not in ("ground", "sea"):
-        raise Error(f"heights: unknown name '{heights}' (expected one of: ground, sea)")
-    low, high = (-90.0, 90.0) if pitch is None else pitch
+    _require_datum(heights)
+    if text(mode, "mode") not in _MODES:
+        raise Error(f"mode: unknown name '{mode}' (expected one of: {', '.join(_MODES)})")
+    low, high = (-90.0, 90.0) if pitch is None else numbers(pitch, 2, "pitch", "low and high in degrees")
+    if azimuth is not None:
+        azimuth = numbers(azimuth, 2, "azimuth", "from and to in degrees")  # type: ignore[assignment]
+    owned = places.shape[1] == 3 and not np.isnan(places[:, 2]).all()
+    if not owned:
+        refuse_unused(viewshed, "for observers without their own heights", heights=heights)
+    elif not np.isnan(places[:, 2]).any():
+        refuse_unused(viewshed, "for observers with their own heights", observer_height=observer_height)
+    if mode in ("dem", "ground"):
+        refuse_unused(viewshed, f"on the mode {mode}", target_height=target_height)
     eyes = []
     for place in places.tolist():
         col, row = (math.floor(v + 0.5) for v in terrain._node(place[0], place[1], coords))
@@ -98,7 +113,7 @@ def viewshed(
             (
                 col,
                 row,
-                place[2] if own else float(observer_height),
+                place[2] if own else number(observer_height, "observer_height"),
                 own and heights == "sea",
                 *_field_of_view(azimuth, ground.grid_north),
                 *ground.cell,
@@ -116,8 +131,6 @@ def viewshed(
         math.radians(high),
         mode,
     )
-    if mode not in _MODES:
-        raise Error(f"mode: unknown name '{mode}' (expected one of: {', '.join(_MODES)})")
     return computed(given, terrain, Map(_viewshed_rows, arguments, (_MODES[mode],)), rows, progress)
 
 
@@ -175,13 +188,21 @@ def _line(
     cc: Optional[float],
     coords: Optional[str],
 ) -> tuple[Any, ...]:
-    if heights not in ("ground", "sea"):
-        raise Error(f"heights: unknown name '{heights}' (expected one of: ground, sea)")
+    _require_datum(heights)
     ends: list[Any] = []
     places = []
+    owners = [np.ndim(place) == 1 and len(place) == 3 for place in (start, end)]
+    given = {"observer_height": observer_height, "target_height": target_height}
+    for own, (argument, value) in zip(owners, given.items()):
+        number(value, argument)
+        if own:
+            refuse_unused(line_of_sight, "on an end with its own height", **{argument: value})
+    if not any(owners):
+        refuse_unused(line_of_sight, "on ends without their own heights", heights=heights)
     for name, place, height in (("start", start, observer_height), ("end", end, target_height)):
         if np.ndim(place) != 1 or len(place) not in (2, 3):
-            raise Error(f"{name}: {place!r} (expected x, y or x, y, height)")
+            raise Error(f"{name}: {shown(place)} (expected x, y or x, y, height)")
+        place = numbers(place, len(place), name, "x, y or x, y, height")
         col, row = terrain._node(place[0], place[1], coords)
         if not (-0.5 <= col <= terrain.shape[1] - 0.5 and -0.5 <= row <= terrain.shape[0] - 0.5):
             raise Error(f"{name} {place[0]:.10g},{place[1]:.10g}: is outside the terrain")

@@ -10,10 +10,10 @@ from typing import Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _core, _georeference as geo
+from ._arguments import array_of_numbers, flag, number, numbers, refuse_unused, text, whole
 from ._core import Error
 from ._maps import Layer, Map, computed, terrain_of
 from ._progress import Progress
-from ._rays import number, numbers
 from ._sight import curvature_of
 from ._terrain import Terrain
 
@@ -45,8 +45,9 @@ def place_of_sun(terrain: Terrain, place: Optional[Sequence[float]]) -> tuple[fl
         place = geo.lonlat_of(map_from_node, crs, terrain.shape, col, row)
         if place is None:
             raise Error("time: the centre of the terrain has no longitude and latitude")
-    if len(place) != 2 or not (abs(place[0]) <= 360 and abs(place[1]) <= 90):
-        raise Error(f"place: {tuple(place)} (expected longitude and latitude in degrees)")
+    place = numbers(place, 2, "place", "longitude and latitude in degrees")
+    if not (abs(place[0]) <= 360 and abs(place[1]) <= 90):
+        raise Error(f"place: {place} (expected longitude and latitude in degrees)")
     return math.radians(place[0]), math.radians(place[1]), _height_at_centre(terrain)
 
 
@@ -62,7 +63,7 @@ def _time_text(time: Time) -> str:
         if time.tzinfo is None:
             raise Error(f"time: {time} has no UTC offset (give a time zone)")
         return time.isoformat()
-    return str(time)
+    return text(time, "time")
 
 
 def sun_position(
@@ -84,6 +85,7 @@ def sun_position(
     (179, 62)
     """
     terrain = terrain_of(terrain)
+    refraction = flag(refraction, "refraction")
     ((azimuth, altitude),) = _core.sun_positions([_time_text(time)], *place_of_sun(terrain, place), refraction)
     return math.degrees(azimuth), math.degrees(altitude)
 
@@ -123,7 +125,9 @@ def shadow(
     given, terrain = terrain, terrain_of(terrain)
     if (sun is None) == (time is None):
         raise Error("shadow: expected sun=(azimuth, altitude) or time")
-    if time is not None:
+    if time is None:
+        refuse_unused(shadow, "with sun", refraction=refraction, place=place)
+    else:
         sun = sun_position(terrain, time, refraction=refraction, place=place)
         if sun[1] <= 0 and not sun_per_cell:
             raise Error(f"time {_time_text(time)}: the sun is {-sun[1]:.2f} degrees below the horizon")
@@ -132,9 +136,10 @@ def shadow(
         raise Error(
             f"sun: {azimuth}, {altitude} (expected azimuth and altitude in degrees, altitude above 0 and at most 90)"
         )
+    refraction, fraction = flag(refraction, "refraction"), flag(fraction, "fraction")
     layer = _LIT_SHARES if fraction else _SHADES
     direction = math.radians(azimuth), math.radians(altitude)
-    if sun_per_cell:
+    if flag(sun_per_cell, "sun_per_cell"):
         moment = None if time is None else _time_text(time)
         _require_suns(terrain, moment, refraction, place, direction[1])
         found = Map(_local_shadow_rows, (moment, refraction, *direction, fraction), (layer,))
@@ -239,19 +244,25 @@ def horizon(
     [26.6, -90.0]
     """
     given, terrain = terrain, terrain_of(terrain)
-    degrees = (
-        np.arange(azimuths) * (360 / max(azimuths, 1))
-        if isinstance(azimuths, (int, np.integer))
-        else np.asarray(azimuths, float)
-    )
-    degrees = np.atleast_1d(degrees).astype(float)
+    degrees = array_of_numbers(azimuths, "azimuths").astype(float)
+    if degrees.ndim == 0:
+        if not isinstance(azimuths, (int, np.integer)):
+            raise Error(f"azimuths: {azimuths} (expected their number, or an array of degrees)")
+        count = whole(azimuths, "azimuths")
+        degrees = np.arange(count) * (360 / max(count, 1))
     if degrees.ndim != 1 or degrees.size == 0 or not np.isfinite(degrees).all():
         raise Error("azimuths: expected at least one, in degrees")
     settings = horizon_settings(terrain, observer_height, max_distance, cc)
-    if at is not None:
+    if at is None:
+        refuse_unused(horizon, "without at", coords=coords)
+    else:
+        refuse_unused(horizon, "with at", engine=engine, rows=rows, progress=progress)
+        at = numbers(at, 2, "at", "x and y")
+        distance = flag(distance, "distance")
         col, row = terrain._node(at[0], at[1], coords)
         ground = terrain._ground(col, row, max_distance)
-        table = _core.horizon_at(terrain, col, row, (np.radians(degrees) - ground.grid_north).tolist(), *settings, *ground.cell)
+        from_north = (np.radians(degrees) - ground.grid_north).tolist()
+        table = _core.horizon_at(terrain, col, row, from_north, *settings, *ground.cell)
         if table is None:
             raise Error(f"place {at[0]:.10g},{at[1]:.10g}: is outside the terrain or over a hole")
         elevations = np.degrees(table[:, 0])
@@ -266,7 +277,7 @@ def horizon(
             ("distance", "m", "distance to the horizon"),
         )
     ]
-    arguments = ((np.radians(degrees) - north).tolist(), *settings, engine, distance)
+    arguments = ((np.radians(degrees) - north).tolist(), *settings, text(engine, "engine"), flag(distance, "distance"))
     if distance:
         found = Map(_horizon_rows, arguments, tuple(layers), tuple)
     else:
@@ -319,9 +330,10 @@ def sky_view(
     [[1.0, 1.0], [1.0, 1.0]]
     """
     given, terrain = terrain, require_plane(terrain_of(terrain))
-    if measure not in _MEASURES:
+    if text(measure, "measure") not in _MEASURES:
         raise Error(f"measure: unknown name '{measure}' (expected one of: {', '.join(_MEASURES)})")
-    arguments = (measure, azimuths, *horizon_settings(terrain, observer_height, max_distance, cc), engine)
+    settings = horizon_settings(terrain, observer_height, max_distance, cc)
+    arguments = (measure, whole(azimuths, "azimuths"), *settings, text(engine, "engine"))
     return computed(given, terrain, Map(_sky_rows, arguments, (_MEASURES[measure],)), rows, progress)
 
 

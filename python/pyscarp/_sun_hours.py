@@ -11,10 +11,10 @@ from typing import Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _core
+from ._arguments import array_of_numbers, flag, number, refuse_unused, shown, text, whole
 from ._core import Error
 from ._maps import Layer, Map, computed, terrain_of
 from ._progress import Progress
-from ._rays import number
 from ._sun import horizon_settings, place_of_sun, require_plane
 from ._terrain import Terrain
 
@@ -89,14 +89,22 @@ def sun_hours(
     [8.0, 4.0, 8.0, 4.0, 8.0]
     """
     given, terrain = terrain, require_plane(terrain_of(terrain))
+    first_last, energy = flag(first_last, "first_last"), flag(energy, "energy")
     if (date is None) == (suns is None):
         raise Error("sun_hours: expected a date, or suns=[(azimuth, altitude, hours), ...]")
     if date is None and (first_last or energy):
         raise Error("sun_hours: first_last and energy need a date (leave suns out)")
     if first_last and to is not None and _day(to) != _day(date):  # type: ignore[arg-type]
         raise Error("first_last: expected a single day (leave 'to' out)")
+    if not energy:
+        refuse_unused(sun_hours, "without energy", linke=linke, albedo=albedo, transmittance=transmittance)
+    elif transmittance is not None:
+        refuse_unused(sun_hours, "with transmittance", linke=linke)
     if suns is not None:
-        table = np.asarray(suns, float)
+        refuse_unused(
+            sun_hours, "with suns", to=to, step=step, utc_offset=utc_offset, refraction=refraction, place=place
+        )
+        table = array_of_numbers(suns, "suns").astype(float)
         if table.ndim != 2 or table.shape[1] != 3:
             raise Error(f"suns: the array has the shape {table.shape} (expected (n, 3): azimuth, altitude, hours)")
         steps = [_Step(math.radians(a), math.radians(h), t, 1.0) for a, h, t in table.tolist()]
@@ -107,7 +115,7 @@ def sun_hours(
     times = [s.minute / 60 for s in up] if first_last else None
     settings = horizon_settings(terrain, observer_height, max_distance, cc)
     names = ["hours"] + ["first", "last"] * first_last + ["energy", "beam", "diffuse", "reflected"] * energy
-    arguments = (times, _moments(up, terrain), *settings, engine, sky)
+    arguments = (times, _moments(up, terrain), *settings, text(engine, "engine"), sky)
     found = Map(
         _hours_rows,
         arguments,
@@ -199,7 +207,7 @@ def sun_masks(
     layer = Layer(
         "sun", np.uint8, "", "1 in the sun, 0 in the shade", 255, ("time", times, {"long_name": "local time"})
     )
-    found = Map(_mask_rows, (_moments(up, terrain), *settings, engine), (layer,))
+    found = Map(_mask_rows, (_moments(up, terrain), *settings, text(engine, "engine")), (layer,))
     return times, computed(given, terrain, found, rows, progress)
 
 
@@ -229,7 +237,7 @@ def _day(date: Date) -> datetime.date:
     try:
         return datetime.date.fromisoformat(date)
     except (TypeError, ValueError):
-        raise Error(f"date: '{date}' is not a date (expected 2026-06-21)") from None
+        raise Error(f"date: {shown(date)} is not a date (expected 2026-06-21)") from None
 
 
 def _steps(
@@ -241,10 +249,11 @@ def _steps(
     refraction: bool,
     place: Optional[Sequence[float]],
 ) -> list[_Step]:
-    if not 1 <= step <= _MINUTES:
-        raise Error(f"step: {step} minutes (expected 1 to {_MINUTES})")
+    step, refraction = whole(step, "step", 1, _MINUTES), flag(refraction, "refraction")
     longitude, latitude, height = place_of_sun(terrain, place)
-    offset = round(math.degrees(longitude) / 15) if utc_offset is None else utc_offset
+    offset = round(math.degrees(longitude) / 15) if utc_offset is None else number(utc_offset, "utc_offset")
+    if not abs(offset) <= 24:
+        raise Error(f"utc_offset: {offset} (expected hours from -24 to 24)")
     day, last = _day(date), _day(to)
     if last < day:
         raise Error(f"to: {last} is before {day}")

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _core, _georeference as geo
+from ._arguments import array_of_numbers, converted, flag, number, numbers, optional, refuse_unused, shown, text, whole
 from ._core import Error
 from ._hits import AllHits, FanHits
 from ._instruments import Camera, Scanner
-from ._rays import Rays, batch, limit, number
+from ._rays import Rays, batch, limit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -73,22 +74,30 @@ class Terrain(Rays, _core.Terrain):
         copy: bool = False,
     ) -> None:
         source = geo.source_of(heights)
-        array, hole = _samples(source.heights, source.nodata if nodata is None else number(nodata, "nodata"), copy)
+        nodata = source.nodata if nodata is None else number(nodata, "nodata")
+        array, hole = _samples(source.heights, nodata, flag(copy, "copy"))
         if transform is not None:
             source.map_from_node, source.south_up = geo.rows_from_north(geo.node_transform(transform), array.shape[0])
+            source.coordinate_units = ()
         if crs is not None:
             source.crs = geo.crs_text(crs)
         if south_up is not None:
-            if source.map_from_node is not None and bool(south_up) != source.south_up:
+            if source.map_from_node is not None and flag(south_up, "south_up") != source.south_up:
                 raise Error(f"south_up: {south_up} contradicts the coordinates (leave it out)")
-            source.south_up = bool(south_up)
+            source.south_up = flag(south_up, "south_up")
+        body = geo.body_of(source.crs)
+        if cell is not None or not source.crs:
+            refuse_unused(Terrain.__init__, "on cells of given lengths", plane_error=plane_error)
+        else:
+            geo.require_units(source, body)
         size, north = _cells(source, array.shape, cell)
         self._template = source.template
+        self._known_body = body
         self._south_up = source.south_up
-        self._plane_error = plane_error
+        self._plane_error = number(plane_error, "plane_error")
         self._cell_given = cell is not None
         self._north_given = grid_north is not None
-        factor = geo.metres_per_unit(source.unit if unit is None else unit)
+        factor = _metres_per_sample_unit(source, body, unit)
         super().__init__(
             array,
             source.south_up,
@@ -98,12 +107,12 @@ class Terrain(Rays, _core.Terrain):
             factor * (source.offset if offset is None else number(offset, "offset")),
             number(exaggeration, "exaggeration"),
             hole,
-            surface,
-            wrap,
-            solid,
+            text(surface, "surface"),
+            text(wrap, "wrap"),
+            flag(solid, "solid"),
             source.map_from_node,
             source.crs,
-            north if grid_north is None else math.radians(grid_north),
+            north if grid_north is None else math.radians(number(grid_north, "grid_north")),
         )
         self._token = object()  # last: __repr__() of an object that was not built must not read it
 
@@ -133,6 +142,8 @@ class Terrain(Rays, _core.Terrain):
         Raises:
             Error: naming the file, if it is missing, damaged, rotated or not a raster; or a build without GDAL.
         """
+        if not isinstance(path, (str, os.PathLike)):
+            raise TypeError(f"path: {shown(path)} is not a path (pass arrays to Terrain itself)")
         if not _core.HAS_FILES:
             raise Error(
                 f"{os.fspath(path)}: this build of pyscarp reads no files (open it with rasterio or rioxarray, and "
@@ -141,10 +152,20 @@ class Terrain(Rays, _core.Terrain):
         self = cls.__new__(cls)
         self._template = None
         self._south_up = False
-        self._plane_error = plane_error
+        self._plane_error = number(plane_error, "plane_error")
         self._cell_given = self._north_given = False
         _core.Terrain.__init__(
-            self, os.fspath(path), band, nodata, geo.crs_text(crs), unit, window, exaggeration, surface, wrap, solid
+            self,
+            os.fsdecode(path),
+            whole(band, "band"),
+            optional(number, nodata, "nodata"),
+            geo.crs_text(crs),
+            text(unit, "unit"),
+            None if window is None else [whole(v, "window") for v in numbers(window, 4, "window", _WINDOW)],
+            number(exaggeration, "exaggeration"),
+            text(surface, "surface"),
+            text(wrap, "wrap"),
+            flag(solid, "solid"),
         )
         self._token = object()
         return self
@@ -218,7 +239,7 @@ class Terrain(Rays, _core.Terrain):
 
     def _coords(self, coords: Optional[str]) -> str:
         """The kind of coordinates of places: ``map``, ``local`` or ``lonlat``."""
-        if coords not in (None, "map", "local", "lonlat"):
+        if coords is not None and text(coords, "coords") not in ("map", "local", "lonlat"):
             raise Error(f"coords: unknown name '{coords}' (expected one of: map, local, lonlat)")
         if coords == "lonlat" and not self.crs:
             raise Error("coords: longitude and latitude need a CRS (give crs, or use coords='local')")
@@ -317,33 +338,20 @@ class Terrain(Rays, _core.Terrain):
         i = instrument
         if not isinstance(i, (Camera, Scanner)):
             raise TypeError(f"cast_from: {type(i).__name__} is not a Camera or Scanner")
-        eye = tuple(map(float, i.eye))
+        vector = "x, y and z"
+        eye, columns = numbers(i.eye, 3, "eye", vector), whole(i.columns, "columns", 1)
+        t_min, t_max, normal = number(i.t_min, "t_min"), number(i.t_max, "t_max"), flag(normal, "normal")
         if isinstance(i, Camera):
-            tan = math.tan(math.radians(i.fov) / 2) if 0 < i.fov < 180 else math.nan
-            arrays = _core.cast_from_camera(
-                self,
-                eye,
-                tuple(map(float, i.forward)),
-                tuple(map(float, i.up)),
-                i.columns,
-                i.rows,
-                tan,
-                i.t_min,
-                i.t_max,
-                normal,
-            )
+            fov = number(i.fov, "fov")
+            tan = math.tan(math.radians(fov) / 2) if 0 < fov < 180 else math.nan
+            forward, up = numbers(i.forward, 3, "forward", vector), numbers(i.up, 3, "up", vector)
+            rows = whole(i.rows, "rows", 1)
+            arrays = _core.cast_from_camera(self, eye, forward, up, columns, rows, tan, t_min, t_max, normal)
         else:
-            arrays = _core.cast_from_scanner(
-                self,
-                eye,
-                [math.radians(e) for e in i.elevations],
-                i.columns,
-                math.radians(i.first_azimuth),
-                math.radians(i.step),
-                i.t_min,
-                i.t_max,
-                normal,
-            )
+            optional(number, i.azimuth_step, "azimuth_step")
+            elevations = np.radians(array_of_numbers(i.elevations, "elevations").astype(float).reshape(-1)).tolist()
+            first, step = math.radians(number(i.first_azimuth, "first_azimuth")), math.radians(i.step)
+            arrays = _core.cast_from_scanner(self, eye, elevations, columns, first, step, t_min, t_max, normal)
         return FanHits(arrays, i)
 
     # Edits.
@@ -369,10 +377,11 @@ class Terrain(Rays, _core.Terrain):
     def edit(self, heights: "ArrayLike", rows: slice = slice(None), cols: slice = slice(None)) -> None:
         """Overwrites samples, in the array or of an opened file in memory, and updates what is built.
 
-        ``heights`` broadcasts to the rows and columns. Waits for running queries.
+        ``heights`` broadcasts to the rows and columns, in units of the samples. Waits for running queries.
 
         Raises:
-            Error: an infinite sample, a read-only array, no rows or columns; nothing is changed then.
+            Error: an infinite sample, or one that the type of the array does not have (fractions, NaN and large
+                numbers in integers); a read-only array; no rows or columns. Nothing is changed then.
 
         >>> terrain = Terrain(np.zeros((3, 3), np.float32), cell=1)
         >>> terrain.edit(7, rows=slice(1, 2), cols=slice(1, 2))
@@ -382,16 +391,20 @@ class Terrain(Rays, _core.Terrain):
         col, row, width, height = self._rect(rows, cols)
         if self._array is not None and not self._array.flags.writeable:
             raise Error("edit: the array is read-only (pass a writable one to Terrain)")
-        new = np.empty((height, width), self.heights.dtype)
+        nodata = self._settings[5]
+        hole = "" if nodata is None else f"; a hole is {nodata:g}"
+        values = converted(heights, self.heights.dtype, "edit", hole)
         try:
-            new[...] = heights
+            new = np.broadcast_to(values, (height, width))
         except ValueError:
-            raise Error(f"edit: heights of the shape {np.shape(heights)} do not broadcast to {new.shape}") from None
-        self._set_samples(col, row, np.ascontiguousarray(new[::-1]) if self._south_up else new)
+            raise Error(f"edit: heights of the shape {values.shape} do not broadcast to {(height, width)}") from None
+        self._set_samples(col, row, np.ascontiguousarray(new[::-1] if self._south_up else new))
 
     def _rect(self, rows: slice, cols: slice) -> tuple[int, int, int, int]:
         """Column, row from north, columns and rows of slices of the array."""
-        (first, last), (left, right) = (_bounds(part, count) for part, count in zip((rows, cols), self.shape))
+        (first, last), (left, right) = (
+            _bounds(part, count, name) for part, count, name in zip((rows, cols), self.shape, ("rows", "cols"))
+        )
         return left, self.shape[0] - last if self._south_up else first, right - left, last - first
 
     # Output.
@@ -402,7 +415,14 @@ class Terrain(Rays, _core.Terrain):
         present, map_from_node, crs, north = self._georeference
         settings = self._settings
         arguments = (array, self._south_up, *settings, tuple(map_from_node) if present else None, crs, north)
-        return _rebuilt, (arguments, self._template, self._south_up, self._plane_error, self._cell_given, self._north_given)
+        return _rebuilt, (
+            arguments,
+            self._template,
+            self._south_up,
+            self._plane_error,
+            self._cell_given,
+            self._north_given,
+        )
 
     def __repr__(self) -> str:
         if "_token" not in self.__dict__:
@@ -433,10 +453,21 @@ def _rebuilt(
     return terrain
 
 
-def _bounds(part: slice, count: int) -> tuple[int, int]:
+_WINDOW = "column, row, columns and rows"
+
+
+def _metres_per_sample_unit(source: geo.Source, body: geo.Body, unit: Optional[str]) -> float:
+    """The unit that was given, that of the DataArray, that of the vertical CRS, or the metre."""
+    name = source.unit if unit is None else text(unit, "unit")
+    return geo.metres_per_unit(name) if name or not body.vertical_unit else body.vertical_unit
+
+
+def _bounds(part: slice, count: int, name: str) -> tuple[int, int]:
+    if not isinstance(part, slice):
+        raise TypeError(f"{name}: {shown(part)} is not a slice (expected slice(first, last))")
     first, last, step = part.indices(count)
     if step != 1 or last <= first:
-        raise Error(f"edit: {part} selects no rows or columns, or not neighbouring ones")
+        raise Error(f"{name}: {part} selects no rows or columns, or not neighbouring ones")
     return first, last
 
 
@@ -461,7 +492,7 @@ def _samples(heights: Any, nodata: Optional[float], copy: bool) -> tuple[np.ndar
                 )
             if heights.dtype.kind == "f" or nodata is None:
                 # Integers have no value that is certainly none of theirs.
-                heights = heights.astype(np.result_type(heights.dtype, np.float32)).filled(np.nan)
+                heights = np.ma.filled(heights.astype(np.result_type(heights.dtype, np.float32)), np.nan)
             else:
                 if not (nodata == int(nodata) and np.can_cast(np.min_scalar_type(int(nodata)), heights.dtype)):
                     raise Error(f"nodata: {nodata:g} is not a value of {heights.dtype} (choose another one)")
@@ -500,16 +531,19 @@ def _cells(
     source: geo.Source, shape: tuple[int, ...], cell: Union[None, float, Sequence[float]]
 ) -> tuple[tuple[float, float], float]:
     """Returns the lengths of cells in metres, and the azimuth of grid north in radians."""
+    if len(shape) != 2:
+        return (1.0, 1.0), 0.0  # the class of the module reports the shape
     ground = None
-    if source.map_from_node is not None and len(shape) == 2 and (cell is None or _core.HAS_FILES):
+    if cell is None:
+        geo.require_lengths(source)
+    if source.map_from_node is not None and (cell is None or _core.HAS_FILES):
         ground = geo.ground_at(
             source.map_from_node, source.crs, (shape[0], shape[1]), (shape[1] - 1) / 2, (shape[0] - 1) / 2
         )
     if cell is None:
-        if ground is None:
-            raise Error("cell: the distance between samples is unknown (give cell=30 in metres, or transform and crs)")
+        assert ground is not None
         return ground.cell, ground.grid_north
-    sizes = np.asarray(cell, float).reshape(-1)
+    sizes = array_of_numbers(cell, "cell").astype(float).reshape(-1)
     if sizes.size not in (1, 2):
         raise Error(f"cell: {sizes.size} numbers (expected one, or east and north, in metres)")
     return (float(sizes[0]), float(sizes[-1])), ground.grid_north if ground else 0.0

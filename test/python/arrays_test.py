@@ -76,7 +76,7 @@ def test_objects_that_were_not_built_can_be_shown():
             for value in entry.frame.f_locals.values()
             if isinstance(value, (Terrain, pyscarp.Voxels))
         ]
-        assert all("not built" in text for text in shown)
+        assert shown and all("not built" in text for text in shown)
 
 
 def test_holes_survive_rounding_to_float32():
@@ -192,6 +192,50 @@ def test_edits_are_seen_by_rays_maps_and_scenes():
         terrain.edit([1, 2])
     with pytest.raises(Error, match="selects no rows"):
         terrain.samples_changed(slice(9, 12))
+
+
+@given(
+    st.sampled_from([np.int16, np.uint16]),
+    st.one_of(
+        st.integers(-70_000, 70_000), st.floats(-70_000, 70_000), st.sampled_from([np.nan, np.inf, -np.inf, 2**40])
+    ),
+)
+def test_edits_of_integers_are_exact(dtype, height):
+    array = np.full((3, 4), 9, dtype)
+    terrain = Terrain(array, cell=1)
+    ends = np.iinfo(dtype)
+    if ends.min <= height <= ends.max and height == int(height):
+        terrain.edit(height, rows=slice(1, 2))
+        assert (array[1] == height).all()
+    else:
+        with pytest.raises(Error, match=f"edit: .* is not a value of {np.dtype(dtype).name}"):
+            terrain.edit(height, rows=slice(1, 2))
+        assert (array == 9).all()
+
+
+def test_edits_name_the_value_of_holes():
+    terrain = Terrain(np.zeros((3, 3), np.int16), cell=1, nodata=-9999)
+    with pytest.raises(Error, match="a hole is -9999"):
+        terrain.edit(np.nan)
+    terrain.edit(-9999, rows=slice(0, 1))
+    assert np.isnan(terrain.heights_at(1, 2))
+
+
+@pytest.mark.parametrize(
+    "heights, message",
+    [
+        ("high", "not an array of numbers"),
+        (1j, "not an array of numbers"),
+        ([[1, 2], [3]], "rows of the same length"),
+        (np.ma.masked_array([1, 2, 3], [False, True, False]), "masked"),
+    ],
+)
+def test_edits_take_numbers_only(heights, message):
+    for dtype in np.int16, np.float32:
+        array = np.zeros((3, 3), dtype)
+        with pytest.raises(TypeError, match=f"edit: .*{message}"):
+            Terrain(array, cell=1).edit(heights)
+        assert (array == 0).all()
 
 
 def test_edits_count_rows_of_the_array():

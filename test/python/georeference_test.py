@@ -96,8 +96,11 @@ def test_builds_without_gdal_use_pyproj_or_given_cells(monkeypatch):
     if pytest.importorskip("pyproj"):
         terrain = Terrain(heights, crs="EPSG:32632", transform=transform)
         assert np.allclose(terrain.cell, 30 / 0.9996, rtol=1e-6)
-        seen = pyscarp.viewshed(terrain, terrain.to_map(300, 300))
-        assert np.array_equal(pyscarp.viewshed(terrain, (9.00389, 46.95), coords="lonlat").shape, seen.shape)
+        x, y = terrain.to_map(300, 300)
+        lonlat = sys.modules["pyproj"].Transformer.from_crs("EPSG:32632", "EPSG:4326", always_xy=True).transform(x, y)
+        seen = pyscarp.viewshed(terrain, (x, y))
+        assert np.array_equal(pyscarp.viewshed(terrain, lonlat, coords="lonlat"), seen)
+        assert not np.array_equal(pyscarp.viewshed(terrain, (9.0, 46.95), coords="lonlat"), seen)
         with pytest.raises(Error, match="EPSG:99999"):
             Terrain(heights, crs="EPSG:99999", transform=transform)
     monkeypatch.setitem(sys.modules, "pyproj", None)
@@ -329,6 +332,125 @@ def test_units_of_coordinates_count():
     assert Terrain(of("m", 30)).cell == (30, 30)
     with pytest.raises(Error, match="coordinates in km"):
         Terrain(of("km", 0.03))
+    assert Terrain(of("km", 0.03), cell=30).cell == (30, 30)
+
+
+FEET = "EPSG:2227"  # NAD83 / California zone 3 (ftUS)
+US_FOOT = 1200 / 3937
+
+
+def with_units(data, units):
+    for name in data.dims:
+        data.coords[name].attrs["units"] = units
+    return data
+
+
+@pytest.mark.parametrize("has_files", [True, False])
+@pytest.mark.parametrize(
+    "crs, step, unit, metres, other",
+    [
+        (FEET, 100, "US_survey_foot", 100 * US_FOOT, "metre"),
+        (FEET, 100, "ft", 100 * US_FOOT, "km"),
+        ("+proj=utm +zone=32 +units=km +type=crs", 0.03, "km", 30, "m"),
+        ("EPSG:32632", 30, "m", 30, "km"),
+        ("EPSG:32632", 30, "metre", 30, "degrees_east"),
+        ("EPSG:32632", 30, "meters", 30, "pixel"),
+    ],
+)
+def test_coordinates_are_in_the_unit_of_the_crs(crs, step, unit, metres, other, has_files, monkeypatch):
+    if not has_files:
+        pytest.importorskip("pyproj")
+        monkeypatch.setattr(pyscarp._core, "HAS_FILES", False)
+    elif not HAS_FILES:
+        pytest.skip("this build reads no files")
+    x0, y0 = (6_000_000, 2_100_000) if crs == FEET else (500, 5_200) if "km" in crs else (500_000, 5_200_000)
+    data = data_array(hills(20, 30), x0, y0, step, crs=None)
+    plain = Terrain(data, crs=crs)
+    # The scale of both projections is within 0.05 % of 1 there.
+    assert np.allclose(plain.cell, metres, rtol=5e-4)
+    assert Terrain(with_units(data, unit), crs=crs).cell == plain.cell
+    with pytest.raises(Error, match=f"coordinates in {other}, but their CRS has "):
+        Terrain(with_units(data, other), crs=crs)
+    with pytest.raises(Error, match="coordinates in m, but their CRS has degrees"):
+        Terrain(with_units(data_array(hills(9, 9), 9, 45, 0.001, crs=None), "m"), crs="EPSG:4326")
+
+
+@pytest.mark.parametrize("has_files", [True, False])
+def test_heights_are_in_the_unit_of_the_vertical_crs(has_files, monkeypatch):
+    if not has_files:
+        pytest.importorskip("pyproj")
+        monkeypatch.setattr(pyscarp._core, "HAS_FILES", False)
+    elif not HAS_FILES:
+        pytest.skip("this build reads no files")
+    heights, place = np.full((3, 3), 1000, np.int16), dict(transform=(100, 0, 6_000_000, 0, -100, 2_100_000))
+    top = lambda crs, **settings: Terrain(heights, crs=crs, **place, **settings).range[1]
+    # NAVD88 in US survey feet, in metres, and no vertical CRS.
+    assert np.isclose(top(f"{FEET}+6360"), 1000 * US_FOOT, rtol=1e-12)
+    assert top(f"{FEET}+5703") == 1000 and top(FEET) == 1000
+    assert top(f"{FEET}+6360", unit="m") == 1000
+    data = data_array(heights, 6_000_000, 2_100_000, 100, crs=None, units="m")
+    assert Terrain(data, crs=f"{FEET}+6360").range[1] == 1000
+    del data.attrs["units"]
+    assert np.isclose(Terrain(data, crs=f"{FEET}+6360").range[1], 1000 * US_FOOT, rtol=1e-12)
+
+
+@needs_files
+def test_vertical_units_are_those_of_the_command_line(tmp_path, scarp_program):
+    rasterio = pytest.importorskip("rasterio")
+    with rasterio.open(
+        tmp_path / "feet.tif", "w", driver="GTiff", width=3, height=3, count=1, dtype="int16", crs=f"{FEET}+6360",
+        transform=rasterio.Affine(100, 0, 6_000_000, 0, -100, 2_100_000),
+    ) as file:
+        file.write(np.full((3, 3), 1000, np.int16), 1)
+        transform, crs = file.transform, file.crs
+    opened = Terrain.open(tmp_path / "feet.tif")
+    array = Terrain(np.full((3, 3), 1000, np.int16), crs=crs, transform=transform)
+    # WKT has 15 digits.
+    assert np.allclose([opened.range[1], array.range[1]], 1000 * US_FOOT, rtol=1e-14)
+
+
+def test_units_of_heights_are_those_of_the_command_line():
+    for unit in "m", "ft", "us-ft", "US survey foot", "km", "dm", "cm", "mm", "yd", "fathom", "Metre":
+        low, high = Terrain(np.array([[0, 1], [2, 3]], np.float32), cell=1, unit=unit).range
+        assert low == 0 and high > 0
+    assert Terrain(np.array([[0, 1], [2, 3]], np.float32), cell=1, unit="fathom").range[1] == 3 * 6 * 0.3048
+    for unit in "K", "m2", "1/3 ft":
+        with pytest.raises(Error, match="is not a unit of heights"):
+            Terrain(np.zeros((2, 2), np.float32), cell=1, unit=unit)
+
+
+def test_lengths_need_a_unit():
+    heights, transform = hills(9, 9), (30, 0, 500_000, 0, -30, 5_200_000)
+    with pytest.raises(Error, match=r"cell: the unit of the transform .* without a CRS \(give crs, or cell=30"):
+        Terrain(heights, transform=transform)
+    with pytest.raises(Error, match="without a CRS"):
+        Terrain(data_array(heights, crs=None))
+    with pytest.raises(Error, match=r"cell: .*: a CRS does not say it \(give transform, or cell=30"):
+        Terrain(heights, crs="EPSG:32632")
+    assert Terrain(heights, transform=transform, cell=30).to_local(500_015, 5_199_985 - 240)[0] == 0
+    if HAS_FILES:
+        assert "UTM" in Terrain(heights, crs="EPSG:32632", cell=30).crs
+
+
+@needs_files
+def test_transforms_from_south_give_the_same_maps():
+    heights = hills(20, 30)
+    north = Terrain(heights, crs="EPSG:32632", transform=(30, 0, 500_000, 0, -30, 5_200_000))
+    south = Terrain(heights[::-1].copy(), crs="EPSG:32632", transform=(30, 0, 500_000, 0, 30, 5_200_000 - 20 * 30))
+    assert south.transform == north.transform and south.cell == north.cell
+    assert np.array_equal(south.heights, heights)
+    place = (500_315, 5_199_585)
+    assert np.array_equal(south.to_local(*place), north.to_local(*place))
+    for call in (
+        lambda t: pyscarp.viewshed(t, place),
+        lambda t: pyscarp.shadow(t, (135, 20)),
+        lambda t: pyscarp.horizon(t, 4),
+    ):
+        assert np.array_equal(call(south)[..., ::-1, :], call(north)) and not np.array_equal(call(south), call(north))
+    south.edit(900, rows=slice(0, 1))
+    assert (south.heights[-1] == 900).all()
+    with pytest.raises(Error, match="south_up: False contradicts"):
+        Terrain(heights, cell=30, south_up=False, transform=(30, 0, 0, 0, 30, 0))
 
 
 @needs_files
@@ -369,4 +491,5 @@ def test_border_samples_are_inside():
         terrain = Terrain(data_array(hills(20, 30), x0, y0, step))
         corners = [terrain.to_map(c * terrain.cell[0], r * terrain.cell[1]) for c in (0, 29) for r in (0, 19)]
         for corner in corners:
-            assert pyscarp.line_of_sight(terrain, corner, corners[0] if corner != corners[0] else corners[1]) is not None
+            other = corners[0] if corner != corners[0] else corners[1]
+            assert pyscarp.line_of_sight(terrain, corner, other) is not None

@@ -284,6 +284,55 @@ def test_bad_input_has_one_line(call, message):
     assert "\n" not in str(caught.value)
 
 
+DAY = dict(date="2026-06-21", place=(0, 45))
+
+
+@pytest.mark.parametrize(
+    "call, names",
+    [
+        (lambda t: pyscarp.viewshed(t, (0, 0), heights="sea"), "heights"),
+        (lambda t: pyscarp.viewshed(t, [(0, 0, 9), (1, 1, 9)], observer_height=5), "observer_height"),
+        (lambda t: pyscarp.viewshed(t, (0, 0), mode="dem", target_height=5), "target_height"),
+        (lambda t: pyscarp.viewshed(t, (0, 0), mode="ground", target_height=5), "target_height"),
+        (lambda t: pyscarp.line_of_sight(t, (0, 0, 9), (1, 1), observer_height=5), "observer_height"),
+        (lambda t: pyscarp.line_of_sight(t, (0, 0), (1, 1, 9), target_height=5), "target_height"),
+        (lambda t: pyscarp.profile(t, (0, 0), (1, 1), heights="sea"), "heights"),
+        (lambda t: pyscarp.shadow(t, (90, 9), refraction=True, place=(0, 0)), "refraction, place"),
+        (lambda t: pyscarp.horizon(t, coords="local"), "coords"),
+        (
+            lambda t: pyscarp.horizon(t, at=(1, 1), engine="sweep", rows=slice(0, 1), progress=print),
+            "engine, rows, progress",
+        ),
+        (
+            lambda t: pyscarp.sun_hours(t, suns=[(90, 30, 1)], step=60, utc_offset=1, refraction=True, place=(0, 0)),
+            "step, utc_offset, refraction, place",
+        ),
+        (lambda t: pyscarp.sun_hours(t, suns=[(90, 30, 1)], to="2026-06-21"), "to"),
+        (lambda t: pyscarp.sun_hours(t, **DAY, linke=4, albedo=0.4, transmittance=0.6), "linke, albedo, transmittance"),
+        (lambda t: pyscarp.sun_hours(t, **DAY, energy=True, linke=4, transmittance=0.6), "linke"),
+        (lambda t: pyscarp.render(t, top=True, view=(1, 2), fov=40, eye=(0, 0, 9)), "view, fov, eye"),
+        (lambda t: pyscarp.render(t, eye=(0, 0, 9), distance=2), "distance"),
+        (lambda t: pyscarp.render(t, target=(0, 0, 9)), "target"),
+        (lambda t: pyscarp.render(t, unlit=True, shadows=False, samples=4), "shadows, samples"),
+        (lambda t: pyscarp.render(t, unlit=True, sun=(90, 9)), "sun"),
+        (lambda t: pyscarp.render(t, ao_distance=9), "ao_distance"),
+        (lambda t: pyscarp.render(t, look="hillshade", shadows=False, haze=0.5), "shadows, haze"),
+        (lambda t: Terrain(FLAT, cell=1, plane_error=2), "plane_error"),
+    ],
+)
+def test_arguments_without_effect_are_named(call, names):
+    with pytest.raises(Error, match=f"^{names}: no effect ") as caught:
+        call(Terrain(FLAT, cell=1))
+    assert "\n" not in str(caught.value)
+
+
+def test_arguments_at_their_defaults_are_not_refused():
+    terrain = Terrain(FLAT, cell=1, plane_error=0.5)
+    pyscarp.viewshed(terrain, (0, 0, 2), observer_height=2, mode="dem", target_height=0)
+    pyscarp.shadow(terrain, (90, 9), refraction=False, place=None)
+    assert pyscarp.render(terrain, (8, 8), top=True, view=[190, 35], fov=30).shape == (8, 8, 3)
+
+
 def test_observers_on_holes():
     heights = FLAT.copy()
     heights[2, 2] = np.nan

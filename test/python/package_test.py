@@ -162,6 +162,76 @@ def test_wrong_arguments_have_one_line(call):
     assert "\n" not in str(caught.value) and ": " in str(caught.value)
 
 
+HEIGHTS = np.zeros((4, 4), np.float32)
+TERRAIN = pyscarp.Terrain(HEIGHTS, cell=1)
+VOXELS = pyscarp.Voxels(np.ones((2, 2, 2), np.uint8))
+RAY = ([0, 0, 1], [0, 0, -1])
+#: Calls that succeed: a function, its arguments by position, and other arguments that some need beside them.
+CALLS = [
+    (pyscarp.Terrain, (HEIGHTS,), {"cell": 1}),
+    (pyscarp.Terrain.open, ("none.tif",), {}),
+    (TERRAIN.cast, RAY, {}),
+    (TERRAIN.occluded, RAY, {}),
+    (TERRAIN.heights_at, (1, 1), {}),
+    (TERRAIN.all_hits, RAY, {}),
+    (TERRAIN.cast_from, (pyscarp.Camera((1, 1, 9)),), {}),
+    (TERRAIN.edit, (0,), {}),
+    (TERRAIN.samples_changed, (), {}),
+    (lambda **camera: TERRAIN.cast_from(pyscarp.Camera(**camera)), (), {"eye": (1, 1, 9), "columns": 4, "rows": 4}),
+    (lambda **scanner: TERRAIN.cast_from(pyscarp.Scanner(**scanner)), (), {"eye": (1, 1, 9), "columns": 4}),
+    (lambda **part: pyscarp.Scene([pyscarp.Part(**part)]), (), {"scene": VOXELS}),
+    (pyscarp.Voxels, (np.ones((2, 2, 2), np.uint8),), {}),
+    (VOXELS.edit, (), {"positions": [[0, 0, 0]]}),
+    (pyscarp.Scene, ([TERRAIN],), {}),
+    (pyscarp.render, (TERRAIN, (8, 8)), {}),
+    (pyscarp.viewshed, (TERRAIN, (1, 1)), {}),
+    (pyscarp.line_of_sight, (TERRAIN, (0, 0), (1, 1)), {}),
+    (pyscarp.profile, (TERRAIN, (0, 0), (1, 1)), {}),
+    (pyscarp.shadow, (TERRAIN, (90, 45)), {}),
+    (pyscarp.horizon, (TERRAIN, 4), {}),
+    (pyscarp.sky_view, (TERRAIN,), {"azimuths": 4}),
+    (pyscarp.sun_hours, (TERRAIN,), {"suns": [(90, 45, 1)]}),
+    (pyscarp.sun_masks, (TERRAIN, "2026-06-21"), {"place": (0, 45)}),
+    (pyscarp.sun_position, (TERRAIN, "2026-06-21T12:00Z"), {"place": (0, 45)}),
+    (pyscarp.set_threads, (0,), {}),
+]
+FIELDS = {"camera": pyscarp.Camera, "scanner": pyscarp.Scanner, "part": pyscarp.Part}
+#: Messages name what is not a terrain by the argument of Terrain.
+OTHER_NAMES = {
+    "terrain": "heights",
+    ("render", "scene"): "heights",
+    "instrument": "cast_from",
+    "indices": "voxels",
+    "parts": ("parts", "scene"),
+}
+
+
+def arguments_of(function):
+    found = inspect.signature(function).parameters
+    fields = FIELDS.get(next(iter(found), None))
+    return list(inspect.signature(fields).parameters if fields else found)
+
+
+@pytest.mark.parametrize("function, given, others", CALLS, ids=lambda v: getattr(v, "__name__", ""))
+@pytest.mark.parametrize("wrong", [object(), "two\nlines", 1j, np.full((3, 3, 3), "x")], ids=lambda v: type(v).__name__)
+def test_every_argument_is_checked(function, given, others, wrong):
+    for position, name in enumerate(arguments_of(function)):
+        if name == "path" and isinstance(wrong, str):
+            continue  # a path of a file that does not exist
+        arguments, keywords = list(given), dict(others)
+        if position < len(given):
+            arguments[position] = wrong
+        else:
+            keywords[name] = wrong
+        with pytest.raises((TypeError, pyscarp.Error)) as caught:
+            function(*arguments, **keywords)
+        message = str(caught.value)
+        named = OTHER_NAMES.get((function.__name__, name), OTHER_NAMES.get(name, name))
+        named = named if isinstance(named, tuple) else (named,)
+        assert "\n" not in message and len(message) < 250, (name, message)
+        assert message.startswith((*named, f"{function.__name__}: ")), (name, message)
+
+
 def run(*arguments, **environment):
     return subprocess.run(
         [sys.executable, "-m", "pyscarp", *arguments], capture_output=True, text=True, env={**os.environ, **environment}

@@ -61,8 +61,72 @@ def test_arrays_come_back_after_edits():
         {"positions": [[0, 0, 0]], "index": -1},
         {"box": ((0, 0, 0), (1, 1, 1)), "index": 300},
     ):
-        with pytest.raises(Error, match="edit"):
+        with pytest.raises(Error, match="edit|index"):
             voxels.edit(**wrong)
+
+
+def test_edits_of_voxels_are_exact():
+    voxels = Voxels(np.ones((2, 2, 2), np.uint8), palette=[(0, 0, 0), (9, 9, 9)])
+    whole = np.ones((2, 2, 2), np.uint8)
+    # Indices that would be inside if they wrapped are outside.
+    for outside in [[2**32, 0, 0]], [[0, -(2**40), 0]], np.array([[2**64 - 2, 1, 1]], np.uint64), [[1e300, 0, 0]]:
+        voxels.edit(positions=outside)
+        assert np.array_equal(voxels.to_array(), whole)
+    voxels.edit(positions=[])
+    voxels.edit(positions=[[1.0, 0.0, 1.0]], index=np.uint8(0))
+    voxels.edit(box=((-(2**40), 1, 0), (2**40, 2, 1)))
+    whole[1, 0, 1] = whole[0, 1] = 0
+    assert np.array_equal(voxels.to_array(), whole)
+
+
+@pytest.mark.parametrize(
+    "edit, message",
+    [
+        ({"positions": [[0.5, 0, 0]]}, "positions: 0.5 is not a whole number"),
+        ({"positions": [[0, np.nan, 0]]}, "positions: nan is not a whole number"),
+        ({"positions": [[0, 0, 0]], "index": 0.5}, "index: 0.5 is not a whole number"),
+        ({"positions": [[0, 0, 0]], "index": 256}, "index 256"),
+        ({"positions": [[0, 0, 0]], "index": 2**32}, "index 4294967296"),
+        ({"positions": [[0, 0, 0]], "index": 2}, "index 2 is not between 0 and 1"),
+        ({"positions": [["a", "b", "c"]]}, "positions: .* not an array of numbers"),
+        ({"box": ((0, 0, 0.5), (1, 1, 1))}, "box: 0.5 is not a whole number"),
+        ({"box": ((0, 0), (1, 1))}, r"box: .*\(2, 3\)"),
+        ({"box": ((0, 0, 0), (1, 1, 1)), "index": 1.5}, "index: 1.5"),
+        ({"box": ((0, 0, 0), (1, 1, 1)), "index": 2}, "index: 2 .* 0 to 1"),
+        ({"sphere": 5}, "sphere: 5"),
+        ({"sphere": ((0, 0, np.nan), 1)}, "sphere: .* is not finite"),
+    ],
+)
+def test_refuses_places_and_indices_that_are_none(edit, message):
+    voxels = Voxels(np.ones((2, 2, 2), np.uint8), palette=[(0, 0, 0), (9, 9, 9)])
+    with pytest.raises((Error, TypeError), match=message) as caught:
+        voxels.edit(**edit)
+    assert "\n" not in str(caught.value) and (voxels.to_array() == 1).all()
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.int64, np.uint16])
+def test_palettes_are_of_any_integers(dtype):
+    palette = np.array([[0, 0, 0], [255, 0, 0], [0, 255, 0]]).astype(dtype)
+    picture = pyscarp.render(Voxels(np.ones((2, 2, 2), np.uint8), palette=palette), (32, 32), unlit=True)
+    assert picture[16, 16].tolist() == [255, 0, 0]
+
+
+@pytest.mark.parametrize(
+    "palette, message",
+    [
+        ([(0, 0, 0), (256, 0, 0)], "256"),
+        ([(0, 0, 0), (-1, 0, 0)], "-1"),
+        ([(0.0, 0, 0), (1.0, 0.5, 0)], "integers from 0 to 255"),
+        ([0, 0, 0, 255, 0, 0], r"\(n, 3\)"),
+        (np.zeros((3, 2), np.uint8), r"\(n, 3\)"),
+        (np.zeros((3, 4), np.uint8), r"\(n, 3\)"),
+        ([0x000000, 0xFF0000], r"\(n, 3\)"),
+        ("red", "palette: 'red' is not an array of numbers"),
+    ],
+)
+def test_refuses_other_palettes(palette, message):
+    with pytest.raises((Error, TypeError), match=f"palette: .*{message}|{message}"):
+        Voxels(np.ones((2, 2, 2), np.uint8), palette=palette)
 
 
 @pytest.mark.parametrize(
