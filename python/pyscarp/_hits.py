@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import enum
-from typing import Any, Tuple, Union
+from typing import Any, Iterator, Tuple, Union
 
 import numpy as np
 
 from . import _core
+from ._arguments import flag, shown, whole
+from ._core import Error
 
 _FORMATS = {
     "status": "u1",
@@ -52,8 +54,14 @@ class Hits:
     ``Hits(shape)`` makes room for a batch, for ``cast(..., out=hits)``: no memory is allocated in such a call. With
     ``normal=False`` it has no normals, with ``position=False`` no positions, and they are not computed.
 
-    >>> Hits((2, 3)).t.shape
-    (2, 3)
+    ``hits[index]`` has the hits of some rays, as NumPy indexes the axes of the batch: slices share memory, as NumPy's
+    views. Iteration goes along the first axis. The truth value of one hit is whether the ray hits; that of several is
+    an Error.
+
+    >>> terrain = Terrain(np.full((3, 3), 5, np.float32), cell=10)
+    >>> hits = terrain.cast([[7, 3, 100], [7, 300, 100], [9, 3, 50]], [0, 0, -1])
+    >>> hits[hits.hit].t.tolist(), [bool(hit) for hit in hits]
+    ([95.0, 45.0], [True, False, True])
     """
 
     __slots__ = ("_raw", "_scene", "position", "normal")
@@ -64,13 +72,14 @@ class Hits:
     normal: np.ndarray | None
 
     def __init__(self, shape: Shape, *, position: bool = True, normal: bool = True) -> None:
-        shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        sides = shape if isinstance(shape, (tuple, list)) else (shape,)
+        shape = tuple(whole(side, "shape", 0, 2**62) for side in sides)
         self._raw = np.zeros(shape, _HIT)
         self._raw["t"] = np.inf
         self._raw["cell"] = -1
         self._scene: object = None
-        self.position = np.full(shape + (3,), np.nan) if position else None
-        self.normal = np.zeros(shape + (3,)) if normal else None
+        self.position = np.full(shape + (3,), np.nan) if flag(position, "position") else None
+        self.normal = np.zeros(shape + (3,)) if flag(normal, "normal") else None
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -79,6 +88,23 @@ class Hits:
 
     def __len__(self) -> int:
         return len(self._raw)
+
+    def __getitem__(self, index: Any) -> "Hits":
+        part = Hits.__new__(Hits)
+        batch, vectors = _along_batch(index)
+        part._raw = self._raw[batch]
+        part._scene = self._scene
+        part.position = None if self.position is None else self.position[vectors]
+        part.normal = None if self.normal is None else self.normal[vectors]
+        return part
+
+    def __iter__(self) -> Iterator["Hits"]:
+        return (self[i] for i in range(len(self)))
+
+    def __bool__(self) -> bool:
+        if self._raw.size != 1:
+            raise Error(f"hits: {self._raw.size} rays have no single truth value (use .hit.any() or .hit.all())")
+        return bool(self.hit.all())
 
     def _field(self, name: str) -> np.ndarray:
         view = self._raw[name]
@@ -129,10 +155,24 @@ class Hits:
         return f"<pyscarp.Hits of {self._raw.size} rays, {int(self.hit.sum())} hits>"
 
 
-class AllHits(Hits):
-    """All hits along rays, ordered by ray and ``t``.
+def _along_batch(index: Any) -> tuple[Any, Any]:
+    """Returns an index of the axes of a batch for arrays of the batch, and for arrays of vectors."""
+    parts = index if isinstance(index, tuple) else (index,)
+    for part in parts:
+        if isinstance(part, slice) or part is Ellipsis or np.size(part) == 0:
+            continue
+        if np.asarray(part).dtype.kind not in "biu":
+            raise TypeError(f"hits: {shown(index)} is no index of rays (expected integers, slices or an array of bool)")
+    if not any(part is Ellipsis for part in parts):
+        parts = (*parts, Ellipsis)  # one hit stays an array, of no dimensions
+    return parts, (*parts, slice(None))
 
-    The hits of ray ``i`` (of the flattened batch) are ``slice(first[i], first[i + 1])``.
+
+class AllHits(Hits):
+    """All hits along rays, ordered by ray and ``t``: arrays ``(hits,)``.
+
+    The hits of ray ``i`` (of the flattened batch) are ``of_ray(i)``, or ``slice(first[i], first[i + 1])``. Indices and
+    iteration count hits. The truth value is whether any ray hits.
     """
 
     __slots__ = ("first",)
@@ -152,6 +192,21 @@ class AllHits(Hits):
     def ray(self) -> np.ndarray:
         """int64 ``(hits,)``: index of the ray of each hit."""
         return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+    def of_ray(self, ray: int) -> Hits:
+        """Returns the hits of one ray, ordered by ``t``.
+
+        Raises:
+            Error: there is no such ray.
+        """
+        ray = whole(ray, "ray", 0, len(self.first) - 2)
+        return self[self.first[ray] : self.first[ray + 1]]
+
+    def __bool__(self) -> bool:
+        return len(self) > 0
+
+    def __repr__(self) -> str:
+        return f"<pyscarp.AllHits of {len(self.first) - 1} rays, {len(self)} hits>"
 
 
 class FanHits:

@@ -180,6 +180,7 @@ CALLS = [
     (lambda **camera: TERRAIN.cast_from(pyscarp.Camera(**camera)), (), {"eye": (1, 1, 9), "columns": 4, "rows": 4}),
     (lambda **scanner: TERRAIN.cast_from(pyscarp.Scanner(**scanner)), (), {"eye": (1, 1, 9), "columns": 4}),
     (lambda **part: pyscarp.Scene([pyscarp.Part(**part)]), (), {"scene": VOXELS}),
+    (pyscarp.Hits, (2,), {}),
     (pyscarp.Voxels, (np.ones((2, 2, 2), np.uint8),), {}),
     (VOXELS.edit, (), {"positions": [[0, 0, 0]]}),
     (pyscarp.Scene, ([TERRAIN],), {}),

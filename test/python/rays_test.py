@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Rays: answers against NumPy, shapes, room for answers, and errors."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from conftest import hills
@@ -89,26 +91,92 @@ def test_rays_broadcast_as_in_numpy(first, second, dtype):
     assert np.array_equal(terrain.occluded(origins, directions), inside)
 
 
+def allocated(call):
+    """Most bytes that NumPy and Python held during a call."""
+    tracemalloc.start()
+    try:
+        call()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
 def test_fills_room_without_allocating(ground):
     origins, directions = random_rays(1000)
     out = Hits(1000, normal=False)
     position = out.position
     assert ground.cast(origins, directions, out=out) is out and out.position is position and out.normal is None
+    # One byte per ray would be 1000.
+    assert allocated(lambda: ground.cast(origins, directions, out=out)) < 1000
+    assert allocated(lambda: ground.cast(origins, directions)) > 1000 * 8
     fresh = ground.cast(origins, directions)
     assert np.array_equal(out._raw, fresh._raw) and np.array_equal(position, fresh.position, equal_nan=True)
-    ground.cast(origins[:, ::-1], directions, out=out)  # other strides, the same room
+    turned = ground.cast(origins[:, ::-1], directions, out=out)  # other strides, the same room
+    assert np.array_equal(turned.t, ground.cast(origins[:, ::-1].copy(), directions).t)
+    assert not np.array_equal(turned.t, fresh.t)
     blocked = np.zeros(1000, bool)
     assert ground.occluded(origins, directions, out=blocked) is blocked and np.array_equal(blocked, fresh.hit)
     heights = np.empty(1000)
     ground.heights_at(origins[:, 0], origins[:, 1], out=heights)
-    assert np.array_equal(heights, bilinear(ground.heights, 10, origins[:, 0], origins[:, 1])) or np.allclose(
-        heights, bilinear(ground.heights, 10, origins[:, 0], origins[:, 1]), rtol=1e-12
-    )
+    # A dozen roundings, of positions below 80 cells on slopes below 300 m per cell.
+    wanted = bilinear(ground.heights, 10, origins[:, 0], origins[:, 1])
+    assert np.abs(heights - wanted).max() <= 12 * 2.0**-53 * 80 * 300
     for wrong in (Hits(999), Hits((1000, 1))):
         with pytest.raises(Error, match="room"):
             ground.cast(origins, directions, out=wrong)
     with pytest.raises(Error, match="bool"):
         ground.occluded(origins, directions, out=np.zeros(1000))
+    with pytest.raises(Error, match="position, normal: no effect with out"):
+        ground.cast(origins, directions, out=out, position=False, normal=False)
+
+
+def test_hits_are_indexed_as_their_arrays(ground):
+    origins, directions = random_rays(60)
+    hits = ground.cast(origins.reshape(6, 10, 3), directions.reshape(6, 10, 3))
+    mask = hits.hit
+    for index in 2, -1, (2, 3), slice(1, 4), (slice(None), 4), (..., 2), mask, [3, 1], (mask.any(1), 0), []:
+        part = hits[index]
+        assert type(part) is Hits and part.shape == hits.t[index].shape
+        for name in "t", "status", "hit", "cell", "uv", "position", "normal", "face", "object", "voxel":
+            whole = getattr(hits, name)
+            vectors = whole.ndim > hits.t.ndim
+            axes = index if isinstance(index, tuple) else (index,)
+            wanted = whole[(*axes, slice(None))] if vectors else whole[index]
+            assert np.array_equal(getattr(part, name), wanted, equal_nan=True), (index, name)
+    assert np.shares_memory(hits[1:].t, hits.t) and np.shares_memory(hits[2].position, hits.position)
+    assert [row.shape for row in hits] == [(10,)] * 6
+    assert [float(ray.t) for row in hits for ray in row] == hits.t.reshape(-1).tolist()
+    bare = ground.cast(origins, directions, position=False, normal=False)[:5]
+    assert bare.position is None and bare.normal is None and bare.t.tolist() == hits.t[0, :5].tolist()
+    for index in "t", None, 1.5, (0, "t"):
+        with pytest.raises(TypeError, match="no index of rays"):
+            hits[index]
+    with pytest.raises(IndexError):
+        hits[6]
+
+
+def test_parts_of_hits_start_rays(ground):
+    origins, directions = random_rays(200)
+    hits = ground.cast(origins, directions)
+    sun = np.array([1.0, 0.5, 0.4])
+    points = np.where(hits.hit[:, None], hits.position, 500.0)
+    shadow = ground.occluded(points, sun, start=hits)
+    assert np.array_equal(ground.occluded(points[::3], sun, start=hits[::3]), shadow[::3])
+    with pytest.raises(Error, match="another scene"):
+        Terrain(np.zeros((5, 5), np.float32), cell=1).occluded(points[:3], sun, start=hits[:3])
+    with pytest.raises(TypeError, match="start: "):
+        ground.occluded(points, sun, start=points)
+
+
+def test_truth_values_are_clear(ground):
+    hits = ground.cast([[400, 300, 900], [400, 300, 900]], [[0, 0, -1], [0, 0, 1]])
+    assert bool(hits[0]) and not hits[1] and bool(hits[:1]) and [bool(h) for h in hits] == [True, False]
+    for several in hits, hits[:0]:
+        with pytest.raises(Error, match=r"no single truth value \(use .hit.any\(\)"):
+            bool(several)
+    above, along = ([400, 300, 900], [0, 0, 1]), ([-50, 20, 150], [1, 0.05, 0])
+    assert not ground.all_hits(*above) and bool(ground.all_hits(*along))
+    assert repr(ground.all_hits(*above)) == "<pyscarp.AllHits of 1 rays, 0 hits>"
 
 
 def test_rays_start_on_hits(ground):
@@ -160,6 +228,19 @@ def test_names_bad_rays_of_large_batches(ground):
         ground.cast(origins, np.array([0, 0, -1.0]))
 
 
+def test_batches_of_cameras_are_those_of_their_rays(ground):
+    # More rays than a piece of a batch; rows do not divide its size.
+    camera = pyscarp.Camera((400, -200, 600), forward=(0.1, 1, -0.6), columns=700, rows=201, fov=70)
+    directions = camera.directions().reshape(-1, 3)
+    origins = np.ascontiguousarray(np.broadcast_to(camera.eye, directions.shape).astype(float))
+    hits = ground.cast(origins, directions)
+    order = np.random.default_rng(5).permutation(len(directions))
+    shuffled = ground.cast(origins[order], directions[order])
+    assert np.array_equal(shuffled._raw, hits._raw[order]) and 0.2 < hits.hit.mean() < 1
+    assert np.array_equal(shuffled.position, hits.position[order], equal_nan=True)
+    assert np.array_equal(ground.occluded(origins, directions), hits.hit)
+
+
 def test_texts_are_no_rays(ground):
     with pytest.raises(TypeError, match="numbers"):
         ground.cast([["a", "b", "c"]], [0, 0, 1])
@@ -183,6 +264,13 @@ def test_all_hits_begin_with_the_closest(ground):
     count = np.diff(every.first)
     assert count.max() > 1 and np.array_equal(count > 0, first.hit)
     assert np.array_equal(every.t[every.first[:-1][count > 0]], first.t[first.hit])
+    for i in 0, 40, len(origins) - 1:
+        of_ray = every.of_ray(i)
+        assert np.array_equal(of_ray.t, every.t[every.ray == i]) and len(of_ray) == count[i]
+    assert len(every) == count.sum() and float(every[-1].t) == every.t[-1]
+    for wrong in -1, len(origins), 0.5:
+        with pytest.raises(Error, match="ray: "):
+            every.of_ray(wrong)
     same_ray = np.diff(every.ray) == 0
     assert (np.diff(every.t)[same_ray] > 0).all()
 
