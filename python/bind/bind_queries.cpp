@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "python/bind/terrain_object.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/height/fan_batch.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/scene/cast.h"
 
@@ -97,14 +99,23 @@ struct Rays {
   throw error;
 }
 
+// The number of rays of a piece, given the first ones: whole rows of a camera or a scanner, which are faster as a fan.
+std::size_t rays_at_once(const SceneObject& object, std::span<const Ray> first) {
+  const auto* terrain = dynamic_cast<const TerrainObject*>(&object);
+  const auto fan = terrain ? fan_batch(terrain->terrain().target(), first) : std::nullopt;
+  return fan ? first.size() / fan->run * fan->run : first.size();
+}
+
 // Calls answer(first, rays, from) for pieces of the batch. `start`: the hits on whose surfaces rays start, or null.
 template <class Answer>
-void for_each_piece(const Rays& rays, const Hit* start, const Scene& scene, const Answer& answer) {
+void for_each_piece(const SceneObject& object, const Rays& rays, const Hit* start, const Answer& answer) {
+  const Scene& scene = object.scene();
   std::vector<Ray> piece;
   std::vector<const Hit*> from;
-  for (std::size_t first = 0; first < rays.count(); first += kRaysAtOnce) {
+  std::size_t at_once = kRaysAtOnce;
+  for (std::size_t first = 0; first < rays.count(); first += piece.size()) {
     if (first > 0) check_signals();
-    piece.resize(std::min(kRaysAtOnce, rays.count() - first));
+    piece.resize(std::min(at_once, rays.count() - first));
     if (start) from.resize(piece.size());
     parallel_for(static_cast<std::int64_t>(piece.size()), kRaysPerColumn, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
@@ -112,6 +123,11 @@ void for_each_piece(const Rays& rays, const Hit* start, const Scene& scene, cons
         if (start) from[i] = start[first + i] ? &start[first + i] : nullptr;
       }
     });
+    if (first == 0 && piece.size() < rays.count()) {
+      at_once = rays_at_once(object, piece);
+      piece.resize(at_once);
+      if (start) from.resize(at_once);
+    }
     try {
       answer(first, std::span<const Ray>(piece), std::span<const Hit* const>(from));
     } catch (const Error& error) {
@@ -156,7 +172,7 @@ void cast_rays(const SceneObject& self, const py::array& origins, const py::arra
     found[0] = cast(scene, ray, from && from[0] ? from : nullptr);
     return complete(ray, 0);
   }
-  for_each_piece(rays, from, scene,
+  for_each_piece(self, rays, from,
                  [&](std::size_t first, std::span<const Ray> piece, std::span<const Hit* const> starts) {
                    cast(scene, piece, std::span(found + first, piece.size()), starts);
                    if (!points && !upward) return;
@@ -195,7 +211,7 @@ void occluded_rays(const SceneObject& self, const py::array& origins, const py::
     answers[0] = occluded(scene, rays[0], from && from[0] ? from : nullptr);
     return;
   }
-  for_each_piece(rays, from, scene,
+  for_each_piece(self, rays, from,
                  [&](std::size_t first, std::span<const Ray> piece, std::span<const Hit* const> starts) {
                    occluded(scene, piece, std::span(answers + first, piece.size()), starts);
                  });
