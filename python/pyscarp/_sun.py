@@ -102,7 +102,8 @@ def shadow(
     rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> Any:
-    """Maps where the sun shines, exactly: the same values as ``scarp shadow``.
+    """Maps where the sun shines, exactly: the same values as ``scarp shadow``, where north turns by at most 0.05
+    degrees over the raster; beyond that, that of the centre counts.
 
     Args:
         terrain: `Terrain`, or what it accepts.

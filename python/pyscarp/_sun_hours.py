@@ -59,7 +59,8 @@ def sun_hours(
     rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> Any:
-    """Maps the hours of direct sun, and the energy of a clear sky: the same values as ``scarp sunhours``.
+    """Maps the hours of direct sun, and the energy of a clear sky: the same values as ``scarp sunhours``, where north
+    turns by at most 0.05 degrees over the raster; beyond that, that of the centre counts.
 
     Args:
         terrain: `Terrain`, or what it accepts.
@@ -179,7 +180,8 @@ def sun_masks(
     rows: Optional[slice] = None,
     progress: Progress = None,
 ) -> tuple[np.ndarray, Any]:
-    """Maps where the sun shines at each step of a day with the sun up: the same values as ``scarp sunhours --masks``.
+    """Maps where the sun shines at each step of a day with the sun up: the same values as ``scarp sunhours --masks``,
+    as far as for `sun_hours`.
 
     Args:
         terrain: `Terrain`, or what it accepts.

@@ -28,13 +28,15 @@ class Terrain(Rays, _core.Terrain):
         heights: float32, int16 or uint16, ``(rows, cols)``: a NumPy array or an xarray DataArray. Rows may be strided;
             the samples of a row are next to one another. The terrain keeps the array alive, and reads it: after a
             change of its values call `samples_changed`. NaN is a hole.
-        cell: metres between samples: one number, or east and north. Default: from coordinates and CRS.
+        cell: metres between samples: one number, or east and north. Default: from coordinates and CRS; without a CRS,
+            coordinates that say that they are in metres.
         crs: text such as ``EPSG:32610``, WKT, or an object of rasterio or pyproj. Default: the DataArray's.
         nodata: value of holes. Default: the DataArray's ``_FillValue``.
         transform: ``(a, b, c, d, e, f)``, from pixel corners to the map, as rasterio's ``Affine``. Default: from the
             DataArray's coordinates.
         scale, offset: metres = (value * scale + offset) in ``unit``. Default: the DataArray's, else 1 and 0.
-        unit: of heights: ``m`` or ``ft``, ``us-ft``, ``km``, ``cm``. Default: the DataArray's ``units``, else metres.
+        unit: of heights: ``m`` or ``ft``, ``us-ft``, ``km``, ``cm``, ... Default: the DataArray's ``units``, else that
+            of the vertical CRS, else metres.
         exaggeration: factor of all heights, above 0.
         surface: ``bilinear`` between samples, or ``triangles``.
         wrap: ``none``, ``periodic`` or ``shared_border``: the field repeats.
@@ -42,11 +44,12 @@ class Terrain(Rays, _core.Terrain):
         south_up: whether the first row is the southernmost. Default: from coordinates, else False.
         grid_north: azimuth of decreasing rows in degrees from true north. Default: from the CRS, else 0.
         plane_error: maps are computed on planes in metres: the most cells by which they may misplace samples.
-        copy: allow a copy, of arrays of other types (float64 becomes float32) or layouts.
+        copy: read a copy instead of the array itself: arrays of other types (float64 becomes float32) and layouts.
 
     Raises:
         TypeError: another type of samples, with the remedy.
-        Error: another shape or layout; coordinates that are not evenly spaced, or no ``cell``; an infinite sample.
+        Error: another shape or layout; coordinates that are not evenly spaced, or in another unit than their CRS; no
+            ``cell`` and no transform with a CRS; an infinite sample.
 
     >>> terrain = Terrain(np.array([[0, 1], [2, 3]], np.float32), cell=30)
     >>> terrain.shape, terrain.cell, terrain.range

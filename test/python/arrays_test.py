@@ -56,6 +56,13 @@ def test_copies_other_types_when_allowed(dtype):
     assert not np.shares_memory(terrain.heights, heights)
 
 
+def test_a_copy_is_one_in_any_case():
+    heights = np.zeros((3, 4), np.float32)
+    terrain = Terrain(heights, cell=1, copy=True)
+    heights[:] = 7
+    assert terrain.range == (0, 0) and (terrain.heights == 0).all()
+
+
 def test_paths_are_opened():
     with pytest.raises(TypeError, match="Terrain.open"):
         Terrain("dem.tif")

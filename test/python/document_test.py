@@ -17,13 +17,17 @@ def test_snippets_run(tmp_path, monkeypatch, capsys):
     pytest.importorskip("xarray")
     monkeypatch.chdir(tmp_path)
     with open(os.path.join(os.environ["SCARP_SOURCE"], "doc/user/python.md")) as page:
-        snippets = re.findall(r"^```python\n(.*?)^```", page.read(), re.MULTILINE | re.DOTALL)
+        text = page.read()
+    snippets = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     assert len(snippets) >= 15
     names = {}
     for number, snippet in enumerate(snippets):
         exec(compile(snippet, f"snippet {number}", "exec"), names)
     printed = capsys.readouterr().out
-    # What the page says in its comments.
+    # What the page says in its text and comments.
+    rows, cols = names["elevation"].shape
+    assert f"{cols} x {rows} samples (columns x rows) of {names['elevation'].dtype}" in " ".join(text.split())
+    assert f"pyscarp.Terrain {cols} x {rows} int16" in printed
     assert "cells 74.5732 x 92.475 m" in printed  # rounded on the page
     assert "observer -80,36.6: is outside the terrain" in printed and "100%" in printed
     assert names["seen"].distance > 1000 and names["depth"].shape == (240, 320) and names["cloud"].shape[1] == 3

@@ -236,7 +236,8 @@ def test_ctrl_c_stops_all_hits(large, interruptible):
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        large.all_hits(np.broadcast_to(np.array([10.0, 10.0, 150.0]), rays), np.broadcast_to(np.array([1.0, 0.7, 0.001]), rays))
+        origins = np.broadcast_to(np.array([10.0, 10.0, 150.0]), rays)
+        large.all_hits(origins, np.broadcast_to(np.array([1.0, 0.7, 0.001]), rays))
     assert timer.finished.is_set()
 
 
