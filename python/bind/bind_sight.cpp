@@ -85,19 +85,21 @@ struct Observers {
   }
 };
 
-std::vector<std::uint8_t> visible(const Observers& observers, const RowBand& rows, const Progress& progress) {
-  std::vector<std::uint8_t> codes;
+// Codes, in the memory that the library filled: a second array would take longer than all conversions.
+std::vector<Seen> visible(const Observers& observers, const RowBand& rows, const Progress& progress) {
   if (observers.count() == 1) {
-    constexpr std::uint8_t kCodes[] = {kHidden, kVisible, kNoCode, kNoCode};
-    const auto seen = viewshed_rows(observers.fields[0], observers.nodes[0], observers.settings[0], rows, progress);
-    codes.resize(seen.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) codes[i] = kCodes[static_cast<std::size_t>(seen[i])];
-    return codes;
+    static_assert(static_cast<std::uint8_t>(Seen::hidden) == kHidden &&
+                  static_cast<std::uint8_t>(Seen::visible) == kVisible);
+    auto seen = viewshed_rows(observers.fields[0], observers.nodes[0], observers.settings[0], rows, progress);
+    for (Seen& code : seen) code = code > Seen::visible ? Seen{kNoCode} : code;
+    return seen;
   }
+  std::vector<Seen> codes;
   const auto counts = observer_count_rows(observers.views(), rows, progress);
   codes.resize(counts.size());
   for (std::size_t i = 0; i < counts.size(); ++i)
-    codes[i] = counts[i] == kCountHole || counts[i] == kCountOutOfRange ? kNoCode : counts[i] > 0 ? kVisible : kHidden;
+    codes[i] = Seen{
+        counts[i] == kCountHole || counts[i] == kCountOutOfRange ? kNoCode : counts[i] > 0 ? kVisible : kHidden};
   return codes;
 }
 
