@@ -98,8 +98,9 @@ std::vector<Seen> visible(const Observers& observers, const RowBand& rows, const
   const auto counts = observer_count_rows(observers.views(), rows, progress);
   codes.resize(counts.size());
   for (std::size_t i = 0; i < counts.size(); ++i)
-    codes[i] = Seen{
-        counts[i] == kCountHole || counts[i] == kCountOutOfRange ? kNoCode : counts[i] > 0 ? kVisible : kHidden};
+    codes[i] = Seen{counts[i] == kCountHole || counts[i] == kCountOutOfRange ? kNoCode
+                    : counts[i] > 0                                          ? kVisible
+                                                                             : kHidden};
   return codes;
 }
 
@@ -189,16 +190,14 @@ py::array viewshed_map(const TerrainObject& terrain, const std::vector<ObserverR
 struct Line {
   SightEnd from, to;
   SightCurvature curvature;
-  HeightField field;
+  dvec2 cells;
 
-  Line(const TerrainObject& terrain, double from_col, double from_row, double from_height, bool from_sea, double to_col,
-       double to_row, double to_height, bool to_sea, double coefficient, double diameter, double cell_x, double cell_y)
+  Line(double from_col, double from_row, double from_height, bool from_sea, double to_col, double to_row,
+       double to_height, bool to_sea, double coefficient, double diameter, double cell_x, double cell_y)
       : from{from_col, from_row, from_height, from_sea ? HeightDatum::sea : HeightDatum::ground},
         to{to_col, to_row, to_height, to_sea ? HeightDatum::sea : HeightDatum::ground},
         curvature{coefficient, diameter},
-        field(cell_x == terrain.field().settings().cell_x && cell_y == terrain.field().settings().cell_y
-                  ? terrain.field()
-                  : terrain.field_with_cells(cell_x, cell_y)) {}
+        cells(cell_x, cell_y) {}
 };
 
 template <class... Numbers>
@@ -206,8 +205,8 @@ py::tuple sight(const TerrainObject& terrain, Numbers... numbers) {
   LineOfSight line;
   {
     const Query query(terrain);
-    const Line of(terrain, numbers...);
-    line = line_of_sight(of.field, of.from, of.to, of.curvature);
+    const Line of(numbers...);
+    line = line_of_sight(terrain.field(), of.from, of.to, of.curvature, nullptr, of.cells);
   }
   py::object obstruction = py::none();
   if (line.obstruction)
@@ -223,8 +222,8 @@ py::array_t<double> profile_table(const TerrainObject& terrain, Numbers... numbe
   std::vector<double> table;
   {
     const Query query(terrain);
-    const Line of(terrain, numbers...);
-    for (const ProfilePoint& p : profile(SightLine(of.field, of.from, of.to, of.curvature)))
+    const Line of(numbers...);
+    for (const ProfilePoint& p : profile(SightLine(terrain.field(), of.from, of.to, of.curvature, of.cells)))
       table.insert(table.end(), {p.along, p.distance, p.col, p.row, p.ground, p.drop, p.sight, p.visible ? 1.0 : 0.0,
                                  p.after_hole ? 1.0 : 0.0});
   }

@@ -148,12 +148,9 @@ py::object horizon_at(const TerrainObject& terrain, double col, double row, cons
   std::vector<double> table;
   {
     const Query query(terrain);
-    const HeightFieldSettings& own = terrain.field().settings();
-    const bool same = own.cell_x == cell_x && own.cell_y == cell_y;
-    const HeightField field = same ? terrain.field() : terrain.field_with_cells(cell_x, cell_y);
     for (const double azimuth : azimuths) {
       if (table.size() % kPlacesPerSignal == 0) check_signals();
-      const auto view = horizon_from(field, col, row, azimuth, settings);
+      const auto view = horizon_from(terrain.field(), col, row, azimuth, settings, dvec2(cell_x, cell_y));
       if (!view) break;
       table.push_back(view->angle);
       table.push_back(view->distance.value_or(std::numeric_limits<double>::quiet_NaN()));

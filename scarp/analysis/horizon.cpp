@@ -69,15 +69,15 @@ HorizonRows Horizons::block(double azimuth, const NodeRect& nodes, bool distance
 }
 
 std::optional<HorizonView> horizon_from(const HeightField& field, double col, double row, double azimuth,
-                                        const HorizonSettings& settings) {
+                                        const HorizonSettings& settings, const std::optional<dvec2>& cells) {
   validate(settings);
   require_setting("horizon", std::isfinite(azimuth), "azimuth", azimuth, "finite");
-  const SightGround ground(field, col, row, settings.curvature);
+  const SightGround ground(field, col, row, settings.curvature, cells);
   const auto here = ground.height_at(col, row);
   if (!here) return std::nullopt;
   const double eye = *here + settings.eye_height;
   // Cells per metre.
-  const dvec2 step(std::sin(azimuth) / field.settings().cell_x, -std::cos(azimuth) / field.settings().cell_y);
+  const dvec2 step(std::sin(azimuth) / ground.cells().x, -std::cos(azimuth) / ground.cells().y);
   double best = -std::numeric_limits<double>::infinity();
   HorizonView view;
   const auto cross_lines = [&](bool of_columns) {

@@ -88,10 +88,11 @@ struct HorizonView {
 };
 
 /// The horizon seen from a place, `col` and `row` in cells, for an azimuth in radians clockwise from grid north: every
-/// crossing, one after another, in double. The eye is above the bilinear ground. nullopt outside the field and over
-/// holes. Throws Error as Horizons does.
+/// crossing, one after another, in double. The eye is above the bilinear ground. `cells`: lengths of a column and a row
+/// step there in metres, if not those of the field. nullopt outside the field and over holes. Throws Error as Horizons
+/// does.
 std::optional<HorizonView> horizon_from(const HeightField& field, double col, double row, double azimuth,
-                                        const HorizonSettings& settings = {});
+                                        const HorizonSettings& settings = {}, const std::optional<dvec2>& cells = {});
 
 /// Throws Error if a member is out of range.
 void validate(const HorizonSettings& settings);

@@ -46,10 +46,10 @@ double rounded_end(double position) {
 }
 
 SightLine::SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to,
-                     const SightCurvature& curvature)
+                     const SightCurvature& curvature, const std::optional<dvec2>& cells)
     : from_(rounded(field, from, "observer")),
       to_(rounded(field, to, "target")),
-      ground_(field, from_.col, from_.row, curvature) {
+      ground_(field, from_.col, from_.row, curvature, cells) {
   eye_ = height_of(ground_, from_, "observer", eye_ground_);
   target_ = ground_.lowered(height_of(ground_, to_, "target", target_ground_), to_.col, to_.row);
   distance_ = std::sqrt(ground_.square_distance(to_.col, to_.row));
@@ -127,8 +127,9 @@ class Search {
 }  // namespace
 
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
-                          const SightCurvature& curvature, const BlockMaxima* maxima) {
-  return Search(SightLine(field, from, to, curvature), maxima).run();
+                          const SightCurvature& curvature, const BlockMaxima* maxima,
+                          const std::optional<dvec2>& cells) {
+  return Search(SightLine(field, from, to, curvature, cells), maxima).run();
 }
 
 }  // namespace scarp

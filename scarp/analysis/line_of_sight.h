@@ -26,9 +26,11 @@ double rounded_end(double position);
 /// Two ends of a line, ready for queries: checked, rounded, with heights.
 class SightLine {
  public:
-  /// Throws Error for an end outside the field, an end on a hole whose height is above ground, a height that is below
-  /// the ground (unless `under_surface`) or not finite, and a curvature out of range.
-  SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to, const SightCurvature& curvature);
+  /// `cells`: lengths of a column and a row step along this line in metres, if not those of the field. Throws Error for
+  /// an end outside the field, an end on a hole whose height is above ground, a height that is below the ground (unless
+  /// `under_surface`) or not finite, and a length or a curvature out of range.
+  SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to, const SightCurvature& curvature,
+            const std::optional<dvec2>& cells = {});
 
   const SightGround& ground() const { return ground_; }
   double col(double along) const { return from_.col + along * (to_.col - from_.col); }
@@ -70,9 +72,10 @@ struct LineOfSight {
 class BlockMaxima;
 
 /// Answers one query. Throws as SightLine does. `maxima` of the same field speed up many lines over one field, with the
-/// same results; without them every crossing is visited.
+/// same results; without them every crossing is visited. `cells` as for SightLine.
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
-                          const SightCurvature& curvature = {}, const BlockMaxima* maxima = nullptr);
+                          const SightCurvature& curvature = {}, const BlockMaxima* maxima = nullptr,
+                          const std::optional<dvec2>& cells = {});
 
 /// Returns the radius of the first Fresnel zone in metres, `from` and `to` metres from the ends of a path: there, a
 /// detour over the edge of the zone is half a wavelength longer (ITU-R P.526). All in metres, `from` + `to` > 0.

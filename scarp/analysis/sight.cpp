@@ -15,7 +15,8 @@ void validate(const SightCurvature& curvature) {
                   curvature.diameter, "> 0");
 }
 
-SightGround::SightGround(const HeightField& field) : field_(&field) {
+SightGround::SightGround(const HeightField& field)
+    : field_(&field), cells_(field.settings().cell_x, field.settings().cell_y) {
   if (field.wraps()) throw Error("height field: maps need its borders (use a field without wrap)");
   if (field.cols() > kMaxSightSide || field.rows() > kMaxSightSide)
     throw Error(fmt::format("height field: {} x {} samples are too many for maps (limit: {} per side)", field.cols(),
@@ -30,9 +31,12 @@ SightGround::SightGround(const HeightField& field) : field_(&field) {
 }
 
 SightGround::SightGround(const HeightField& field, double observer_col, double observer_row,
-                         const SightCurvature& curvature)
+                         const SightCurvature& curvature, const std::optional<dvec2>& cells)
     : SightGround(field) {
   validate(curvature);
+  if (cells) cells_ = *cells;
+  for (const double length : {cells_.x, cells_.y})
+    require_setting("line of sight", length > 0 && std::isfinite(length), "cell length", length, "finite, above 0");
   col_ = observer_col;
   row_ = observer_row;
   per_square_metre_ = curvature.per_square_metre();

@@ -36,6 +36,7 @@
 #include <numbers>
 #include <optional>
 
+#include "scarp/base/vec.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
@@ -72,16 +73,20 @@ void validate(const SightCurvature& curvature);
 /// plain view: the field must outlive it, without edits.
 class SightGround {
  public:
-  /// Throws Error for a wrapped field, a side above kMaxSightSide, or a curvature out of range.
-  SightGround(const HeightField& field, double observer_col, double observer_row, const SightCurvature& curvature);
+  /// `cells`: lengths of a column and a row step in metres, if not those of the field. Throws Error for a wrapped
+  /// field, a side above kMaxSightSide, a length or a curvature out of range.
+  SightGround(const HeightField& field, double observer_col, double observer_row, const SightCurvature& curvature,
+              const std::optional<dvec2>& cells = {});
   /// Without curvature: heights are unchanged.
   explicit SightGround(const HeightField& field);
 
   const HeightField& field() const { return *field_; }
+  /// Lengths of a column and a row step in metres.
+  const dvec2& cells() const { return cells_; }
 
   /// Horizontal distance from the observer to a place, squared, in m^2.
   double square_distance(double col, double row) const {
-    const double x = (col - col_) * field_->settings().cell_x, y = (row - row_) * field_->settings().cell_y;
+    const double x = (col - col_) * cells_.x, y = (row - row_) * cells_.y;
     return x * x + y * y;
   }
   /// Metres by which a place appears lower.
@@ -118,6 +123,7 @@ class SightGround {
 
  private:
   const HeightField* field_;
+  dvec2 cells_;
   double col_ = 0, row_ = 0;
   double per_square_metre_ = 0;
   // Copies from the field: lines of sight read too few samples for HeightField::visit() to pay off.

@@ -22,9 +22,8 @@ class SightPieces {
  public:
   /// `line` and `maxima` must outlive the pieces.
   SightPieces(const SightLine& line, const BlockMaxima& maxima) : line_(line), maxima_(maxima) {
-    const auto& cell = line.ground().field().settings();
     length_ = std::max(std::abs(line.to().col - line.from().col), std::abs(line.to().row - line.from().row));
-    diagonal_ = std::hypot(cell.cell_x, cell.cell_y);
+    diagonal_ = std::hypot(line.ground().cells().x, line.ground().cells().y);
     largest_ = std::abs(line.eye()) + std::abs(line.target());
   }
 

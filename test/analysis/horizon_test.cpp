@@ -151,6 +151,26 @@ TEST(Horizons, EqualCrossingsInLongDouble) {
   EXPECT_GT(judged, 1000 * kFieldsPerKind);
 }
 
+TEST(Horizons, CellsOfAPlaceAreThoseOfAFieldWithThem) {
+  std::mt19937 random(9);
+  std::vector<float> samples(40 * 50);
+  for (float& sample : samples) sample = static_cast<float>(random() % 99);
+  const auto field = HeightField::view(samples.data(), 40, 50, {.cell_x = 10, .cell_y = 10});
+  const auto other = HeightField::view(samples.data(), 40, 50, {.cell_x = 12.5, .cell_y = 9.25});
+  int different = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double col = random() % 3900 / 100., row = random() % 4900 / 100., turn = random() % 628 / 100.;
+    const auto wanted = horizon_from(other, col, row, turn), own = horizon_from(field, col, row, turn);
+    const auto found = horizon_from(field, col, row, turn, {}, dvec2(12.5, 9.25));
+    ASSERT_TRUE(wanted && own && found);
+    EXPECT_EQ(wanted->angle, found->angle);
+    EXPECT_EQ(wanted->distance, found->distance);
+    different += own->angle != found->angle;
+  }
+  EXPECT_GT(different, 100);
+  EXPECT_THROW(horizon_from(field, 1, 1, 0, {}, dvec2(0, 1)), Error);
+}
+
 // The bound of horizon_measures.h, at every 16411th float; the same bits with every instruction set.
 TEST(Horizons, AnglesAreArcTangents) {
   std::vector<float> slopes{0, -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};

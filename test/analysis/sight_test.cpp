@@ -45,6 +45,35 @@ SightEnd random_end(const HeightField& field, std::mt19937& random) {
   return {along(field.cols()), along(field.rows()), static_cast<double>(random() % 3)};
 }
 
+TEST(LineOfSight, CellsOfALineAreThoseOfAFieldWithThem) {
+  std::mt19937 random(5);
+  const auto height = [&](int, int) { return static_cast<double>(random() % 9); };
+  const HeightField field = field_of(70, 80, 10, height);
+  const BlockMaxima maxima(field);
+  HeightFieldSettings settings = field.settings();
+  settings.cell_x = 12.5, settings.cell_y = 9.25;
+  const HeightField other = field.visit(
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, settings, grid.row_stride); });
+  const SightCurvature curvature{.coefficient = 1, .diameter = 3e4};
+  const dvec2 cells{12.5, 9.25};
+  int different = 0;
+  for (int i = 0; i < cases(200, 30, 6); ++i) {
+    const SightEnd from = random_end(field, random), to = random_end(field, random);
+    const LineOfSight wanted = line_of_sight(other, from, to, curvature);
+    for (const BlockMaxima* skipped : {static_cast<const BlockMaxima*>(nullptr), &maxima}) {
+      const LineOfSight found = line_of_sight(field, from, to, curvature, skipped, cells);
+      ASSERT_EQ(wanted.visible, found.visible);
+      ASSERT_EQ(wanted.distance, found.distance);
+      ASSERT_EQ(wanted.clearance, found.clearance);
+      ASSERT_EQ(wanted.target, found.target);
+    }
+    different += line_of_sight(field, from, to, curvature).distance != wanted.distance;
+  }
+  EXPECT_GT(different, 0);
+  EXPECT_THROW(line_of_sight(field, {.col = 1}, {.col = 3}, {}, nullptr, dvec2(0, 1)), Error);
+  EXPECT_THROW(line_of_sight(field, {.col = 1}, {.col = 3}, {}, nullptr, dvec2(1, NAN)), Error);
+}
+
 TEST(LineOfSight, MatchesTheJudgeEverywhere) {
   std::mt19937 random(1);
   int visible = 0, blocked = 0;

@@ -474,6 +474,22 @@ def test_horizons_at_a_place_have_its_cells_and_north(tmp_path):
 
 
 @needs_files
+def test_lines_read_only_the_samples_beside_them():
+    # Each line has its own lengths of cells. A pass over all samples would find the infinite one.
+    heights = hills(60, 70)
+    terrain = Terrain(data_array(heights, x0=300_000))
+    ends = (300_030, 5_199_900), (300_900, 5_199_700)
+    before, profile = pyscarp.line_of_sight(terrain, *ends), pyscarp.profile(terrain, *ends)
+    horizon = pyscarp.horizon(terrain, [270], at=ends[0])[1]
+    heights[59, 69] = np.inf
+    assert np.array_equal(pyscarp.horizon(terrain, [270], at=ends[0])[1], horizon)
+    assert pyscarp.line_of_sight(terrain, *ends) == before
+    assert np.array_equal(pyscarp.profile(terrain, *ends).distance, profile.distance)
+    # The lengths are those of the line, not of the terrain's centre: 2 km north, the scale differs.
+    assert abs(profile.distance[-1] / np.hypot(870, 200) - terrain.cell[0] / 30) > 1e-9
+
+
+@needs_files
 def test_a_given_north_counts_everywhere():
     data = data_array(hills(60, 60), x0=300_000)
     terrain = Terrain(data, grid_north=30)

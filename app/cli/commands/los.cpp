@@ -184,18 +184,18 @@ class Tester {
 
   // Thread-safe. `cells` is MapInput::cells_along() for the line.
   void test(std::size_t i, const dvec2& cells, Answer& answer) const {
-    const HeightField field = with_cells(input_.field(), cells);
+    const HeightField& field = input_.field();
     const SightEnd from = in_part(input_, answer.ends.from), to = in_part(input_, answer.ends.to);
     named(
         i,
         [&] {
           if (!bilinear_) {
-            answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr);
+            answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr, cells);
             if (frequency_)
               answer.fresnel =
-                  fresnel_clearance(SightLine(field, from, to, input_.curvature()), wavelength_of(*frequency_));
+                  fresnel_clearance(SightLine(field, from, to, input_.curvature(), cells), wavelength_of(*frequency_));
           } else {
-            answer.line = BilinearGround(field, *bilinear_).line_of_sight(from, to);
+            answer.line = BilinearGround(with_cells(field, cells), *bilinear_).line_of_sight(from, to);
           }
         },
         from.datum == HeightDatum::sea || to.datum == HeightDatum::sea ? kSeaHint : "");
