@@ -7,15 +7,14 @@
 // Points are random, or along a walk of small steps. A small field fits into the cache, a large one does not.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "bench/call_ways.h"
 #include "bench/command.h"
 #include "bench/commands.h"
 #include "bench/fields.h"
-#include "bench/protocol.h"
 #include "bench/random.h"
 #include "bench/report.h"
 #include "bench/trace_options.h"
@@ -104,27 +103,6 @@ void look_up(const OwnGround& g, const Points& points, std::vector<double>& heig
       normals[i] = normalize(dvec3(-east * g.scale * g.per_cell_x, down * g.scale * g.per_cell_y, 1.0));
     }
   }
-}
-
-// One way to do a task, for all of its items.
-struct CallWay {
-  std::string name;
-  std::function<void()> run;
-};
-
-// Median nanoseconds per item of each way; the ways take turns.
-std::vector<double> measure_ways(const std::vector<CallWay>& ways, int items, int repeats) {
-  std::vector<std::vector<double>> passes(ways.size());
-  for (int pass = 0; pass <= repeats; ++pass) {
-    for (std::size_t w = 0; w < ways.size(); ++w) {
-      const Stopwatch watch;
-      ways[w].run();
-      if (pass > 0) passes[w].push_back(watch.cpu_s() * 1e9 / items);
-    }
-  }
-  std::vector<double> ns;
-  for (std::vector<double>& of_way : passes) ns.push_back(median(of_way));
-  return ns;
 }
 
 class Calls {
@@ -239,7 +217,7 @@ class Calls {
 
   // Ratios are to the way with this index.
   void add_rows(const std::string& task, const std::vector<CallWay>& ways, std::size_t reference) {
-    const std::vector<double> ns = measure_ways(ways, options_.points, options_.repeats);
+    const std::vector<double> ns = measure_ways(ways, points_.x.size(), options_.repeats);
     for (std::size_t w = 0; w < ways.size(); ++w) {
       Json row;
       row["size"] = size_;

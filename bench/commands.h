@@ -11,6 +11,7 @@ void add_survey(cli::Program& program);
 void add_naive(cli::Program& program);
 void add_batches(cli::Program& program);
 void add_calls(cli::Program& program);
+void add_tiles(cli::Program& program);
 void add_simd(cli::Program& program);
 void add_volumes(cli::Program& program);
 void add_pyramid(cli::Program& program);

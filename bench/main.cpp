@@ -19,6 +19,7 @@ cli::Program bench_program() {
   add_naive(program);
   add_batches(program);
   add_calls(program);
+  add_tiles(program);
   add_simd(program);
   add_volumes(program);
   add_pyramid(program);

@@ -3,38 +3,37 @@
 // same t, the tile with the lower number.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
+#include "scarp/base/kept_memory.h"
+#include "scarp/base/parallel.h"
 #include "scarp/march/height/closest_point.h"
 #include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/tile_map.h"
+#include "scarp/scene/tile_queues.h"
+#include "scarp/scene/tile_walk.h"
 
 namespace scarp {
 namespace {
 
-struct Span {
-  double begin, end;
-  bool empty() const { return !(begin <= end); }
-};
-
-// The times at which a ray is between two coordinates along an axis.
-Span between(double low, double high, double origin, double direction, const Span& span) {
-  if (direction == 0) return low <= origin && origin <= high ? span : Span{1, 0};
-  const double a = (low - origin) / direction, b = (high - origin) / direction;
-  return {std::max(span.begin, std::min(a, b)), std::min(span.end, std::max(a, b))};
-}
-
-double along(double origin, double direction, double t) { return direction == 0 ? origin : origin + direction * t; }
+// Batches of fewer rays at a tile are traced ray by ray.
+constexpr std::size_t kFewForVectors = 16;
+// Number of rays of a batch that a thread takes at a time: enough to fill the queues of many tiles.
+constexpr std::int64_t kLeastPiece = 256, kMostPiece = 1 << 14;
 
 class Tiles final : public SceneField {
  public:
   Tiles(std::shared_ptr<const TileMap> map, const HeightMarchEntry& march)
-      : map_(std::move(map)), layout_(map_->layout), march_(march) {
+      : map_(std::move(map)), layout_(map_->layout), march_(march), grid_(*map_) {
     for (int row = 0; row < layout_.rows; ++row) {
       for (int col = 0; col < layout_.cols; ++col) {
         const Tile* tile = map_->find(col, row);
@@ -90,12 +89,38 @@ class Tiles final : public SceneField {
                    });
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
-    bool blocked = false;
+    if (box_.empty()) return false;
     const Starts starts = find_starts(ray, from);
-    for_each_on_way(ray, Hit{}, true, [&](const Tile& tile, int col, int row, bool) {
-      return blocked = march_.occluded(target(tile), own_ray(ray, col, row, starts), {});
+    TileWalk walk(grid_, ray);
+    while (const Tile* tile = walk.next(grid_, ray, kNever, true)) {
+      if (march_.occluded(target(*tile), own_ray(ray, walk.col(), walk.row(), starts), {})) return true;
+    }
+    return false;
+  }
+
+  bool likes_batches() const override { return march_.simd; }
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
+    if (!march_.simd) return SceneField::closest_hits(rays, hits, from);
+    ClosestBatch(*this, rays, from, hits).run();
+  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const> from) const override {
+    if (!march_.simd) return SceneField::occluded(rays, blocked, from);
+    AnyBatch(*this, rays, from, blocked).run();
+  }
+  void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                                   std::span<const Hit* const> from) const override {
+    if (!march_.simd || !steps.empty()) return SceneField::closest_hits_on_all_threads(rays, hits, steps, from);
+    for_each_piece(rays, from, [&](std::size_t first, std::span<const Ray> some, std::span<const Hit* const> starts) {
+      closest_hits(some, hits.subspan(first, some.size()), starts);
     });
-    return blocked;
+  }
+  void occluded_on_all_threads(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                               std::span<const Hit* const> from) const override {
+    if (!march_.simd) return SceneField::occluded_on_all_threads(rays, blocked, from);
+    for_each_piece(rays, from, [&](std::size_t first, std::span<const Ray> some, std::span<const Hit* const> starts) {
+      occluded(some, blocked.subspan(first, some.size()), starts);
+    });
   }
 
   FieldSurface surface(const Ray& ray, const Hit& hit) const override {
@@ -228,30 +253,44 @@ class Tiles final : public SceneField {
     return starts;
   }
 
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
   // tile_hit(tile, part, ray, stats) returns the closest hit on one tile.
   template <class March>
   Hit closest(const Ray& ray, const Hit* from, bool only_from_above, MarchStats* stats, const March& tile_hit) const {
     Hit best;
     if (stats) *stats = {};
+    if (box_.empty()) return best;
     const Starts starts = find_starts(ray, from);
-    for_each_on_way(ray, best, only_from_above, [&](const Tile& tile, int col, int row, bool first) {
+    TileWalk walk(grid_, ray);
+    while (const Tile* tile = walk.next(grid_, ray, best.t, only_from_above)) {
+      const int col = walk.col(), row = walk.row();
       Ray own = own_ray(ray, col, row, starts);
-      if (best) own.t_max = starts.count > 0 ? std::nextafter(best.t, std::numeric_limits<double>::infinity()) : best.t;
-      own.t_max = std::min(own.t_max, ray.t_max);
+      end_at(best, starts, own);
       MarchStats march;
-      Hit hit = tile_hit(tile, number(col, row), own, stats ? &march : nullptr);
+      const Hit hit = tile_hit(*tile, number(col, row), own, stats ? &march : nullptr);
       if (stats)
         stats->steps += march.steps, stats->level_changes += march.level_changes, stats->cell_tests += march.cell_tests,
             ++stats->boxes;
-      hit.part = number(col, row);
-      if (hit) {
-        if (!best || hit.t < best.t || (hit.t == best.t && hit.part < best.part)) best = hit;
-      } else if (hit.status == HitStatus::below && first && !best) {
-        best.status = hit.status;
-      }
-      return false;
-    });
+      take(ray, hit, col, row, best);
+    }
     return best;
+  }
+
+  // Hits at the same t on a tile with a lower number count.
+  static void end_at(const Hit& best, const Starts& starts, Ray& own) {
+    if (best) own.t_max = std::min(own.t_max, starts.count > 0 ? std::nextafter(best.t, kNever) : best.t);
+  }
+  // Replaces `best` by a better hit on a tile.
+  void take(const Ray& ray, const Hit& hit, int col, int row, Hit& best) const {
+    const std::uint32_t part = number(col, row);
+    if (hit) {
+      if (best && !(hit.t < best.t || (hit.t == best.t && part < best.part))) return;
+      best = hit;
+      best.part = part;
+    } else if (hit.status == HitStatus::below && !best && grid_.begins_on(ray, col, row)) {
+      best.status = hit.status;
+    }
   }
 
   Ray own_ray(const Ray& ray, int col, int row, const Starts& starts) const {
@@ -264,75 +303,6 @@ class Tiles final : public SceneField {
       own.start_cell = starts.cell[i];
     }
     return own;
-  }
-
-  // Calls f(tile, col, row, first) for the tiles that the ray may hit before the hit `best`, nearest first to within a
-  // cell, until f returns true. `only_from_above`: skips tiles whose ground the ray stays above. `first`: whether the
-  // ray is over this tile where it reaches the terrain.
-  template <class F>
-  void for_each_on_way(const Ray& ray, const Hit& best, bool only_from_above, const F& f) const {
-    if (box_.empty() || !is_followable(ray)) return;
-    const dvec3& o = ray.origin;
-    const dvec3& d = ray.direction;
-    const double width = map_->tile_width(), depth = map_->tile_depth();
-    // Tiles are widened by a cell, far more than rounding: an unnecessary test of a tile costs little.
-    const double wide_x = layout_.ground.cell_x + std::abs(o.x) * 0x1p-48,
-                 wide_y = layout_.ground.cell_y + std::abs(o.y) * 0x1p-48;
-    Span whole{ray.t_min, ray.t_max};
-    whole = between(-wide_x, layout_.cols * width + wide_x, o.x, d.x, whole);
-    whole = between(-wide_y, layout_.rows * depth + wide_y, o.y, d.y, whole);
-    if (whole.empty()) return;
-    // Where the ray enters the terrain, or starts over it.
-    const Span over =
-        between(0, layout_.rows * depth, o.y, d.y, between(0, layout_.cols * width, o.x, d.x, {ray.t_min, ray.t_max}));
-    const double begin_x = along(o.x, d.x, over.begin), begin_y = along(o.y, d.y, over.begin);
-    const auto begins_in = [&](int col, int north) {
-      const double slack_x = kTileSeam * wide_x, slack_y = kTileSeam * wide_y;
-      return begin_x >= col * width - slack_x && begin_x <= (col + 1) * width + slack_x &&
-             begin_y >= north * depth - slack_y && begin_y <= (north + 1) * depth + slack_y;
-    };
-    const auto done = [&](const Span& span) { return span.begin > best.t && best; };
-    // The range of tiles between two coordinates, in the order in which the ray crosses them.
-    const auto range = [](double from, double to, double wide, double length, int count, bool forward, int& first,
-                          int& last) {
-      const double low = std::floor((std::min(from, to) - wide) / length);
-      const double high = std::floor((std::max(from, to) + wide) / length);
-      first = static_cast<int>(std::clamp(low, 0.0, count - 1.0));
-      last = static_cast<int>(std::clamp(high, 0.0, count - 1.0));
-      if (!forward) std::swap(first, last);
-    };
-    int first_col, last_col;
-    range(along(o.x, d.x, whole.begin), along(o.x, d.x, whole.end), wide_x, width, layout_.cols, d.x >= 0, first_col,
-          last_col);
-    const int col_step = d.x >= 0 ? 1 : -1, north_step = d.y >= 0 ? 1 : -1;
-    for (int col = first_col; col != last_col + col_step; col += col_step) {
-      const Span in_col = between(col * width - wide_x, (col + 1) * width + wide_x, o.x, d.x, whole);
-      if (in_col.empty()) continue;
-      if (done(in_col)) return;
-      int first_north, last_north;  // rows counted from the south
-      range(along(o.y, d.y, in_col.begin), along(o.y, d.y, in_col.end), wide_y, depth, layout_.rows, d.y >= 0,
-            first_north, last_north);
-      for (int north = first_north; north != last_north + north_step; north += north_step) {
-        const Span span = between(north * depth - wide_y, (north + 1) * depth + wide_y, o.y, d.y, in_col);
-        if (span.empty()) continue;
-        if (done(span)) break;
-        const int row = layout_.rows - 1 - north;
-        const Tile* tile = map_->find(col, row);
-        if (!tile || (only_from_above && above(*tile, ray, span))) continue;
-        if (f(*tile, col, row, begins_in(col, north))) return;
-      }
-    }
-  }
-
-  // Whether the ray is above all ground of a tile, by more than rounding.
-  bool above(const Tile& tile, const Ray& ray, const Span& span) const {
-    const HeightField& field = tile.ground->field;
-    if (field.all_nodata()) return true;
-    const double lowest = along(ray.origin.z, ray.direction.z, ray.direction.z < 0 ? span.end : span.begin);
-    const double highest = field.max_height();
-    // Products below the smallest normal number have a larger relative rounding error.
-    const double rounding = 0x1p-40 * (std::abs(ray.origin.z) + std::abs(lowest) + std::abs(highest));
-    return lowest - highest > rounding + std::numeric_limits<double>::min();
   }
 
   // As HeightField::shading_normal(), with the heights of adjacent tiles at the borders.
@@ -359,9 +329,129 @@ class Tiles final : public SceneField {
     return normalize(dvec3(-sum.x, -sum.y, 1.0));
   }
 
+  // Calls piece(first, rays, from) on all threads.
+  template <class Piece>
+  static void for_each_piece(std::span<const Ray> rays, std::span<const Hit* const> from, const Piece& piece) {
+    const auto count = static_cast<std::int64_t>(rays.size());
+    parallel_for(count, std::clamp(count / 8, kLeastPiece, kMostPiece), [&](std::int64_t begin, std::int64_t end) {
+      const auto first = static_cast<std::size_t>(begin), some = static_cast<std::size_t>(end - begin);
+      piece(first, rays.subspan(first, some), from.empty() ? from : from.subspan(first, some));
+    });
+  }
+
+  // A batch on one thread: rays wait at their tiles (tile_queues.h). Each ray takes the same tiles as alone, with the
+  // same range. The answer type decides between closest hits and occlusion.
+  template <class Answer>
+  class Batch {
+   public:
+    Batch(const Tiles& tiles, std::span<const Ray> rays, std::span<const Hit* const> from, std::span<Answer> answers)
+        : tiles_(tiles),
+          rays_(rays),
+          from_(from),
+          answers_(answers),
+          queues_(std::int64_t{tiles.layout_.cols} * tiles.layout_.rows) {}
+
+    void run() {
+      std::fill(answers_.begin(), answers_.end(), Answer{});
+      if (tiles_.box_.empty()) return;
+      for (std::size_t i = 0; i < rays_.size(); ++i) begin(static_cast<std::uint32_t>(i));
+      queues_.run([this](std::uint32_t part, const std::vector<Waiting>& waiting) { trace(part, waiting); });
+    }
+
+   private:
+    static constexpr bool any = std::is_same_v<Answer, std::uint8_t>;
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    struct Waiting {
+      std::uint32_t ray;
+      std::uint32_t walk;    // index into walks_; kNone: there are no further tiles
+      std::uint32_t starts;  // index into starts_; kNone: the ray starts free
+    };
+
+    void begin(std::uint32_t i) {
+      const Ray& ray = rays_[i];
+      const Hit* from = from_.empty() ? nullptr : from_[i];
+      Waiting waiting{i, kNone, kNone};
+      if (from || (from_.empty() && ray.start == RayStart::on_surface)) {
+        if (!is_followable(ray)) return;
+        starts_.push_back(tiles_.find_starts(ray, from));
+        if (starts_.back().count > 0) waiting.starts = static_cast<std::uint32_t>(starts_.size() - 1);
+      }
+      int col, row;
+      if (tiles_.grid_.only_tile(ray, col, row) && is_followable(ray)) {
+        const Tile* tile = tiles_.map_->find(col, row);
+        if (tile && !is_above(*tile, ray, {ray.t_min, ray.t_max})) queues_.push(tiles_.number(col, row), waiting);
+        return;
+      }
+      TileWalk walk(tiles_.grid_, ray);
+      if (!walk.next(tiles_.grid_, ray, kNever, true)) return;
+      waiting.walk = static_cast<std::uint32_t>(walks_.size());
+      walks_.push_back(walk);
+      queues_.push(tiles_.number(walk.col(), walk.row()), waiting);
+    }
+
+    void trace(std::uint32_t part, const std::vector<Waiting>& waiting) {
+      const int col = static_cast<int>(part % static_cast<std::uint32_t>(tiles_.layout_.cols)),
+                row = static_cast<int>(part / static_cast<std::uint32_t>(tiles_.layout_.cols));
+      const HeightTarget on = target(*tiles_.map_->find(col, row));
+      const dvec3 corner = tiles_.map_->corner(col, row);
+      own_.clear();
+      for (const Waiting& one : waiting) {
+        const Ray& ray = rays_[one.ray];
+        if (one.starts == kNone) {
+          own_.push_back(ray);
+          own_.back().origin -= corner;
+          own_.back().start = RayStart::free;
+          if constexpr (!any) end_at(answers_[one.ray], {}, own_.back());
+        } else {
+          own_.push_back(tiles_.own_ray(ray, col, row, starts_[one.starts]));
+          if constexpr (!any) end_at(answers_[one.ray], starts_[one.starts], own_.back());
+        }
+      }
+      if (found_.size() < own_.size()) found_.resize(own_.size());
+      answer(on, std::span(found_).first(own_.size()));
+      for (std::size_t i = 0; i < waiting.size(); ++i) go_on(waiting[i], col, row, found_[i]);
+    }
+    void answer(const HeightTarget& on, std::span<Answer> found) {
+      if constexpr (any) {
+        if (own_.size() >= kFewForVectors) return tiles_.march_.occluded_batch(on, own_, found, {});
+        for (std::size_t i = 0; i < own_.size(); ++i) found[i] = tiles_.march_.occluded(on, own_[i], {});
+      } else {
+        if (own_.size() >= kFewForVectors) return tiles_.march_.batch(on, own_, found, {});
+        for (std::size_t i = 0; i < own_.size(); ++i) found[i] = tiles_.march_.cpu(on, own_[i], {}, nullptr);
+      }
+    }
+    void go_on(const Waiting& one, int col, int row, const Answer& found) {
+      const Ray& ray = rays_[one.ray];
+      Answer& answer = answers_[one.ray];
+      if constexpr (any) {
+        if ((answer = found)) return;
+      } else {
+        tiles_.take(ray, found, col, row, answer);
+      }
+      if (one.walk == kNone) return;
+      TileWalk& walk = walks_[one.walk];
+      double until = kNever;
+      if constexpr (!any) until = answer.t;
+      if (walk.next(tiles_.grid_, ray, until, true)) queues_.push(tiles_.number(walk.col(), walk.row()), one);
+    }
+
+    const Tiles& tiles_;
+    std::span<const Ray> rays_;
+    std::span<const Hit* const> from_;
+    std::span<Answer> answers_;
+    TileQueues<Waiting> queues_;
+    KeptVector<TileWalk> walks_;
+    std::vector<Starts> starts_;
+    KeptVector<Ray> own_;
+    KeptVector<Answer> found_;
+  };
+  using ClosestBatch = Batch<Hit>;
+  using AnyBatch = Batch<std::uint8_t>;
+
   std::shared_ptr<const TileMap> map_;
   const TileLayout& layout_;
   const HeightMarchEntry& march_;
+  TileGrid grid_;
   WorldBox box_;
   std::int64_t elements_ = 0;
 };
