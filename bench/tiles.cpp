@@ -8,6 +8,7 @@
 // Answers are compared: the same rays must hit at the same t.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -34,12 +35,16 @@ struct TilesOptions {
   FieldOptions field;
   std::vector<int> sizes{1025};
   std::vector<std::string> of{"camera", "lidar", "feet", "probe", "sun"};
+  std::vector<std::string> over{"tiles", "combined"}, calls{"batch", "single"};
   int cells = 256;  // of a tile
   int points = 1 << 17;
   int repeats = 5;
 };
 
 using Json = nlohmann::ordered_json;
+
+// Relative difference of t up to which hits are the same: rays are translated to the corner of a tile.
+constexpr double kSame = 1e-6;
 
 // The part of a field that a tile covers, without a copy.
 HeightField part_of(const HeightField& field, int cells, TilePlace place) {
@@ -80,8 +85,8 @@ class TileBench {
     size_ = size;
     for (const std::string& task : options_.of) {
       const std::vector<Ray> rays = rays_of(ground.field, task);
-      add_row(task, rays, one.scene(), "tiles", tiles.scene());
-      add_row(task, rays, one.scene(), "combined", combined);
+      compare(task, rays, one.scene(), "tiles", tiles.scene());
+      compare(task, rays, one.scene(), "combined", combined);
     }
   }
 
@@ -134,52 +139,56 @@ class TileBench {
     return rays;
   }
 
-  void add_row(const std::string& task, const std::vector<Ray>& rays, const Scene& one, const std::string& other,
-               const Scene& tiles) {
-    std::vector<Hit> of_one(rays.size()), of_tiles(rays.size());
-    std::vector<std::uint8_t> blocked(rays.size());
+  void compare(const std::string& task, const std::vector<Ray>& rays, const Scene& one, const std::string& over,
+               const Scene& other) {
+    if (std::find(options_.over.begin(), options_.over.end(), over) == options_.over.end()) return;
     const bool any_hit = task == "sun";
-    const auto trace = [&](const Scene& scene, std::vector<Hit>& hits) {
-      return [&] { any_hit ? occluded(scene, rays, blocked) : cast(scene, rays, hits); };
+    std::vector<Hit> of_one(rays.size()), of_other(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size());
+    const auto in_batch = [&](const Scene& scene, std::vector<Hit>& hits) {
+      return [&scene, &hits, &rays, &blocked, any_hit] {
+        any_hit ? occluded(scene, rays, blocked) : cast(scene, rays, hits);
+      };
     };
-    const auto singly = [&](const Scene& scene) {
-      return [&] {
+    const auto singly = [&](const Scene& scene, std::vector<Hit>& hits) {
+      return [&scene, &hits, &rays, &blocked, any_hit] {
         for (std::size_t i = 0; i < rays.size(); ++i) {
           if (any_hit) {
             blocked[i] = occluded(scene, rays[i]);
           } else {
-            of_tiles[i] = cast(scene, rays[i]);
+            hits[i] = cast(scene, rays[i]);
           }
         }
       };
     };
-    const std::vector<double> ns = measure_ways({{"one", trace(one, of_one)},
-                                                 {"tiles", trace(tiles, of_tiles)},
-                                                 {"one, single", singly(one)},
-                                                 {"tiles, single", singly(tiles)}},
-                                                rays.size(), options_.repeats);
-    cast(one, rays, of_one), cast(tiles, rays, of_tiles);
-    std::int64_t differ = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      differ += of_one[i].status != of_tiles[i].status ||
-                (of_one[i] && std::abs(of_one[i].t - of_tiles[i].t) > 1e-6 * (1 + of_one[i].t));
+    for (const std::string& call : options_.calls) {
+      const bool batch = call == "batch";
+      const std::vector<double> ns =
+          batch ? measure_ways({{"one", in_batch(one, of_one)}, {over, in_batch(other, of_other)}}, rays.size(),
+                               options_.repeats)
+                : measure_ways({{"one", singly(one, of_one)}, {over, singly(other, of_other)}}, rays.size(),
+                               options_.repeats);
+      cast(one, rays, of_one), cast(other, rays, of_other);
+      std::int64_t differ = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        differ += of_one[i].status != of_other[i].status ||
+                  (of_one[i] && std::abs(of_one[i].t - of_other[i].t) > kSame * (1 + of_one[i].t));
+      }
+      Json row;
+      row["size"] = size_, row["cells"] = options_.cells, row["task"] = task, row["over"] = over, row["call"] = call;
+      row["one_ns"] = ns[0], row["ns"] = ns[1], row["ratio"] = ns[1] / ns[0], row["differ"] = differ;
+      lines_.push_back({std::to_string(size_), std::to_string(options_.cells), task, over, call,
+                        short_number(row["one_ns"]), short_number(row["ns"]), short_number(row["ratio"]),
+                        std::to_string(differ)});
+      rows_.push_back(std::move(row));
     }
-    Json row;
-    row["size"] = size_, row["cells"] = options_.cells, row["task"] = task, row["of"] = other;
-    row["one_ns"] = ns[0], row["tiles_ns"] = ns[1], row["ratio"] = ns[1] / ns[0];
-    row["one_single_ns"] = ns[2], row["tiles_single_ns"] = ns[3], row["single_ratio"] = ns[3] / ns[2];
-    row["differ"] = differ;
-    lines_.push_back({std::to_string(size_), std::to_string(options_.cells), task, other, short_number(row["one_ns"]),
-                      short_number(row["tiles_ns"]), short_number(row["ratio"]), short_number(row["one_single_ns"]),
-                      short_number(row["tiles_single_ns"]), short_number(row["single_ratio"]), std::to_string(differ)});
-    rows_.push_back(std::move(row));
   }
 
   const TilesOptions& options_;
   int size_ = 0;
   Json rows_ = Json::array();
   std::vector<std::vector<std::string>> lines_{
-      {"size", "cells", "task", "of", "one ns", "ns", "ratio", "one single ns", "single ns", "single ratio", "differ"}};
+      {"size", "cells", "task", "over", "call", "one ns", "ns", "ratio", "differ"}};
 };
 
 void run_tiles(const TilesOptions& options, const ReportOptions& report) {
@@ -200,6 +209,12 @@ void add_tiles(cli::Program& program) {
                                               .help = "rays to measure",
                                               .choices = {"camera", "lidar", "feet", "probe", "sun"},
                                               .closed = true});
+  command.add(cli::List<std::string>{&o.over}, {.names = "--over",
+                                                .help = "what is compared with one field",
+                                                .choices = {"tiles", "combined"},
+                                                .closed = true});
+  command.add(cli::List<std::string>{&o.calls},
+              {.names = "--calls", .help = "calls to measure", .choices = {"batch", "single"}, .closed = true});
   command.add(&o.points, {.names = "--points", .help = "rays per pass, about", .range = {640, 1 << 26}});
   add_ground_options(command, o.field);
   add_repeats_option(command, o.repeats);

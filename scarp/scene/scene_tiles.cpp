@@ -33,15 +33,11 @@ constexpr std::int64_t kLeastPiece = 256, kMostPiece = 1 << 14;
 class Tiles final : public SceneField {
  public:
   Tiles(std::shared_ptr<const TileMap> map, const HeightMarchEntry& march)
-      : map_(std::move(map)), layout_(map_->layout), march_(march), grid_(*map_) {
+      : map_(std::move(map)), layout_(map_->layout), march_(march), box_(ground_box()), grid_(*map_, box_.high.z) {
     for (int row = 0; row < layout_.rows; ++row) {
       for (int col = 0; col < layout_.cols; ++col) {
-        const Tile* tile = map_->find(col, row);
-        if (!tile) continue;
-        const HeightField& field = tile->ground->field;
-        elements_ += std::int64_t{field.cols()} * field.rows();
-        if (field.all_nodata()) continue;
-        box_ = around(box_, box_of(*tile, col, row));
+        if (const Tile* tile = map_->find(col, row))
+          elements_ += std::int64_t{tile->ground->field.cols()} * tile->ground->field.rows();
       }
     }
   }
@@ -91,8 +87,8 @@ class Tiles final : public SceneField {
   bool occluded(const Ray& ray, const Hit* from) const override {
     if (box_.empty()) return false;
     const Starts starts = find_starts(ray, from);
-    TileWalk walk(grid_, ray);
-    while (const Tile* tile = walk.next(grid_, ray, kNever, true)) {
+    TileWalk walk(grid_, ray, true);
+    while (const Tile* tile = walk.next(grid_, ray, kNever)) {
       if (march_.occluded(target(*tile), own_ray(ray, walk.col(), walk.row(), starts), {})) return true;
     }
     return false;
@@ -210,6 +206,11 @@ class Tiles final : public SceneField {
       }
     }
   }
+  WorldBox ground_box() const {
+    WorldBox box;
+    for_each_tile([&](const Tile&, int, int, const WorldBox& of_tile) { box = around(box, of_tile); });
+    return box;
+  }
   WorldBox box_of(const Tile& tile, int col, int row) const {
     const HeightField& field = tile.ground->field;
     const dvec3 low = map_->corner(col, row);
@@ -262,8 +263,8 @@ class Tiles final : public SceneField {
     if (stats) *stats = {};
     if (box_.empty()) return best;
     const Starts starts = find_starts(ray, from);
-    TileWalk walk(grid_, ray);
-    while (const Tile* tile = walk.next(grid_, ray, best.t, only_from_above)) {
+    TileWalk walk(grid_, ray, only_from_above);
+    while (const Tile* tile = walk.next(grid_, ray, best.t)) {
       const int col = walk.col(), row = walk.row();
       Ray own = own_ray(ray, col, row, starts);
       end_at(best, starts, own);
@@ -382,8 +383,8 @@ class Tiles final : public SceneField {
         if (tile && !is_above(*tile, ray, {ray.t_min, ray.t_max})) queues_.push(tiles_.number(col, row), waiting);
         return;
       }
-      TileWalk walk(tiles_.grid_, ray);
-      if (!walk.next(tiles_.grid_, ray, kNever, true)) return;
+      TileWalk walk(tiles_.grid_, ray, true);
+      if (!walk.next(tiles_.grid_, ray, kNever)) return;
       waiting.walk = static_cast<std::uint32_t>(walks_.size());
       walks_.push_back(walk);
       queues_.push(tiles_.number(walk.col(), walk.row()), waiting);
@@ -432,7 +433,7 @@ class Tiles final : public SceneField {
       TileWalk& walk = walks_[one.walk];
       double until = kNever;
       if constexpr (!any) until = answer.t;
-      if (walk.next(tiles_.grid_, ray, until, true)) queues_.push(tiles_.number(walk.col(), walk.row()), one);
+      if (walk.next(tiles_.grid_, ray, until)) queues_.push(tiles_.number(walk.col(), walk.row()), one);
     }
 
     const Tiles& tiles_;
@@ -451,8 +452,8 @@ class Tiles final : public SceneField {
   std::shared_ptr<const TileMap> map_;
   const TileLayout& layout_;
   const HeightMarchEntry& march_;
-  TileGrid grid_;
   WorldBox box_;
+  TileGrid grid_;
   std::int64_t elements_ = 0;
 };
 

@@ -43,8 +43,9 @@ struct TileAxis {
 /// The grid of tiles, with the numbers that walks need.
 class TileGrid {
  public:
-  explicit TileGrid(const TileMap& map)
-      : map_(&map),
+  /// `highest`: the highest ground of all tiles, in metres.
+  TileGrid(const TileMap& map, double highest)
+      : map_(&map), highest_(highest),
         width_(map.tile_width()),
         depth_(map.tile_depth()),
         per_width_(1 / width_),
@@ -57,6 +58,7 @@ class TileGrid {
   double depth() const { return depth_; }
   double per_width() const { return per_width_; }
   double per_depth() const { return per_depth_; }
+  double highest() const { return highest_; }
   /// By how much tiles are widened for a ray from here, in metres.
   double wide_x(double x) const { return map_->layout.ground.cell_x + std::abs(x) * 0x1p-48; }
   double wide_y(double y) const { return map_->layout.ground.cell_y + std::abs(y) * 0x1p-48; }
@@ -91,38 +93,43 @@ class TileGrid {
 
  private:
   const TileMap* map_;
+  double highest_;
   double width_, depth_, per_width_, per_depth_;
 };
+
+// Rounding of the height of a ray that is compared with a height. Products below the smallest normal number have a
+// larger relative rounding error.
+inline double rounding_of_height(double origin, double at, double height) {
+  return 0x1p-40 * (std::abs(origin) + std::abs(at) + std::abs(height)) + std::numeric_limits<double>::min();
+}
 
 /// Whether the ray is above all ground of a tile in a span, by more than rounding.
 inline bool is_above(const Tile& tile, const Ray& ray, const TileSpan& span) {
   const HeightField& field = tile.ground->field;
   if (field.all_nodata()) return true;
   const TileAxis z(ray.origin.z, ray.direction.z);
-  const double lowest = z.at(ray.direction.z < 0 ? span.end : span.begin);
-  const double highest = field.max_height();
-  // Products below the smallest normal number have a larger relative rounding error.
-  const double rounding = 0x1p-40 * (std::abs(ray.origin.z) + std::abs(lowest) + std::abs(highest));
-  return lowest - highest > rounding + std::numeric_limits<double>::min();
+  const double lowest = z.at(ray.direction.z < 0 ? span.end : span.begin), highest = field.max_height();
+  return lowest - highest > rounding_of_height(ray.origin.z, lowest, highest);
 }
 
-/// Visits the tiles that a ray may hit, nearest first to within a cell.
+/// Visits the tiles that a ray may hit, nearest first to within a cell. `only_from_above`: skips tiles whose ground the
+/// ray stays above.
 class TileWalk {
  public:
-  TileWalk(const TileGrid& grid, const Ray& ray)
-      : x_(ray.origin.x, ray.direction.x), y_(ray.origin.y, ray.direction.y) {
+  TileWalk(const TileGrid& grid, const Ray& ray, bool only_from_above)
+      : x_(ray.origin.x, ray.direction.x), y_(ray.origin.y, ray.direction.y), only_from_above_(only_from_above) {
     whole_ = {ray.t_min, ray.t_max};
     const double wide_x = grid.wide_x(x_.origin), wide_y = grid.wide_y(y_.origin);
     whole_ = x_.between(-wide_x, grid.cols() * grid.width() + wide_x, whole_);
     whole_ = y_.between(-wide_y, grid.rows() * grid.depth() + wide_y, whole_);
+    if (only_from_above && ray.direction.z != 0) come_down(grid, ray);
     if (whole_.empty() || !is_followable(ray)) return;
     range(x_, whole_, wide_x, grid.per_width(), grid.cols(), next_col_, last_col_);
     left_cols_ = std::abs(last_col_ - next_col_) + 1;
   }
 
-  /// Moves on to the next tile before the time `until` and returns it; null if there is none. `only_from_above`: skips
-  /// tiles whose ground the ray stays above.
-  const Tile* next(const TileGrid& grid, const Ray& ray, double until, bool only_from_above) {
+  /// Moves on to the next tile before the time `until` and returns it; null if there is none.
+  const Tile* next(const TileGrid& grid, const Ray& ray, double until) {
     const double wide_x = grid.wide_x(x_.origin), wide_y = grid.wide_y(y_.origin);
     for (;;) {
       while (left_norths_ > 0) {
@@ -133,7 +140,7 @@ class TileWalk {
         if (span.begin > until) break;
         row_ = grid.rows() - 1 - north;
         const Tile* tile = grid.map().find(col_, row_);
-        if (tile && !(only_from_above && is_above(*tile, ray, span))) return tile;
+        if (tile && !(only_from_above_ && is_above(*tile, ray, span))) return tile;
       }
       left_norths_ = 0;
       if (left_cols_ == 0) return nullptr;
@@ -153,6 +160,16 @@ class TileWalk {
   int row() const { return row_; }
 
  private:
+  // Leaves out where the ray is above the highest ground, by more than rounding.
+  void come_down(const TileGrid& grid, const Ray& ray) {
+    const double o = ray.origin.z, h = grid.highest();
+    const double t = (h + 4 * rounding_of_height(o, o, h) - o) / ray.direction.z;
+    if (ray.direction.z < 0) {
+      whole_.begin = std::max(whole_.begin, t);
+    } else {
+      whole_.end = std::min(whole_.end, t);
+    }
+  }
   // The range of tiles in a span, in the order in which the ray crosses them.
   static void range(const TileAxis& axis, const TileSpan& span, double wide, double per_length, int count, int& first,
                     int& last) {
@@ -165,6 +182,7 @@ class TileWalk {
   }
 
   TileAxis x_, y_;
+  bool only_from_above_;
   TileSpan whole_{1, 0}, in_col_{1, 0};
   int next_col_ = 0, last_col_ = 0, left_cols_ = 0;
   int next_north_ = 0, left_norths_ = 0;  // rows counted from the south
