@@ -18,6 +18,7 @@
 #include "scarp/march/height/queries.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/tile_fan.h"
 #include "scarp/scene/tile_map.h"
 #include "scarp/scene/tile_queues.h"
 #include "scarp/scene/tile_walk.h"
@@ -70,7 +71,7 @@ class Tiles final : public SceneField {
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return closest(ray, from, true, stats, [&](const Tile& tile, std::uint32_t, const Ray& own, MarchStats* march) {
-      return march_.cpu(target(tile), own, {}, march);
+      return march_.cpu(target_of(tile), own, {}, march);
     });
   }
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
@@ -81,7 +82,7 @@ class Tiles final : public SceneField {
                        hit.part = part;
                        return (*rules.accept)(hit);
                      };
-                     return march_.by_rules(target(tile), own, {rules.sides, rules.accept ? &accept : nullptr}, march);
+                     return march_.by_rules(target_of(tile), own, {rules.sides, rules.accept ? &accept : nullptr}, march);
                    });
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
@@ -89,7 +90,7 @@ class Tiles final : public SceneField {
     const Starts starts = find_starts(ray, from);
     TileWalk walk(grid_, ray, true);
     while (const Tile* tile = walk.next(grid_, ray, kNever)) {
-      if (march_.occluded(target(*tile), own_ray(ray, walk.col(), walk.row(), starts), {})) return true;
+      if (march_.occluded(target_of(*tile), own_ray(ray, walk.col(), walk.row(), starts), {})) return true;
     }
     return false;
   }
@@ -107,6 +108,10 @@ class Tiles final : public SceneField {
   void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                                    std::span<const Hit* const> from) const override {
     if (!march_.simd || !steps.empty()) return SceneField::closest_hits_on_all_threads(rays, hits, steps, from);
+    if (march_.fans && from.empty() && !box_.empty()) {
+      const auto others = [&](std::span<const std::uint32_t> left) { closest_hits_of(left, rays, hits); };
+      if (const auto fan = find_fan(rays); fan && closest_hits_in_tile_fan(grid_, *fan, rays, hits, others)) return;
+    }
     for_each_piece(rays, from, [&](std::size_t first, std::span<const Ray> some, std::span<const Hit* const> starts) {
       closest_hits(some, hits.subspan(first, some.size()), starts);
     });
@@ -135,7 +140,7 @@ class Tiles final : public SceneField {
       const dvec3 corner = map_->corner(col, row);
       const double last = best ? best->t : 1;
       if (sweep_bound(capsule, motion, box.low, box.high, last) > last) return;
-      const auto found = scarp::sweep(target(tile), {capsule.a - corner, capsule.b - corner, capsule.radius}, motion);
+      const auto found = scarp::sweep(target_of(tile), {capsule.a - corner, capsule.b - corner, capsule.radius}, motion);
       if (!found || (best && found->t >= best->t)) return;
       best = FieldContact{*found, {.cell = found->cell, .part = number(col, row)}};
       best->point += corner;
@@ -148,7 +153,7 @@ class Tiles final : public SceneField {
       if (found || !scarp::overlaps(box, ground.low, ground.high)) return;
       TurnedBox own = box;
       own.centre -= map_->corner(col, row);
-      found = scarp::overlaps(target(tile), own);
+      found = scarp::overlaps(target_of(tile), own);
     });
     return found;
   }
@@ -158,7 +163,7 @@ class Tiles final : public SceneField {
       const dvec3 corner = map_->corner(col, row);
       const double most = best ? best->distance : max_distance;
       if (length(min(max(p, box.low), box.high) - p) > most) return;
-      const auto found = scarp::closest_point(target(tile), p - corner, most);
+      const auto found = scarp::closest_point(target_of(tile), p - corner, most);
       if (!found || (best && found->distance >= best->distance)) return;
       best = FieldPoint{
           found->point + corner, found->normal, found->distance, {.cell = found->cell, .part = number(col, row)}};
@@ -224,11 +229,6 @@ class Tiles final : public SceneField {
   std::uint32_t number(int col, int row) const {
     return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(layout_.cols) + static_cast<std::uint32_t>(col);
   }
-  static HeightTarget target(const Tile& tile) {
-    return {&tile.ground->field, &tile.ground->pyramid, std::numeric_limits<double>::quiet_NaN(), kTileSeam,
-            tile.seam_step};
-  }
-
   Starts find_starts(const Ray& ray, const Hit* from) const {
     Starts starts;
     if (!from && ray.start != RayStart::on_surface) return starts;
@@ -330,6 +330,15 @@ class Tiles final : public SceneField {
     return normalize(dvec3(-sum.x, -sum.y, 1.0));
   }
 
+  // Answers some of the rays, by their indices.
+  void closest_hits_of(std::span<const std::uint32_t> some, std::span<const Ray> rays, std::span<Hit> hits) const {
+    std::vector<Ray> asked;
+    for (const std::uint32_t i : some) asked.push_back(rays[i]);
+    std::vector<Hit> answers(asked.size());
+    closest_hits(asked, answers, {});
+    for (std::size_t j = 0; j < some.size(); ++j) hits[some[j]] = answers[j];
+  }
+
   // Calls piece(first, rays, from) on all threads.
   template <class Piece>
   static void for_each_piece(std::span<const Ray> rays, std::span<const Hit* const> from, const Piece& piece) {
@@ -393,7 +402,7 @@ class Tiles final : public SceneField {
     void trace(std::uint32_t part, const std::vector<Waiting>& waiting) {
       const int col = static_cast<int>(part % static_cast<std::uint32_t>(tiles_.layout_.cols)),
                 row = static_cast<int>(part / static_cast<std::uint32_t>(tiles_.layout_.cols));
-      const HeightTarget on = target(*tiles_.map_->find(col, row));
+      const HeightTarget on = target_of(*tiles_.map_->find(col, row));
       const dvec3 corner = tiles_.map_->corner(col, row);
       own_.clear();
       for (const Waiting& one : waiting) {

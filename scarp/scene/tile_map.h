@@ -14,6 +14,7 @@
 
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/field/height_field.h"
+#include "scarp/march/height/height_target.h"
 #include "scarp/scene/tiled_terrain.h"
 
 namespace scarp {
@@ -92,6 +93,12 @@ void TileMap::at(double x, double y, const F& f) const {
       if (own_x == own_x && own_y == own_y && f(*tile, col, row, own_x, own_y)) return;
     }
   }
+}
+
+/// The target of marches over a tile.
+inline HeightTarget target_of(const Tile& tile) {
+  return {&tile.ground->field, &tile.ground->pyramid, std::numeric_limits<double>::quiet_NaN(), kTileSeam,
+          tile.seam_step};
 }
 
 /// Throws Error if tiles that meet differ in a sample of their shared border.

@@ -27,6 +27,8 @@ constexpr std::size_t kRaysPerGroup = 1 << 19;  // whose sights, 4 MiB, a thread
 // worth a walk, and that neither miss nor hit within a few cells, which batches answer at once.
 constexpr double kLeastWalked = 0.75, kLeastFar = 0.25;
 constexpr double kFarCells = 8;
+// Sine of 85 degrees. Half of the rays of a camera that looks straight down inherit nothing from one another.
+constexpr double kStraightDown = 0.996;
 // Slopes of a scanner's row differ by less, relative: their directions may be floats, off by 3 roundings of 2^-24.
 constexpr double kSameSlope = 0x1p-22;
 // Longer ones would need more memory than a group of rays has.
@@ -108,12 +110,14 @@ double rise(const dvec3& step) { return std::abs(step.z) / std::max(length(step)
 
 }  // namespace
 
-std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays, const FanOptions& options) {
+bool is_of_fan(const Ray& ray, const dvec3& origin) { return starts_at(ray, origin) && is_plain(ray.direction); }
+
+std::optional<FanBatch> find_fan(std::span<const Ray> rays) {
   const std::size_t n = rays.size();
   if (n < kLeastRun * kLeastRun) return {};
   const dvec3& origin = rays[0].origin;
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}, n / 2, n - 1}) {
-    if (!starts_at(rays[i], origin) || !is_plain(rays[i].direction)) return {};
+    if (!is_of_fan(rays[i], origin)) return {};
   }
   FanBatch batch;
   batch.run = first_run(rays.first(std::min(n / 2, kLongestRun) + 1));
@@ -121,13 +125,22 @@ std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ra
   const dvec3& first = rays[0].direction;
   batch.columns = rise(rays[1].direction - first) > rise(rays[batch.run].direction - first);
   const std::size_t runs = n / batch.run;
+  const dvec3& middle = rays[runs / 2 * batch.run + batch.run / 2].direction;
+  if (std::abs(middle.z) > kStraightDown * length(middle)) return {};
+  return batch;
+}
+
+std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays, const FanOptions& options) {
+  const std::optional<FanBatch> batch = find_fan(rays);
+  if (!batch) return {};
+  const std::size_t n = rays.size(), runs = n / batch->run;
   Fan fan;
-  fan.origin = origin;
+  fan.origin = rays[0].origin;
   fan.t_max = std::max({rays[0].t_max, rays[1].t_max, rays[n / 2].t_max, rays[n - 1].t_max});
-  fan.columns = static_cast<int>(batch.columns ? runs : batch.run);
-  fan.rows = static_cast<int>(batch.columns ? batch.run : runs);
-  if (!looks_by_fan(target, fan, first, rays[runs * batch.run - 1].direction)) return {};
-  if (!options.always && !is_worth_copying(target, batch, fan, rays)) return {};
+  fan.columns = static_cast<int>(batch->columns ? runs : batch->run);
+  fan.rows = static_cast<int>(batch->columns ? batch->run : runs);
+  if (!looks_by_fan(target, fan, rays[0].direction, rays[runs * batch->run - 1].direction)) return {};
+  if (!options.always && !is_worth_copying(target, *batch, fan, rays)) return {};
   return batch;
 }
 
@@ -202,7 +215,7 @@ class FanGroup {
     for_each_place(begin, end, [&](std::size_t i, std::size_t place) {
       const Ray& ray = rays_[i];
       const dvec3 d = ray.direction;
-      all = all && starts_at(ray, origin) && is_plain(d);
+      all = all && is_of_fan(ray, origin);
       if (std::isfinite(ray.t_max)) longest = std::max(longest, ray.t_max);
       dx_[place] = static_cast<float>(d.x), dy_[place] = static_cast<float>(d.y), dz_[place] = static_cast<float>(d.z);
     });

@@ -22,8 +22,13 @@ struct FanBatch {
   bool columns = false;  ///< consecutive rays are a column
 };
 
-/// Looks at one run, and tries up to 1,536 other rays. Returns nullopt if it finds no runs, and if a fan is not likely
-/// to be faster.
+/// Looks at one run. Returns nullopt if it finds none, and if rays look straight down, which inherit nothing from one
+/// another.
+std::optional<FanBatch> find_fan(std::span<const Ray> rays);
+/// Whether a ray is free, from this origin and from t = 0, and floats hold its direction.
+bool is_of_fan(const Ray& ray, const dvec3& origin);
+/// As find_fan(). Tries up to 1,536 other rays, and also returns nullopt if a fan over this ground is not likely to be
+/// faster.
 std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays);
 /// `always`: also where a batch is likely to be faster.
 std::optional<FanBatch> fan_batch(const HeightTarget& target, std::span<const Ray> rays, const FanOptions& options);
