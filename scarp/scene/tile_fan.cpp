@@ -77,7 +77,7 @@ class TileFanStrip {
     rows_ = batch.columns ? batch.run : runs;
     columns_ = batch.columns ? runs : batch.run;
     const std::size_t places = rows_ * kColumns;
-    dx_.resize(places), dy_.resize(places), dz_.resize(places), slopes_.resize(places);
+    dx_.resize(places), dy_.resize(places), dz_.resize(places), least_slopes_.resize(rows_);
     states_.resize(places), sights_.resize(places);
   }
 
@@ -112,10 +112,17 @@ class TileFanStrip {
     const std::size_t column = first_ + lane;
     return static_cast<std::uint32_t>(batch_.columns ? column * batch_.run + row : row * batch_.run + column);
   }
+  struct Rows {
+    std::size_t begin, end;
+  };
   // Calls body(place, ray) for the rays of the rows that are left.
   template <class Body>
-  void for_each(const Body& body) {
-    for (std::size_t row = low_; row < high_; ++row)
+  void for_each(const Body& body) const {
+    for_each_in({low_, high_}, body);
+  }
+  template <class Body>
+  void for_each_in(const Rows& rows, const Body& body) const {
+    for (std::size_t row = rows.begin; row < rows.end; ++row)
       for (std::size_t lane = 0; lane < width_; ++lane) body(row * kColumns + lane, ray_at(row, lane));
   }
   // Of a ray. `hit`: in this ring.
@@ -141,6 +148,7 @@ class TileFanStrip {
     for (std::size_t row = 0; row < rows_; ++row) {
       // Rows are far apart in memory.
       if (row + kAhead < rows_) prefetch_row(row + kAhead);
+      least_slopes_[row] = std::numeric_limits<float>::infinity();
       for (std::size_t lane = 0; lane < width_; ++lane) {
         const std::size_t place = row * kColumns + lane;
         const std::uint32_t i = ray_at(row, lane);
@@ -150,7 +158,8 @@ class TileFanStrip {
         dx_[place] = static_cast<float>(d.x), dy_[place] = static_cast<float>(d.y);
         dz_[place] = static_cast<float>(d.z);
         const double flat = std::sqrt(d.x * d.x + d.y * d.y);
-        slopes_[place] = static_cast<float>(d.z / flat);  // infinite for vertical rays
+        // Infinite for vertical rays.
+        least_slopes_[row] = std::min(least_slopes_[row], static_cast<float>(d.z / flat));
         reach_ = std::max(reach_, flat == 0 ? 0 : flat * ray.t_max);
         hits_[i] = {};
         states_[place] = State::open;
@@ -177,12 +186,9 @@ class TileFanStrip {
     const dvec2 to_left(-middle_.y, middle_.x);
     left_ = middle_ + (left + kSlack) * to_left, right_ = middle_ + (right - kSlack) * to_left;
   }
-  // Whether a ray that is left may be over the tile and as low as its ground.
+  // Whether a ray may be over the tile.
   bool may_touch(const SeenTile& seen) const {
     if (seen.near > reach_ * (1 + kSlack)) return false;
-    const double down = least_slope_ * (least_slope_ < 0 ? seen.far : seen.near), z = rays_[0].origin.z;
-    const double highest = seen.tile->ground->field.max_height();
-    if (z + down - highest > kSlack * (std::abs(z) + std::abs(down) + std::abs(highest))) return false;
     if (all_round_) return true;
     bool left = true, right = true, behind = true;  // of the wedge
     for (const dvec2& c : {seen.low, seen.high, dvec2(seen.low.x, seen.high.y), dvec2(seen.high.x, seen.low.y)}) {
@@ -192,22 +198,38 @@ class TileFanStrip {
     return !left && !right && !behind;
   }
 
+  // The rows that are left and may come down to the ground of the tile.
+  Rows low_rows(const SeenTile& seen) const {
+    const double z = rays_[0].origin.z, highest = seen.tile->ground->field.max_height();
+    const auto is_low = [&](std::size_t row) {
+      const auto slope = static_cast<double>(least_slopes_[row]);
+      const double down = slope * (slope < 0 ? seen.far : seen.near);
+      return !(z + down - highest > kSlack * (std::abs(z) + std::abs(down) + std::abs(highest)));
+    };
+    Rows rows{low_, high_};
+    while (rows.begin < rows.end && !is_low(rows.begin)) ++rows.begin;
+    while (rows.begin < rows.end && !is_low(rows.end - 1)) --rows.end;
+    return rows;
+  }
+
   // Traces the rays that are left over a tile. Returns false if a fan is not faster.
   bool look(const SeenTile& seen) {
+    const Rows rows = low_rows(seen);
+    if (rows.begin == rows.end) return true;
     const HeightTarget on = target_of(*seen.tile);
     Fan fan;
     fan.origin = rays_[0].origin - seen.corner;
-    const std::size_t at = low_ * kColumns;
+    const std::size_t at = rows.begin * kColumns;
     fan.dx = dx_.data() + at, fan.dy = dy_.data() + at, fan.dz = dz_.data() + at;
     fan.columns = static_cast<int>(width_), fan.rows = static_cast<int>(rows_);
     fan.row_stride = kFanStrip;
     // Asked for all rows: the last ones that are left are few.
     const dvec3 &first = rays_[ray_at(0, 0)].direction, &last = rays_[ray_at(rows_ - 1, width_ - 1)].direction;
     if (!looks_by_fan(on, fan, first, last)) return false;
-    fan.rows = static_cast<int>(high_ - low_);
+    fan.rows = static_cast<int>(rows.end - rows.begin);
     look_max_mip_fan(on, fan, sights_.data() + at, 0, fan.columns);
     own_.clear(), seen_.clear(), asked_.clear();
-    for_each([&](std::size_t place, std::uint32_t i) {
+    for_each_in(rows, [&](std::size_t place, std::uint32_t i) {
       if (!is_left(place) || sights_[place].clear == std::numeric_limits<float>::infinity()) return;
       own_.push_back(rays_[i]);
       own_.back().origin = fan.origin;
@@ -236,14 +258,12 @@ class TileFanStrip {
   // Drops rays that have hit, and rows without any that is left.
   void end_ring() {
     std::size_t low = high_, high = low_;
-    least_slope_ = std::numeric_limits<double>::infinity();
     for (std::size_t row = low_; row < high_; ++row) {
       bool any = false;
       for (std::size_t place = row * kColumns; place < row * kColumns + width_; ++place) {
         if (states_[place] == State::hit) states_[place] = State::none;
         if (states_[place] == State::none) continue;
         any = true;
-        least_slope_ = std::min(least_slope_, static_cast<double>(slopes_[place]));
       }
       if (any) low = std::min(low, row), high = row + 1;
     }
@@ -258,10 +278,9 @@ class TileFanStrip {
   std::size_t rows_ = 0, columns_ = 0, first_ = 0, width_ = 0;
   std::size_t low_ = 0, high_ = 0;  // rows with rays that are left
   double reach_ = 0;                // horizontal length of the longest ray
-  double least_slope_ = 0;          // of the rays that are left
   dvec2 middle_{0.0}, left_{0.0}, right_{0.0};
   bool all_round_ = false;
-  KeptVector<float> dx_, dy_, dz_, slopes_;
+  KeptVector<float> dx_, dy_, dz_, least_slopes_;
   KeptVector<State> states_;
   KeptVector<FanSight> sights_, seen_;
   KeptVector<Ray> own_;
