@@ -209,10 +209,9 @@ void add_tiles(cli::Program& program) {
                                               .help = "rays to measure",
                                               .choices = {"camera", "lidar", "feet", "probe", "sun"},
                                               .closed = true});
-  command.add(cli::List<std::string>{&o.over}, {.names = "--over",
-                                                .help = "what is compared with one field",
-                                                .choices = {"tiles", "combined"},
-                                                .closed = true});
+  command.add(
+      cli::List<std::string>{&o.over},
+      {.names = "--over", .help = "what is compared with one field", .choices = {"tiles", "combined"}, .closed = true});
   command.add(cli::List<std::string>{&o.calls},
               {.names = "--calls", .help = "calls to measure", .choices = {"batch", "single"}, .closed = true});
   command.add(&o.points, {.names = "--points", .help = "rays per pass, about", .range = {640, 1 << 26}});

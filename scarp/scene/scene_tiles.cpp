@@ -13,6 +13,7 @@
 
 #include "scarp/base/kept_memory.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/prefetch.h"
 #include "scarp/march/height/closest_point.h"
 #include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
@@ -76,14 +77,14 @@ class Tiles final : public SceneField {
   }
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
     const bool from_above = rules.sides == Sides::above;
-    return closest(ray, from, from_above, stats,
-                   [&](const Tile& tile, std::uint32_t part, const Ray& own, MarchStats* march) {
-                     const HitFilter accept = [&](Hit hit) {
-                       hit.part = part;
-                       return (*rules.accept)(hit);
-                     };
-                     return march_.by_rules(target_of(tile), own, {rules.sides, rules.accept ? &accept : nullptr}, march);
-                   });
+    return closest(
+        ray, from, from_above, stats, [&](const Tile& tile, std::uint32_t part, const Ray& own, MarchStats* march) {
+          const HitFilter accept = [&](Hit hit) {
+            hit.part = part;
+            return (*rules.accept)(hit);
+          };
+          return march_.by_rules(target_of(tile), own, {rules.sides, rules.accept ? &accept : nullptr}, march);
+        });
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     if (box_.empty()) return false;
@@ -140,7 +141,8 @@ class Tiles final : public SceneField {
       const dvec3 corner = map_->corner(col, row);
       const double last = best ? best->t : 1;
       if (sweep_bound(capsule, motion, box.low, box.high, last) > last) return;
-      const auto found = scarp::sweep(target_of(tile), {capsule.a - corner, capsule.b - corner, capsule.radius}, motion);
+      const auto found =
+          scarp::sweep(target_of(tile), {capsule.a - corner, capsule.b - corner, capsule.radius}, motion);
       if (!found || (best && found->t >= best->t)) return;
       best = FieldContact{*found, {.cell = found->cell, .part = number(col, row)}};
       best->point += corner;
@@ -370,6 +372,7 @@ class Tiles final : public SceneField {
 
    private:
     static constexpr bool any = std::is_same_v<Answer, std::uint8_t>;
+    static constexpr std::size_t kAhead = 8;  // rays prefetched ahead
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     struct Waiting {
       std::uint32_t ray;
@@ -388,8 +391,8 @@ class Tiles final : public SceneField {
       }
       int col, row;
       if (tiles_.grid_.only_tile(ray, col, row) && is_followable(ray)) {
-        const Tile* tile = tiles_.map_->find(col, row);
-        if (tile && !is_above(*tile, ray, {ray.t_min, ray.t_max})) queues_.push(tiles_.number(col, row), waiting);
+        const auto [tile, highest] = tiles_.grid_.at(col, row);
+        if (tile && !is_above(highest, ray, {ray.t_min, ray.t_max})) queues_.push(tiles_.number(col, row), waiting);
         return;
       }
       TileWalk walk(tiles_.grid_, ray, true);
@@ -405,7 +408,9 @@ class Tiles final : public SceneField {
       const HeightTarget on = target_of(*tiles_.map_->find(col, row));
       const dvec3 corner = tiles_.map_->corner(col, row);
       own_.clear();
-      for (const Waiting& one : waiting) {
+      for (std::size_t i = 0; i < waiting.size(); ++i) {
+        const Waiting& one = waiting[i];
+        if (i + kAhead < waiting.size()) prefetch_ray(waiting[i + kAhead].ray);
         const Ray& ray = rays_[one.ray];
         if (one.starts == kNone) {
           own_.push_back(ray);
@@ -420,6 +425,11 @@ class Tiles final : public SceneField {
       if (found_.size() < own_.size()) found_.resize(own_.size());
       answer(on, std::span(found_).first(own_.size()));
       for (std::size_t i = 0; i < waiting.size(); ++i) go_on(waiting[i], col, row, found_[i]);
+    }
+    void prefetch_ray(std::uint32_t ray) const {
+      const auto* begin = reinterpret_cast<const char*>(&rays_[ray]);
+      prefetch(begin), prefetch(begin + 64);  // two cache lines
+      prefetch(&answers_[ray]);
     }
     void answer(const HeightTarget& on, std::span<Answer> found) {
       if constexpr (any) {

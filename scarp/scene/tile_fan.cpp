@@ -17,7 +17,7 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kMostTilesOfFan = 4096, kRaysPerFanPiece = 8192;
-constexpr std::size_t kAhead = 4;  // rows prefetched ahead
+constexpr std::size_t kAhead = 8;  // rows prefetched ahead
 constexpr auto kColumns = static_cast<std::size_t>(kFanStrip);
 // Distance in cells from the borders of a tile at which positions on a ray are certainly on this side: far above their
 // rounding, far below a cell.
@@ -28,6 +28,7 @@ constexpr double kSlack = 0x1p-20;
 // A tile with ground, seen from the origin of the fan.
 struct SeenTile {
   const Tile* tile;
+  double highest;
   int col, row;
   int ring;
   dvec3 corner;
@@ -50,9 +51,9 @@ std::vector<SeenTile> tiles_seen(const TileGrid& grid, const dvec3& origin) {
   std::vector<SeenTile> seen;
   for (int row = 0; row < layout.rows; ++row) {
     for (int col = 0; col < layout.cols; ++col) {
-      const Tile* tile = grid.map().find(col, row);
-      if (!tile || tile->ground->field.all_nodata()) continue;
-      SeenTile s{tile, col, row, 0, grid.map().corner(col, row), {}, {}, 0, 0};
+      const auto [tile, highest] = grid.at(col, row);
+      if (!tile) continue;
+      SeenTile s{tile, highest, col, row, 0, grid.map().corner(col, row), {}, {}, 0, 0};
       s.ring = ring_of(origin.x, grid.width(), layout.ground.cell_x, col) +
                ring_of(origin.y, grid.depth(), layout.ground.cell_y, layout.rows - 1 - row);
       const dvec2 wide(grid.wide_x(origin.x), grid.wide_y(origin.y));
@@ -137,7 +138,9 @@ class TileFanStrip {
   void prefetch_row(std::size_t row) const {
     for (std::size_t lane = 0; lane < width_; ++lane) {
       const std::uint32_t i = ray_at(row, lane);
-      prefetch(&rays_[i]), prefetch(&hits_[i]);
+      const auto* begin = reinterpret_cast<const char*>(&rays_[i]);
+      prefetch(begin), prefetch(begin + 64);  // two cache lines
+      prefetch(&hits_[i]);
     }
   }
   // Returns false if a ray does not belong to the fan.
@@ -154,7 +157,7 @@ class TileFanStrip {
         const std::uint32_t i = ray_at(row, lane);
         const Ray& ray = rays_[i];
         const dvec3& d = ray.direction;
-        all = all && is_of_fan(ray, origin) && is_followable(ray);
+        all = all && is_of_fan(ray, origin) && d == d && ray.t_max >= 0;
         dx_[place] = static_cast<float>(d.x), dy_[place] = static_cast<float>(d.y);
         dz_[place] = static_cast<float>(d.z);
         const double flat = std::sqrt(d.x * d.x + d.y * d.y);
@@ -200,7 +203,7 @@ class TileFanStrip {
 
   // The rows that are left and may come down to the ground of the tile.
   Rows low_rows(const SeenTile& seen) const {
-    const double z = rays_[0].origin.z, highest = seen.tile->ground->field.max_height();
+    const double z = rays_[0].origin.z, highest = seen.highest;
     const auto is_low = [&](std::size_t row) {
       const auto slope = static_cast<double>(least_slopes_[row]);
       const double down = slope * (slope < 0 ? seen.far : seen.near);
@@ -292,10 +295,10 @@ class TileFanStrip {
 }  // namespace
 
 bool closest_hits_in_tile_fan(const TileGrid& grid, const FanBatch& batch, std::span<const Ray> rays,
-                              std::span<Hit> hits,
-                              const std::function<void(std::span<const std::uint32_t>)>& others) {
-  if (std::int64_t{grid.cols()} * grid.rows() > kMostTilesOfFan) return false;
+                              std::span<Hit> hits, const std::function<void(std::span<const std::uint32_t>)>& others) {
   const dvec3& origin = rays[0].origin;
+  if (std::int64_t{grid.cols()} * grid.rows() > kMostTilesOfFan || !std::isfinite(origin.x + origin.y + origin.z))
+    return false;
   bool below = false;
   grid.map().at(origin.x, origin.y, [&](const Tile& tile, int, int, double x, double y) {
     const auto height = tile.ground->field.height(x, y);
@@ -307,12 +310,13 @@ bool closest_hits_in_tile_fan(const TileGrid& grid, const FanBatch& batch, std::
   const std::size_t columns = batch.columns ? runs : batch.run, rows = batch.columns ? batch.run : runs;
   const auto strips = static_cast<std::int64_t>((columns + kColumns - 1) / kColumns);
   const auto per_strip = static_cast<std::int64_t>(rows * kColumns);
-  parallel_for(strips, std::max<std::int64_t>(1, kRaysPerFanPiece / per_strip), [&](std::int64_t begin, std::int64_t end) {
-    TileFanStrip strip(grid, tiles, batch, rays, hits);
-    for (std::int64_t i = begin; i < end; ++i) {
-      if (const auto left = strip.answer(static_cast<std::size_t>(i)); !left.empty()) others(left);
-    }
-  });
+  parallel_for(strips, std::max<std::int64_t>(1, kRaysPerFanPiece / per_strip),
+               [&](std::int64_t begin, std::int64_t end) {
+                 TileFanStrip strip(grid, tiles, batch, rays, hits);
+                 for (std::int64_t i = begin; i < end; ++i) {
+                   if (const auto left = strip.answer(static_cast<std::size_t>(i)); !left.empty()) others(left);
+                 }
+               });
   // An incomplete row or column.
   std::vector<std::uint32_t> rest;
   for (std::size_t i = runs * batch.run; i < rays.size(); ++i) rest.push_back(static_cast<std::uint32_t>(i));

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "scarp/march/usual_ray.h"
 #include "scarp/scene/tile_map.h"
@@ -45,11 +46,18 @@ class TileGrid {
  public:
   /// `highest`: the highest ground of all tiles, in metres.
   TileGrid(const TileMap& map, double highest)
-      : map_(&map), highest_(highest),
+      : map_(&map),
+        highest_(highest),
         width_(map.tile_width()),
         depth_(map.tile_depth()),
         per_width_(1 / width_),
-        per_depth_(1 / depth_) {}
+        per_depth_(1 / depth_) {
+    const std::int64_t tiles = std::int64_t{cols()} * rows();
+    if (tiles > kMostListed) return;
+    listed_.reserve(static_cast<std::size_t>(tiles));
+    for (int row = 0; row < rows(); ++row)
+      for (int col = 0; col < cols(); ++col) listed_.push_back(found(col, row));
+  }
 
   const TileMap& map() const { return *map_; }
   int cols() const { return map_->layout.cols; }
@@ -59,6 +67,15 @@ class TileGrid {
   double per_width() const { return per_width_; }
   double per_depth() const { return per_depth_; }
   double highest() const { return highest_; }
+  /// A tile with its highest ground; null if it is missing or has no ground.
+  struct Found {
+    const Tile* tile;
+    double highest;
+  };
+  Found at(int col, int row) const {
+    if (listed_.empty()) return found(col, row);
+    return listed_[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols()) + static_cast<std::size_t>(col)];
+  }
   /// By how much tiles are widened for a ray from here, in metres.
   double wide_x(double x) const { return map_->layout.ground.cell_x + std::abs(x) * 0x1p-48; }
   double wide_y(double y) const { return map_->layout.ground.cell_y + std::abs(y) * 0x1p-48; }
@@ -92,7 +109,16 @@ class TileGrid {
   }
 
  private:
+  static constexpr std::int64_t kMostListed = 4096;
+
+  Found found(int col, int row) const {
+    const Tile* tile = map_->find(col, row);
+    if (!tile || tile->ground->field.all_nodata()) return {nullptr, 0};
+    return {tile, tile->ground->field.max_height()};
+  }
+
   const TileMap* map_;
+  std::vector<Found> listed_;  // of all tiles, unless there are very many
   double highest_;
   double width_, depth_, per_width_, per_depth_;
 };
@@ -103,12 +129,10 @@ inline double rounding_of_height(double origin, double at, double height) {
   return 0x1p-40 * (std::abs(origin) + std::abs(at) + std::abs(height)) + std::numeric_limits<double>::min();
 }
 
-/// Whether the ray is above all ground of a tile in a span, by more than rounding.
-inline bool is_above(const Tile& tile, const Ray& ray, const TileSpan& span) {
-  const HeightField& field = tile.ground->field;
-  if (field.all_nodata()) return true;
+/// Whether the ray is above a height in a span, by more than rounding.
+inline bool is_above(double highest, const Ray& ray, const TileSpan& span) {
   const TileAxis z(ray.origin.z, ray.direction.z);
-  const double lowest = z.at(ray.direction.z < 0 ? span.end : span.begin), highest = field.max_height();
+  const double lowest = z.at(ray.direction.z < 0 ? span.end : span.begin);
   return lowest - highest > rounding_of_height(ray.origin.z, lowest, highest);
 }
 
@@ -139,8 +163,8 @@ class TileWalk {
         if (span.empty()) continue;
         if (span.begin > until) break;
         row_ = grid.rows() - 1 - north;
-        const Tile* tile = grid.map().find(col_, row_);
-        if (tile && !(only_from_above_ && is_above(*tile, ray, span))) return tile;
+        const auto [tile, highest] = grid.at(col_, row_);
+        if (tile && !(only_from_above_ && is_above(highest, ray, span))) return tile;
       }
       left_norths_ = 0;
       if (left_cols_ == 0) return nullptr;
