@@ -87,6 +87,13 @@ TEST(ScarpBench, CallsRunsAllTasks) {
   for (const json& row : all["rows"]) EXPECT_GT(row["ratio"], 0) << row;
 }
 
+TEST(ScarpBench, TilesMatchOneField) {
+  const json all = output_of("tiles --sizes 65 --cells 16 --points 2000 --repeats 1");
+  expect_documented(all, "tiles");
+  EXPECT_EQ(all["rows"].size(), 5u * 2u * 2u);  // tasks, terrains, calls
+  for (const json& row : all["rows"]) EXPECT_EQ(row["differ"], 0) << row;
+}
+
 TEST(ScarpBench, ExtentsMatchWindows) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
   expect_documented(all, "extents");
