@@ -19,6 +19,7 @@
 #include "scarp/march/ray_room.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/scene/object_boxes.h"
+#include "scarp/scene/object_queues.h"
 #include "scarp/scene/scene_answers.h"
 #include "scarp/scene/scene_back_end.h"
 #include "scarp/scene/scene_limits.h"
@@ -306,6 +307,16 @@ bool Scene::any(const StartedRay& ray) const {
 
 namespace {
 
+// Queues need more rays than other code.
+std::int64_t rays_per_piece(const Scene& scene, std::size_t rays) {
+  const auto some = static_cast<std::int64_t>(rays / 8);
+  return some > kRaysPerPiece && has_only_heights(scene) ? std::min(some, kRaysPerQueuedPiece) : kRaysPerPiece;
+}
+
+bool pays_to_queue(const Scene& scene, std::span<const Ray> rays, const SceneRules* rules) {
+  return !rules && rays.size() >= kFewForQueues && has_only_heights(scene);
+}
+
 bool all_free(std::span<const Ray> rays, std::span<const Hit* const> from) {
   return from.empty() && std::all_of(rays.begin(), rays.end(), [](const Ray& r) { return r.start == RayStart::free; });
 }
@@ -319,8 +330,10 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
   KeptVector<Hit> answers(rays.size());
   std::fill(hits.begin(), hits.end(), Hit{});
   bool any_hit = false;
+  std::optional<ObjectQueues> queues;
+  if (sights.empty() && !tree_.empty() && pays_to_queue(*this, rays, rules)) queues.emplace(*this);
   for (const std::uint32_t object : beside_tree_) {
-    if (!sees(rules, objects_[object])) continue;
+    if (!sees(rules, objects_[object]) || (queues && queues->bounded(object))) continue;
     // Without earlier hits, the ranges of free rays need no limit.
     std::span<const Ray> asked = rays;
     if (any_hit || !in_place_[object] || rooms_[object] != 0 || !all_free(rays, from)) {
@@ -343,22 +356,81 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
     }
   }
   if (tree_.empty()) return;
-  for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i, rules}, hits[i], nullptr);
+  if (!queues) {
+    for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i, rules}, hits[i], nullptr);
+    return;
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Ray reach = rays[i];
+    if (hits[i]) reach.t_max = hits[i].t;
+    queues->add(static_cast<std::uint32_t>(i), reach, [&](const auto& visit) {
+      for (const std::uint32_t object : beside_tree_)
+        if (queues->bounded(object)) visit(object);
+      tree_.traverse(reach, [&](std::uint32_t object) { return visit(object), reach.t_max; });
+    });
+  }
+  queues->run([&](std::uint32_t object, const std::vector<ObjectQueues::Waiting>& waiting) {
+    locals.clear(), on_object.clear();
+    std::vector<std::uint32_t> asked;
+    for (const auto& one : waiting) {
+      const StartedRay ray(rays, from, one.ray);
+      if (hits[one.ray] && one.enters > hits[one.ray].t) continue;
+      asked.push_back(one.ray);
+      locals.emplace_back();
+      make_local(ray, object, hits[one.ray], locals.back());
+      if (!from.empty()) on_object.push_back(ray.from_on(object));
+    }
+    if (asked.size() < kFewAtObject) {
+      for (const std::uint32_t i : asked) trace({rays, from, i}, object, hits[i], nullptr);
+    } else {
+      answers.resize(asked.size());
+      field_of(object).closest_hits(locals, answers, on_object);
+      for (std::size_t j = 0; j < asked.size(); ++j) take_hit(answers[j], object, hits[asked[j]]);
+    }
+    for (const auto& one : waiting) queues->go_on(one);
+  });
 }
 
 void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked,
                               const SceneRules* rules) const {
   // The tree first: rays that are blocked there need not be traced over the ground.
   std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    blocked[i] = tree_blocks({rays, from, i, rules});
-    if (!blocked[i]) open.push_back(i);
-  }
   std::vector<Ray> locals;
   std::vector<const Hit*> on_object;
   std::vector<std::uint8_t> answers;
+  std::optional<ObjectQueues> queues;
+  if (!tree_.empty() && pays_to_queue(*this, rays, rules)) queues.emplace(*this);
+  if (!queues) {
+    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = tree_blocks({rays, from, i, rules});
+  } else {
+    std::fill(blocked.begin(), blocked.end(), std::uint8_t{0});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      queues->add(static_cast<std::uint32_t>(i), rays[i], [&](const auto& visit) {
+        for (const std::uint32_t object : beside_tree_)
+          if (queues->bounded(object)) visit(object);
+        tree_.traverse(rays[i], [&](std::uint32_t object) { return visit(object), rays[i].t_max; });
+      });
+    }
+    queues->run([&](std::uint32_t object, const std::vector<ObjectQueues::Waiting>& waiting) {
+      locals.clear(), on_object.clear();
+      for (const auto& one : waiting) {
+        const StartedRay ray(rays, from, one.ray);
+        locals.push_back(local(ray, object, {}));
+        if (!from.empty()) on_object.push_back(ray.from_on(object));
+      }
+      answers.resize(waiting.size());
+      field_of(object).occluded(locals, answers, on_object);
+      for (std::size_t j = 0; j < waiting.size(); ++j) {
+        blocked[waiting[j].ray] = answers[j];
+        if (!answers[j]) queues->go_on(waiting[j]);
+      }
+    });
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!blocked[i]) open.push_back(i);
   for (const std::uint32_t object : beside_tree_) {
     if (field_of(object).is_backdrop() || !sees(rules, objects_[object])) continue;
+    if (queues && queues->bounded(object)) continue;
     locals.clear(), on_object.clear();
     for (const std::size_t i : open) {
       const StartedRay ray(rays, from, i);
@@ -384,18 +456,19 @@ void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::sp
   if (!from.empty()) require_same_length(rays.size(), from.size());
   if (back_end_) return closest_by_back_end(rays, hits, steps, from);
   if (alone_) return field_of(0).closest_hits_on_all_threads(rays, hits, steps, from);
-  parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
-    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (steps.empty() && !any_odd(rays.subspan(first, count))) {
-      return closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
-                              hits.subspan(first, count));
-    }
-    for (std::size_t i = first; i < first + count; ++i) {
-      MarchStats stats;
-      hits[i] = closest({rays, from, i}, &stats);
-      if (!steps.empty()) steps[i] = stats.steps;
-    }
-  });
+  parallel_for(static_cast<std::int64_t>(rays.size()), rays_per_piece(*this, rays.size()),
+               [&](std::int64_t begin, std::int64_t end) {
+                 const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+                 if (steps.empty() && !any_odd(rays.subspan(first, count))) {
+                   return closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
+                                           hits.subspan(first, count));
+                 }
+                 for (std::size_t i = first; i < first + count; ++i) {
+                   MarchStats stats;
+                   hits[i] = closest({rays, from, i}, &stats);
+                   if (!steps.empty()) steps[i] = stats.steps;
+                 }
+               });
 }
 
 std::optional<HeightTarget> Scene::fan_target() const {
@@ -419,15 +492,16 @@ void Scene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
   if (!from.empty()) require_same_length(rays.size(), from.size());
   if (back_end_) return occluded_by_back_end(rays, blocked, from);
   if (sole_) return field_of(sole_object_).occluded_on_all_threads(rays, blocked, from);
-  parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
-    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (any_odd(rays.subspan(first, count))) {
-      for (std::size_t i = first; i < first + count; ++i) blocked[i] = any({rays, from, i});
-      return;
-    }
-    occluded_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
-                      blocked.subspan(first, count));
-  });
+  parallel_for(static_cast<std::int64_t>(rays.size()), rays_per_piece(*this, rays.size()),
+               [&](std::int64_t begin, std::int64_t end) {
+                 const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+                 if (any_odd(rays.subspan(first, count))) {
+                   for (std::size_t i = first; i < first + count; ++i) blocked[i] = any({rays, from, i});
+                   return;
+                 }
+                 occluded_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
+                                   blocked.subspan(first, count));
+               });
 }
 
 SceneSurface Scene::placed_surface(std::uint32_t index, const FieldSurface& own, const dvec3& p,
