@@ -126,7 +126,7 @@ class TileFanStrip {
     for (std::size_t row = rows.begin; row < rows.end; ++row)
       for (std::size_t lane = 0; lane < width_; ++lane) body(row * kColumns + lane, ray_at(row, lane));
   }
-  // Of a ray. `hit`: in this ring.
+  // The state of a ray. `hit`: it hits in this ring.
   enum class State : std::uint8_t { none, open, hit };
 
   bool is_left(std::size_t place) const { return states_[place] != State::none; }
