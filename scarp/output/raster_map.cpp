@@ -47,13 +47,22 @@ std::string name_of_option(const std::string& option) {
   return option.substr(0, equals);
 }
 
-CPLStringList options_of(const MapFormat& format) {
+// GeoTIFF keeps the bands of a tile together by default. A tile of hundreds of bands is too large for the cache, and is
+// compressed and written again whenever a few of its rows are added.
+bool has_large_tiles(GDALDataset& source) {
+  constexpr double kTileSide = 256, kLargeTile = 4 << 20;
+  const double bytes = GDALGetDataTypeSizeBytes(source.GetRasterBand(1)->GetRasterDataType());
+  return kTileSide * kTileSide * bytes * source.GetRasterCount() > kLargeTile;
+}
+
+CPLStringList options_of(const MapFormat& format, GDALDataset& source) {
   CPLStringList options;
   if (format.driver == "GTiff") {
     for (const char* option : {"TILED=YES", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
     options.SetNameValue("PREDICTOR", format.floats ? "3" : "2");
     if (format.sparse) options.SetNameValue("SPARSE_OK", "TRUE");
+    if (has_large_tiles(source)) options.SetNameValue("INTERLEAVE", "BAND");
   } else if (format.driver == "COG") {
     for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"})
       options.AddString(option);
@@ -126,7 +135,7 @@ void write_dataset(const std::string& path, GDALDataset& source, const MapFormat
   MapFiles files(path);
   GdalWriting writing(AuxiliaryFiles::written);
   writing.hide(files.folder());
-  const CPLStringList options = options_of(format);
+  const CPLStringList options = options_of(format, source);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver.c_str());
   if (!driver) throw Error(fmt::format("{}: GDAL has no driver '{}'", path, format.driver));
   // GDAL copies bands of rows of this many bytes. Its default takes as much memory again as the rest of the program.

@@ -95,6 +95,26 @@ TEST_F(MapLimits, PutsArraysBeyondTheLimitIntoFiles) {
   EXPECT_EQ(scratch_.files(), files);
 }
 
+// 150 bands of 1.4 MB, each below the size of arrays that are always counted first.
+TEST_F(MapLimits, CountsManyBandsThatAreSmall) {
+  constexpr int kSide = 600, kObservers = 150;
+  const std::string dem = model("dem.tif", kSide, kSide, GDT_Int16);
+  std::string table = "x,y,z\n";  // above holes, too
+  for (int i = 0; i < kObservers; ++i)
+    table +=
+        fmt::format("{},{},900\n", 500005 + 10 * (i * 599 / (kObservers - 1)), 4999993.75 - 12.5 * (i * 397 % kSide));
+  const Names words{"viewshed",       dem,     "--observers",    scratch_.write("seen.csv", table),
+                    "--per-observer", "bands", "--mode",         "ground",
+                    "--heights",      "sea",   "--max-distance", "60"};
+  const Result result = run(words + Names{"--memory", "256M", "-o", path("files.tif")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_LT(result.peak, 256u << 20);
+  const GDALDatasetUniquePtr file(GDALDataset::Open(path("files.tif").c_str(), GDAL_OF_RASTER));
+  EXPECT_EQ(file->GetRasterCount(), kObservers);
+  // Tiles of all bands would be larger than GDAL's cache.
+  EXPECT_STREQ(file->GetMetadataItem("INTERLEAVE", "IMAGE_STRUCTURE"), "BAND");
+}
+
 TEST_F(MapLimits, ReadsDrawnFilesBeforeTheMap) {
 #ifdef SCARP_CAIRO
   const std::string dem = model("dem.tif", 30, 40, GDT_Int16);

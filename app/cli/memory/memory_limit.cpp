@@ -20,14 +20,20 @@
 namespace scarp::cli {
 namespace {
 
+// Arrays that count. Maps of many observers or directions have thousands of bands, each of some ten kilobytes or more.
+constexpr std::size_t kCounted = std::size_t{16} << 10;
+// Arrays that may lie in files even if there are few of them.
 constexpr std::size_t kLargeArray = std::size_t{2} << 20;
+// Share of the memory for arrays that large ones leave to others: to buffers of a row or a block, which algorithms
+// allocate and release again and again.
+constexpr double kOfOthers = 0.2;
 // The program without arrays, with GDAL's blocks.
 constexpr double kProgram = 176 << 20;
 
 // Read by operator new on any thread.
 std::atomic<bool> is_limited{false};
-std::atomic<std::size_t> most_private{0}, most_granted{0};  // bytes
-// Of large arrays in memory. Pages that are not yet used are not resident.
+std::atomic<std::size_t> most_private{0}, most_granted{0}, most_granted_to_large{0};  // bytes
+// Of counted arrays in memory. Pages that are not yet used are not resident.
 std::atomic<std::size_t> granted_bytes{0};
 char scratch_folder[4096];  // written before is_limited
 
@@ -59,6 +65,7 @@ MemoryLimit::MemoryLimit(double bytes, const std::string& folder)
   const auto in_memory = static_cast<std::size_t>(rest - file_pages);
   most_private = now.privately + in_memory;
   most_granted = granted_bytes + in_memory;
+  most_granted_to_large = granted_bytes + static_cast<std::size_t>((1 - kOfOthers) * static_cast<double>(in_memory));
   is_limited = true;
   watcher_ = std::thread([this, most = now.of_files + static_cast<std::size_t>(file_pages)] { watch(most); });
 }
@@ -117,21 +124,26 @@ double machine_memory() {
 }
 
 void* beyond_memory_limit(std::size_t bytes, std::size_t alignment) {
-  if (bytes < kLargeArray) return nullptr;
+  if (bytes < kCounted) return nullptr;
   // Before the check, so that arrays that threads allocate at the same time count one another.
   const std::size_t all = granted_bytes += bytes;
-  if (!is_limited || (all <= most_granted && resident().privately + bytes <= most_private)) return nullptr;
+  if (!is_limited) return nullptr;
+  const bool is_large = bytes >= kLargeArray;
+  // Asking the system takes longer than allocating a small array.
+  if (all <= (is_large ? most_granted_to_large : most_granted) &&
+      (!is_large || resident().privately + bytes <= most_private))
+    return nullptr;
   granted_bytes -= bytes;
   return allocate_in_file(bytes, alignment, scratch_folder);
 }
 
 void count_granted(std::size_t bytes, std::size_t usable) noexcept {
-  if (bytes >= kLargeArray) granted_bytes -= bytes;
-  if (usable >= kLargeArray) granted_bytes += usable;
+  if (bytes >= kCounted) granted_bytes -= bytes;
+  if (usable >= kCounted) granted_bytes += usable;
 }
 
 void count_released(std::size_t usable) noexcept {
-  if (usable >= kLargeArray) granted_bytes -= usable;
+  if (usable >= kCounted) granted_bytes -= usable;
 }
 
 }  // namespace scarp::cli

@@ -4,7 +4,7 @@
 // not know it, so results are the same for every limit; those that use memory in order lose little time.
 //
 //   in memory    the program and GDAL's blocks, then arrays until half of the rest is used
-//   in files     all other arrays of 2 MiB and more; the other half of the rest holds their pages
+//   in files     all other arrays of 16 KiB and more; the other half of the rest holds their pages
 //
 // doc/dev/decisions/cli.md has the alternatives.
 #pragma once
