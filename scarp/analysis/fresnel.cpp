@@ -14,10 +14,7 @@ FresnelClearance fresnel_clearance(const SightLine& line, double wavelength) {
   FresnelClearance least;
   for (int axis = 0; axis < 2; ++axis) {
     visit_sight(line, axis, [&](const SightCrossing& at) {
-      const double along = at.along();
-      const double radius = fresnel_radius(wavelength, along * line.distance(), (1 - along) * line.distance());
-      const double share = (at.ray() - at.ground()) / radius;
-      if (share < least.share) least = {share, along};
+      at.add_to(least, line, wavelength);
       return true;
     });
   }

@@ -13,18 +13,6 @@
 namespace scarp {
 namespace {
 
-SightEnd rounded(const HeightField& field, SightEnd end, std::string_view name) {
-  const double last_col = field.cols() - 1, last_row = field.rows() - 1;
-  end.col = rounded_end(end.col);
-  end.row = rounded_end(end.row);
-  if (!(end.col >= 0 && end.row >= 0 && end.col <= last_col && end.row <= last_row))
-    throw Error(fmt::format("{}: column {:.10g}, row {:.10g} is outside the raster (columns 0 to {}, rows 0 to {})",
-                            name, end.col, end.row, last_col, last_row));
-  if (!std::isfinite(end.height) || (end.datum == HeightDatum::ground && end.height < 0))
-    throw Error(fmt::format("{}: height {} m (must be 0 or more above ground)", name, end.height));
-  return end;
-}
-
 // Returns the height of an end in metres above sea; sets `ground` to the ground below it.
 double height_of(const SightGround& heights, const SightEnd& end, std::string_view name, double& ground) {
   const auto found = heights.height_at(end.col, end.row);
@@ -45,14 +33,34 @@ double rounded_end(double position) {
   return std::round(position * kSteps) / kSteps;
 }
 
+SightEnd SightLine::checked(int cols, int rows, SightEnd end, std::string_view name) {
+  const double last_col = cols - 1, last_row = rows - 1;
+  end.col = rounded_end(end.col);
+  end.row = rounded_end(end.row);
+  if (!(end.col >= 0 && end.row >= 0 && end.col <= last_col && end.row <= last_row))
+    throw Error(fmt::format("{}: column {:.10g}, row {:.10g} is outside the raster (columns 0 to {}, rows 0 to {})",
+                            name, end.col, end.row, last_col, last_row));
+  if (!std::isfinite(end.height) || (end.datum == HeightDatum::ground && end.height < 0))
+    throw Error(fmt::format("{}: height {} m (must be 0 or more above ground)", name, end.height));
+  return end;
+}
+
+void SightLine::stand_observer(const SightEnd& from, const SightGround& around) {
+  eye_ = height_of(around, from, "observer", eye_ground_);
+}
+
+void SightLine::stand_target(const SightEnd& to, const SightGround& around) {
+  target_ = around.lowered(height_of(around, to, "target", target_ground_), to.col, to.row);
+  distance_ = std::sqrt(around.square_distance(to.col, to.row));
+}
+
 SightLine::SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to,
                      const SightCurvature& curvature, const std::optional<dvec2>& cells)
-    : from_(rounded(field, from, "observer")),
-      to_(rounded(field, to, "target")),
+    : from_(checked(field.cols(), field.rows(), from, "observer")),
+      to_(checked(field.cols(), field.rows(), to, "target")),
       ground_(field, from_.col, from_.row, curvature, cells) {
-  eye_ = height_of(ground_, from_, "observer", eye_ground_);
-  target_ = ground_.lowered(height_of(ground_, to_, "target", target_ground_), to_.col, to_.row);
-  distance_ = std::sqrt(ground_.square_distance(to_.col, to_.row));
+  stand_observer(from_, ground_);
+  stand_target(to_, ground_);
 }
 
 namespace {
@@ -105,15 +113,7 @@ class Search {
     visit_sight(
         line_, axis,
         [&](const SightCrossing& at) {
-          const double clearance = at.ray() - at.ground(), along = at.along();
-          if (clearance < result_.clearance) {
-            result_.clearance = clearance;
-            result_.clearance_along = along;
-          }
-          if ((result_.visible || along < result_.obstruction->along) && sign_of(at.terms) > 0) {
-            result_.visible = false;
-            result_.obstruction = {along, line_.col(along), line_.row(along), at.ground() + at.drop(line_.ground())};
-          }
+          at.add_to(result_, line_);
           return true;
         },
         range);

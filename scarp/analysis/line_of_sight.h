@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "scarp/analysis/sight.h"
 
@@ -22,6 +23,8 @@ struct SightEnd {
 
 /// Returns the column or row of an end as SightLine rounds it.
 double rounded_end(double position);
+
+class SightParts;
 
 /// Two ends of a line, ready for queries: checked, rounded, with heights.
 class SightLine {
@@ -45,9 +48,19 @@ class SightLine {
   double ground_at_target() const { return target_ground_; }
 
  private:
+  friend class SightParts;
+  // Without heights.
+  SightLine(const SightEnd& from, const SightEnd& to, const SightGround& ground)
+      : from_(from), to_(to), ground_(ground) {}
+  // Returns the end with rounded position, of a field of `cols` x `rows` nodes. Throws Error for an invalid end.
+  static SightEnd checked(int cols, int rows, SightEnd end, std::string_view name);
+  // Set heights and distance. Grounds may be of different parts, in which positions count from their first node.
+  void stand_observer(const SightEnd& from, const SightGround& around);
+  void stand_target(const SightEnd& to, const SightGround& around);
+
   SightEnd from_, to_;
   SightGround ground_;
-  double distance_, eye_, target_, eye_ground_, target_ground_;
+  double distance_ = 0, eye_ = 0, target_ = 0, eye_ground_ = 0, target_ground_ = 0;
 };
 
 /// The first crossing, from the start, that blocks a line of sight.

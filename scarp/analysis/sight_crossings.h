@@ -24,6 +24,26 @@ struct SightCrossing {
     return (of(at.first) * terms.w0 + of(at.second) * terms.w1) / (terms.w0 + terms.w1);
   }
   double ray() const { return (terms.e * terms.v0 + terms.r * terms.v1) / (terms.v0 + terms.v1); }
+
+  /// Updates the obstruction and the least clearance of a line.
+  void add_to(LineOfSight& result, const SightLine& line) const {
+    const double clearance = ray() - ground(), place = along();
+    if (clearance < result.clearance) {
+      result.clearance = clearance;
+      result.clearance_along = place;
+    }
+    if ((result.visible || place < result.obstruction->along) && sign_of(terms) > 0) {
+      result.visible = false;
+      result.obstruction = {place, line.col(place), line.row(place), ground() + drop(line.ground())};
+    }
+  }
+  /// Updates the least share of the first Fresnel zone. `wavelength` in metres.
+  void add_to(FresnelClearance& least, const SightLine& line, double wavelength) const {
+    const double place = along();
+    const double radius = fresnel_radius(wavelength, place * line.distance(), (1 - place) * line.distance());
+    const double share = (ray() - ground()) / radius;
+    if (share < least.share) least = {share, place};
+  }
 };
 
 /// Calls visit(crossing) for the crossings of one axis that count, outwards from the start, until it returns false.

@@ -38,8 +38,9 @@ struct LineRange {
 };
 
 /// Calls visit(crossing) for the column lines (axis 0) or row lines (axis 1) of `range` that `line` crosses with
-/// 0 < tau, and with tau < 1 if `ends`, inside the field, outwards from the start. Stops if visit returns false. A line
-/// that runs along grid lines of one axis crosses only those of the other. Returns whether visit never returned false.
+/// 0 < tau, and with tau < 1 if `ends`, inside the field, outwards from the start, which may be outside. Stops if visit
+/// returns false. A line that runs along grid lines of one axis crosses only those of the other. Returns whether visit
+/// never returned false.
 template <class Visit>
 bool visit_crossings(const GridLine& line, int axis, int cols, int rows, bool ends, const Visit& visit,
                      const LineRange& range = {}) {
@@ -49,7 +50,7 @@ bool visit_crossings(const GridLine& line, int axis, int cols, int rows, bool en
   if (a == 0) return true;
   const std::int64_t length = std::abs(a), whole = line.scale * length, sign = a > 0 ? 1 : -1;
   // The first line strictly after the start: x may lie between lines.
-  const std::int64_t floor = x / line.scale;
+  const std::int64_t floor = x >= 0 ? x / line.scale : -((line.scale - 1 - x) / line.scale);
   std::int64_t k = sign > 0 ? floor + 1 : (floor * line.scale == x ? floor - 1 : floor);
   const std::int64_t low_line = std::max<std::int64_t>(range.first, 0), high_line = std::min(range.last, lines - 1);
   if (sign > 0 ? k < low_line : k > high_line) k = sign > 0 ? low_line : high_line;
@@ -57,9 +58,16 @@ bool visit_crossings(const GridLine& line, int axis, int cols, int rows, bool en
     const std::int64_t steps = std::abs(k * line.scale - x);
     if (ends && steps >= length) break;
     const std::int64_t place = y * length + b * steps;
-    if (place < 0) break;
+    // Beside the field: either the line has left it, or it may still enter.
+    if (place < 0) {
+      if (b > 0) continue;
+      break;
+    }
     const std::int64_t j = place / whole, w1 = place - j * whole;
-    if (j >= across || (w1 > 0 && j + 1 >= across)) break;
+    if (j >= across || (w1 > 0 && j + 1 >= across)) {
+      if (b < 0) continue;
+      break;
+    }
     const int line_index = static_cast<int>(k), low = static_cast<int>(j);
     const Crossing crossing{axis == 0 ? Node{line_index, low} : Node{low, line_index},
                             axis == 0 ? Node{line_index, low + 1} : Node{low + 1, line_index},

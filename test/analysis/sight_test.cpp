@@ -6,7 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <string>
 
 #include "analysis/map_fields.h"
 #include "analysis/slow_judge.h"
@@ -14,6 +16,7 @@
 #include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
 #include "scarp/analysis/profile.h"
+#include "scarp/analysis/sight_parts.h"
 #include "scarp/analysis/visible_lines.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -98,6 +101,58 @@ TEST(LineOfSight, MatchesTheJudgeEverywhere) {
     }
   EXPECT_GT(visible, 100);
   EXPECT_GT(blocked, 100);
+}
+
+// Parts of 1 to 40 cells; lines along and between grid lines, over holes and ties.
+TEST(LineOfSight, IsTheSameOverParts) {
+  std::mt19937 random(11);
+  int blocked = 0, lines = 0;
+  for (const MapField& kind : map_fields())
+    for (int i = 0; i < cases(200, 30, 6); ++i) {
+      const HeightField& field = kind.field;
+      const SightEnd from = random_end(field, random), to = random_end(field, random);
+      const SightCurvature curvature{.coefficient = i % 2 ? 1. : 0., .diameter = 300};
+      const SightParts parts(field.cols(), field.rows(), static_cast<int>(1 + random() % 40));
+      const auto read = [&](const NodeRect& nodes) {
+        return field.visit([&](const auto& grid) {
+          return HeightField::view(grid.row(nodes.row_begin) + nodes.col_begin, nodes.col_end - nodes.col_begin,
+                                   nodes.row_end - nodes.row_begin, field.settings(), grid.row_stride);
+        });
+      };
+      std::optional<LineOfSight> expected;
+      std::optional<FresnelClearance> zone;
+      std::string expected_error, error;
+      try {
+        expected = line_of_sight(field, from, to, curvature);
+        zone = fresnel_clearance(SightLine(field, from, to, curvature), 0.05);
+      } catch (const Error& bad) {
+        expected_error = bad.what();
+      }
+      try {
+        const SightAnswer answer = parts.answer(from, to, curvature, 0.05, read);
+        ASSERT_TRUE(expected) << kind.name;
+        ++lines, blocked += !answer.line.visible;
+        EXPECT_EQ(answer.line.visible, expected->visible);
+        EXPECT_EQ(answer.line.distance, expected->distance);
+        EXPECT_EQ(answer.line.eye, expected->eye);
+        EXPECT_EQ(answer.line.target, expected->target);
+        EXPECT_EQ(answer.line.clearance, expected->clearance);
+        EXPECT_EQ(answer.line.clearance_along, expected->clearance_along);
+        EXPECT_EQ(answer.fresnel.share, zone->share);
+        EXPECT_EQ(answer.fresnel.along, zone->along);
+        ASSERT_EQ(answer.line.obstruction.has_value(), expected->obstruction.has_value());
+        if (!expected->obstruction) continue;
+        EXPECT_EQ(answer.line.obstruction->along, expected->obstruction->along);
+        EXPECT_EQ(answer.line.obstruction->col, expected->obstruction->col);
+        EXPECT_EQ(answer.line.obstruction->row, expected->obstruction->row);
+        EXPECT_EQ(answer.line.obstruction->height, expected->obstruction->height);
+      } catch (const Error& bad) {
+        error = bad.what();
+      }
+      EXPECT_EQ(error.empty(), expected_error.empty()) << error << expected_error;
+    }
+  EXPECT_GT(blocked, 100);
+  EXPECT_GT(lines - blocked, 100);
 }
 
 // Skipping does not change the answer, on fields of several blocks and with holes.

@@ -79,11 +79,11 @@ TEST(LargeRaster, OfACountryIsReadOnlyWhereAQuestionNeedsIt) {
       {"viewshed", dem, "--observer", "1004000,4996000,2", "--max-distance", "3000", "--crop", "-o", out},
       {"viewshed", dem, "--observer", "1004000,4996000,2", "--dry-run", "-o", out},
       {"shadow", dem, "--sun", "135,20", "--dry-run", "-o", out},
-      {"horizon", dem, "--dry-run", "-o", out},
+      {"horizon", dem, "--max-distance", "3000", "--dry-run", "-o", out},
       {"horizon", dem, "--at", "1004000,4996000", "--max-distance", "3000"},
-      {"skyview", dem, "--dry-run", "-o", out},
+      {"skyview", dem, "--max-distance", "3000", "--dry-run", "-o", out},
 #ifdef SCARP_ERFA
-      {"sunhours", dem, "--date", "2026-06-21", "--dry-run", "-o", out},
+      {"sunhours", dem, "--date", "2026-06-21", "--max-distance", "3000", "--dry-run", "-o", out},
 #endif
   };
   for (const std::vector<std::string>& call : calls) {
@@ -108,6 +108,48 @@ std::string county(const test::Scratch& scratch) {
 <DstRect xOff="4000" yOff="5000" xSize="300" ySize="300"/></SimpleSource></VRTRasterBand></VRTDataset>)");
 }
 
+// A diagonal of 40,000 cells, whose box takes 3.2 GB.
+TEST(LargeRaster, IsReadAlongLinesOfSight) {
+  const test::Scratch scratch;
+  const std::string dem = country(scratch);
+  const auto seen = test::run({"los", dem, "--from", "1004000,4996000,900", "--to", "1403990,4596010,900", "--heights",
+                               "sea", "--cc", "0", "--plane-error", "1e4"});
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_LT(seen.peak, 100u << 20);
+  EXPECT_EQ(test::rows_of(seen.out)[0].at("visible"), "1");
+}
+
+// A line alone is read along itself; with many others, all of the raster is read at once.
+TEST(LargeRaster, LinesOfSightAreThoseOfTheWholeRaster) {
+  const test::Scratch scratch;
+  const std::string dem = county(scratch);
+  // Lines whose box is most of the raster, across the hills.
+  std::string lines;
+  for (int i = 0; i < 40; ++i)
+    lines += std::to_string(450100 + i * 997) + ",4999900," + std::to_string(539000 - i * 1013) + ",4910500\n";
+  const auto los = [&](const std::string& table) {
+    return test::run(
+        {"los", dem, "--lines", scratch.write("lines.csv", table), "--frequency", "5800", "--observer-height", "40"});
+  };
+  const auto all = los("x,y,tx,ty\n" + lines);
+  ASSERT_EQ(all.status, 0) << all.err;
+  EXPECT_GT(all.peak, 9000u * 9000 * 2) << "the whole raster was not read";
+  const std::vector<test::Row> expected = test::rows_of(all.out);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const std::size_t end = lines.find('\n', begin) + 1;
+    if (i % 16 == 5) {
+      const auto alone = los("x,y,tx,ty\n" + lines.substr(begin, end - begin));
+      ASSERT_EQ(alone.status, 0) << alone.err;
+      EXPECT_LT(alone.peak, 100u << 20);
+      test::Row row = test::rows_of(alone.out)[0];
+      row["line"] = expected[i].at("line");
+      EXPECT_EQ(row, expected[i]) << i;
+    }
+    begin = end;
+  }
+}
+
 TEST(LargeRaster, IsReadWhereRaysEndAndHitAtTheSamePlaces) {
   const test::Scratch scratch;
   const std::string dem = county(scratch);
@@ -120,8 +162,9 @@ TEST(LargeRaster, IsReadWhereRaysEndAndHitAtTheSamePlaces) {
     const auto cast = [&](const std::string& table) {
       return test::run({"cast", dem, "--coords", coordinates, "--rays", scratch.write("rays.csv", table)});
     };
-    // A ray that never ends needs the whole raster.
-    const auto part = cast(rays), whole = cast(rays + "0,0,99999,0,0,1,0,\n");
+    // A level ray that never ends needs all of the raster north-east of it.
+    const std::string level = coordinates == "map" ? "450010,4910010,99999,1,1,0,0,\n" : "10,10,99999,1,1,0,0,\n";
+    const auto part = cast(rays), whole = cast(rays + level);
     ASSERT_EQ(part.status, 0) << part.err;
     ASSERT_EQ(whole.status, 0) << whole.err;
     EXPECT_LT(part.peak + (100 << 20), whole.peak) << "the whole raster was read";
@@ -146,6 +189,31 @@ TEST(LargeRaster, IsReadWhereRaysEndAndHitAtTheSamePlaces) {
       for (const char* share : {"u", "v"}) expect_close(share, (along + kMap) / kCell);
     }
   }
+}
+
+// Rays without an end are below all samples of 16 bits after some kilometres, and vertical ones at one place.
+TEST(LargeRaster, IsReadWhereRaysWithoutAnEndMayHit) {
+  const test::Scratch scratch;
+  const std::string dem = county(scratch);
+  std::string rays = "x,y,z,dx,dy,dz\n";
+  for (int i = 0; i < 40; ++i)
+    rays += std::to_string(490200 + i * 61) + "," + std::to_string(4949000 - i * 53) + ",500," +
+            (i % 7 == 0 ? "0,0" : std::to_string(i % 5 - 2) + ",1." + std::to_string(i)) + ",-9\n";
+  const auto cast = [&](const std::string& table) {
+    return test::run({"cast", dem, "--coords", "map", "--rays", scratch.write("rays.csv", table)});
+  };
+  const auto part = cast(rays), whole = cast(rays + "450010,4910010,99999,1,1,0\n");
+  ASSERT_EQ(part.status, 0) << part.err;
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  EXPECT_LT(part.peak + (100 << 20), whole.peak) << "the whole raster was read";
+  const std::vector<test::Row> here = test::rows_of(part.out), all = test::rows_of(whole.out);
+  ASSERT_EQ(here.size() + 1, all.size());
+  int hits = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    for (const char* same : {"ray", "status", "col", "row"}) EXPECT_EQ(here[i].at(same), all[i].at(same)) << i;
+    hits += here[i].at("status") == "hit";
+  }
+  EXPECT_GT(hits, 20);
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "app/cli/commands/cast_rays.h"
@@ -34,6 +37,30 @@ struct Reach {
   }
 };
 
+// A time after which a ray without an end is beside, above or below all samples of the raster.
+double time_beyond(const Ray& ray, const Raster& header) {
+  const Georeference& geo = header.georeference;
+  const double east = (header.cols - 1) * geo.cell_x_m, north = (header.rows - 1) * geo.cell_y_m;
+  const auto height = [&](double sample) { return sample * header.scale + header.offset; };
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  std::visit(
+      [&]<class T>(const std::vector<T>&) {
+        if constexpr (std::is_integral_v<T>)
+          std::tie(low, high) =
+              std::minmax({height(std::numeric_limits<T>::min()), height(std::numeric_limits<T>::max())});
+      },
+      header.samples);
+  double end = std::numeric_limits<double>::infinity();
+  const auto leave = [&](double at, double step, double first, double last) {
+    if (step != 0) end = std::min(end, ((step > 0 ? last : first) - at) / step);
+  };
+  leave(ray.origin.x, ray.direction.x, 0, east);
+  leave(ray.origin.y, ray.direction.y, 0, north);
+  leave(ray.origin.z, ray.direction.z, low, high);
+  // Vertical rays stay at their column and row.
+  return ray.direction.x == 0 && ray.direction.y == 0 ? ray.t_min : std::max(end, ray.t_min);
+}
+
 bool depends_on_whole(const InputOptions& options) {
   return options.field.wrap != Wrap::none || options.field.mirror || options.exaggeration.chosen ||
          !options.device.empty() || !options.mesh.file.empty() ||
@@ -56,8 +83,9 @@ std::optional<CastPart> part_of_rays(const InputOptions& options, RayTable& tabl
   const Places places(found.raster, kind, 1);
   Reach cols, rows;
   for (const Ray& ray : placed_rays(table, places.frame(), skip_bad)) {
-    if (!std::isfinite(ray.t_max) || ray.start != RayStart::free) return {};
-    for (const double t : {ray.t_min, ray.t_max}) {
+    if (ray.start != RayStart::free) return {};
+    for (const double t : {ray.t_min, std::isfinite(ray.t_max) ? ray.t_max : time_beyond(ray, header)}) {
+      if (!std::isfinite(t)) return {};
       const dvec3 at = ray.at(t);
       cols.add(at.x / geo.cell_x_m);
       rows.add(header.rows - 1 - at.y / geo.cell_y_m);

@@ -21,6 +21,7 @@
 #include "app/cli/progress.h"
 #include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
+#include "scarp/analysis/sight_parts.h"
 #include "scarp/base/csv_text.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -158,6 +159,22 @@ bool is_json(const std::string& output) {
 
 constexpr std::string_view kSeaHint = " (heights above sea: --heights, --observer-z)";
 
+// Does the work of a line; errors name the line.
+template <class Work>
+void of_line(const MapInput& input, const PlaceTable& table, std::size_t i, const Work& work,
+             std::string_view hint = {}) {
+  try {
+    work();
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}{}", table.rows[i].line > 0 ? table.where(i) : input.path(), error.what(), hint));
+  }
+}
+
+// Heights above sea are the only ones that can be below the ground.
+std::string_view hint_for(const SightEnds& ends) {
+  return ends.from.datum == HeightDatum::sea || ends.to.datum == HeightDatum::sea ? kSeaHint : "";
+}
+
 // Tests lines over the part of the raster that was read.
 class Tester {
  public:
@@ -175,7 +192,7 @@ class Tester {
 
   // Places the ends on the ground. Not thread-safe, because messages convert coordinates.
   void stand(std::size_t i, SightEnds& ends) const {
-    named(i, [&] {
+    of_line(input_, table_, i, [&] {
       if (bare_) ends = {bare_->stand_on(ends.from, "observer"), bare_->stand_on(ends.to, "target")};
       require_ground(input_, ends.from, "observer");
       require_ground(input_, ends.to, "target");
@@ -186,8 +203,8 @@ class Tester {
   void test(std::size_t i, const dvec2& cells, Answer& answer) const {
     const HeightField& field = input_.field();
     const SightEnd from = in_part(input_, answer.ends.from), to = in_part(input_, answer.ends.to);
-    named(
-        i,
+    of_line(
+        input_, table_, i,
         [&] {
           if (!bilinear_) {
             answer.line = line_of_sight(field, from, to, input_.curvature(), maxima_ ? &*maxima_ : nullptr, cells);
@@ -198,20 +215,10 @@ class Tester {
             answer.line = BilinearGround(with_cells(field, cells), *bilinear_).line_of_sight(from, to);
           }
         },
-        from.datum == HeightDatum::sea || to.datum == HeightDatum::sea ? kSeaHint : "");
+        hint_for(answer.ends));
   }
 
  private:
-  template <class Work>
-  void named(std::size_t i, const Work& work, std::string_view hint = {}) const {
-    try {
-      work();
-    } catch (const Error& error) {
-      throw Error(
-          fmt::format("{}: {}{}", table_.rows[i].line > 0 ? table_.where(i) : input_.path(), error.what(), hint));
-    }
-  }
-
   const MapInput& input_;
   const PlaceTable& table_;
   std::optional<double> frequency_;
@@ -240,8 +247,57 @@ void test_one_by_one(MapInput& input, const PlaceTable& table, std::span<const s
   }
 }
 
+RasterWindow window_of(const NodeRect& nodes) {
+  return {nodes.col_begin, nodes.row_begin, nodes.col_end - nodes.col_begin, nodes.row_end - nodes.row_begin};
+}
+
+// Tests lines one after the other, each over parts along it.
+void test_along(MapInput& input, const PlaceTable& table, std::span<const std::size_t> lines, RowStatus& status,
+                std::vector<Answer>& answers, std::optional<double> frequency, BareGround* bare) {
+  const SightParts parts(input.cols(), input.rows());
+  const auto stand = [&](SightEnd& end, std::string_view who) {
+    input.read(window_of(parts.around(end)), {});
+    if (bare) bare->follow(input), end = bare->stand_on(end, who);
+    require_ground(input, end, who);
+  };
+  const std::optional<double> wavelength = frequency ? std::optional(wavelength_of(*frequency)) : std::nullopt;
+  const Progress progress = terminal_progress("los");
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const std::size_t i = lines[k];
+    Answer& one = answers[i];
+    auto& [from, to] = one.ends;
+    status.attempt(i, RowStatus::kNodata,
+                   [&] { of_line(input, table, i, [&] { stand(from, "observer"), stand(to, "target"); }); });
+    status.attempt(i, RowStatus::kInvalid, [&] {
+      const dvec2 cells = cells_of(input, one.ends);
+      const auto read = [&](const NodeRect& nodes) {
+        input.read(window_of(nodes), {});
+        return with_cells(input.field(), cells);
+      };
+      const auto test = [&] {
+        const SightAnswer answer = parts.answer(from, to, input.curvature(), wavelength, read);
+        one.line = answer.line, one.fresnel = answer.fresnel;
+      };
+      of_line(input, table, i, test, hint_for(one.ends));
+    });
+    if (!progress(static_cast<double>(k + 1) / static_cast<double>(lines.size()))) throw Interrupted();
+  }
+}
+
+// Whether parts along the lines are better than their boxes. Rays over cells are tested over boxes only.
+bool are_long(const MapInput& input, const std::vector<Answer>& answers, std::span<const std::size_t> lines,
+              std::span<const RasterWindow> boxes, const std::string& surface) {
+  const SightParts parts(input.cols(), input.rows());
+  double samples = 0, reads = 0;
+  for (const std::size_t i : lines)
+    for (const NodeRect& nodes : parts.along(answers[i].ends.from, answers[i].ends.to))
+      samples += static_cast<double>(nodes.count()), ++reads;
+  return surface == "crossings" && are_wasteful(boxes, samples, reads);
+}
+
 void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std::vector<Answer>& answers,
-                std::optional<double> frequency, BareGround* bare) {
+                const LosOptions& options, BareGround* bare) {
+  const std::optional<double>& frequency = options.frequency;
   std::vector<std::size_t> lines;
   std::vector<RasterWindow> parts;
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -250,6 +306,8 @@ void test_lines(MapInput& input, const PlaceTable& table, RowStatus& status, std
     parts.push_back(part_of_line(input, answers[i].ends.from, answers[i].ends.to));
   }
   if (parts.empty()) return;
+  if (are_long(input, answers, lines, parts, options.surface))
+    return test_along(input, table, lines, status, answers, frequency, bare);
   if (!read_together(input, parts))
     return test_one_by_one(input, table, lines, status, answers, parts, frequency, bare);
   if (bare) bare->follow(input);
@@ -297,7 +355,7 @@ void run(LosOptions options, const Command& command) {
                    [&] { answers[i].ends = sight_ends(input, table, i, options.heights, columns); });
   if (options.surface == "bilinear" && input.curvature().coefficient != 0)
     throw Error("--surface bilinear: its rays are straight (add --cc 0)");
-  test_lines(input, table, status, answers, options.frequency, bare ? &*bare : nullptr);
+  test_lines(input, table, status, answers, options, bare ? &*bare : nullptr);
   if (const std::string note = status.note(); !note.empty()) input.notes.push_back(note);
   const std::string text = is_json(options.output)
                                ? geojson_of(input, table, shown, answers, options.parts, options.frequency.has_value())

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -20,16 +22,39 @@ RasterWindow clipped(const MapInput& input, double first_col, double first_row, 
   return {col, row, clamp(last_col, input.cols()) - col + 1, clamp(last_row, input.rows()) - row + 1};
 }
 
-// In degrees, steps along a meridian are shortest where it comes closest to the equator.
+// A lower bound of the length of a row step, on all planes of the raster.
 double shortest_row_step(const MapInput& input) {
   const Georeference& geo = input.georeference();
-  if (!is_geographic(geo)) return geo.cell_y_m;
   const auto& m = geo.map_from_node;
-  const double row = std::clamp(-m[3] / m[5], 0.0, input.rows() - 1.0);
-  return -m[5] * ground_scale_at(geo.crs_wkt, m[0] + input.centre().x * m[1], m[3] + row * m[5]).metres_per_y;
+  if (geo.crs_wkt.empty()) return geo.cell_y_m;
+  const auto step = [&](double col, double row) {
+    return -m[5] * ground_scale_at(geo.crs_wkt, m[0] + col * m[1], m[3] + row * m[5]).metres_per_y;
+  };
+  // In degrees, steps along a meridian are shortest where it comes closest to the equator.
+  if (is_geographic(geo)) return step(input.centre().x, std::clamp(-m[3] / m[5], 0.0, input.rows() - 1.0));
+  constexpr int kAlong = 9;
+  std::array<double, kAlong * kAlong> steps{};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto place = [](std::size_t at, int nodes) { return static_cast<double>(at) * (nodes - 1) / (kAlong - 1); };
+    try {
+      steps[i] = step(place(i % kAlong, input.cols()), place(i / kAlong, input.rows()));
+    } catch (const Error&) {  // outside the domain of the CRS
+      steps[i] = geo.cell_y_m;
+    }
+  }
+  // Between places, steps differ from those there by less than neighbours do from one another.
+  double difference = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (i % kAlong > 0) difference = std::max(difference, std::abs(steps[i] - steps[i - 1]));
+    if (i >= kAlong) difference = std::max(difference, std::abs(steps[i] - steps[i - kAlong]));
+  }
+  return *std::min_element(steps.begin(), steps.end()) - difference;
 }
 
 double area(const RasterWindow& part) { return static_cast<double>(part.cols) * part.rows; }
+
+// Reading a part costs at least about as much as this many samples: a call, and blocks at its border.
+constexpr double kCall = 1 << 16;
 
 }  // namespace
 
@@ -59,11 +84,17 @@ RasterWindow union_of(std::span<const RasterWindow> parts) {
 }
 
 bool are_scattered(std::span<const RasterWindow> parts) {
-  // Reading a part costs at least about as much as this many samples: a call, and blocks at its border.
-  constexpr double kCall = 1 << 16;
   double sum = 0;
   for (const RasterWindow& part : parts) sum += area(part) + kCall;
   return area(union_of(parts)) > sum;
+}
+
+bool are_wasteful(std::span<const RasterWindow> parts, double samples, double reads) {
+  constexpr double kMuch = 16e6;  // samples
+  double largest = 0, all = 0;
+  for (const RasterWindow& part : parts) largest = std::max(largest, area(part)), all += area(part) + kCall;
+  if (!are_scattered(parts)) largest = all = area(union_of(parts));
+  return largest > kMuch && samples + reads * kCall < all;
 }
 
 bool read_together(MapInput& input, std::span<const RasterWindow> parts) {

@@ -27,6 +27,10 @@ RasterWindow part_of_line(const MapInput& input, const SightEnd& from, const Sig
 /// Returns the smallest part that contains all of `parts`, of which there is at least one.
 RasterWindow union_of(std::span<const RasterWindow> parts);
 
+/// Whether the parts, read at once or in turn, take much memory, whereas `reads` other parts of `samples` in all, which
+/// are read in turn, hold fewer samples.
+bool are_wasteful(std::span<const RasterWindow> parts, double samples, double reads);
+
 /// Whether the union of the parts is so much larger than the parts that they should be read one after the other.
 bool are_scattered(std::span<const RasterWindow> parts);
 
