@@ -3,6 +3,7 @@
 // north and length, and parts.
 #include <fmt/format.h>
 #include <gdal_priv.h>
+#include <geodesic.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 
@@ -128,6 +129,53 @@ TEST_F(HorizonFramesCli, RowsInDegreesHaveTheirOwnLengths) {
   expect_refused({"horizon", dem, "--crs", "EPSG:4326", "-o", path("x.tif")}, "cells off the metric plane");
   expect_refused({"skyview", dem, "--crs", "EPSG:4326", "--engine", "sweep", "-o", path("x.tif")},
                  "cells off the metric plane");
+}
+
+// Ten degrees of latitude in Web Mercator, over which cells shrink from 707 to 575 metres.
+TEST_F(HorizonFramesCli, BlocksOfProjectedRastersHaveTheirOwnLengths) {
+  const double cell = 1000, west = 1000000, south = 5621500, reach = 10000, plane_error = 0.1;
+  const int rows = 1740;
+  const std::string dem =
+      ramp("mercator.asc", 40, rows, fmt::format("xllcorner {}\nyllcorner {}\ncellsize {}", west, south, cell), 30);
+  const Names place{"--crs", "EPSG:3857", "--cc", "0"},
+      limits{"--max-distance", fmt::format("{}", reach), "--plane-error", fmt::format("{}", plane_error)};
+  const Names words = Names{"horizon", dem, "--azimuths", "4"} + place + limits;
+  const auto result = run(words + Names{"-o", path("h.tif")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto sky_result = run(Names{"skyview", dem, "--azimuths", "2", "--measure", "sky-view-factor"} + place +
+                              limits + Names{"-o", path("s.tif")});
+  ASSERT_EQ(sky_result.status, 0) << sky_result.err;
+  OGRSpatialReference map, degrees;
+  map.importFromEPSG(3857), degrees.importFromEPSG(4326);
+  degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRCoordinateTransformation> to(OGRCreateCoordinateTransformation(&map, &degrees));
+  geod_geodesic earth{};
+  geod_init(&earth, 6378137, 1 / 298.257223563);
+  const Pixels east = pixels_of(*open(path("h.tif")), 2), sky = pixels_of(*open(path("s.tif")));
+  for (int row = 0; row < rows; row += 3) {
+    double x[] = {west, west + cell}, y[2], length = 0;
+    y[0] = y[1] = south + (rows - row - 0.5) * cell;
+    ASSERT_TRUE(to->Transform(2, x, y));
+    geod_inverse(&earth, y[0], x[0], y[1], x[1], &length, nullptr, nullptr);
+    // The plane may be off by so much at the reach, and by a share of it before.
+    const double slope = 30 / length, share = plane_error * length / reach;
+    EXPECT_NEAR(std::tan(static_cast<double>(east.at(3, row)) * kDegree), slope, share * slope) << row;
+    // To the north and to the south, the plane looks level: cos b.
+    const double level = 1 / std::sqrt(1 + slope * slope);
+    EXPECT_NEAR(static_cast<double>(sky.at(3, row)), level, share * (1 - level * level) + 0x1p-22) << row;
+  }
+  expect_same_parts(words, path("h.tif"), 3);
+  const std::string too_far = "cells off the metric plane of a block";
+  expect_refused(Names{"horizon", dem} + place + Names{"-o", path("x.tif")}, too_far);
+  expect_refused(Names{"skyview", dem} + place + Names{"-o", path("x.tif")}, too_far);
+  expect_refused(Names{"skyview", dem, "--engine", "sweep"} + place + Names{"-o", path("x.tif")},
+                 "metric plane of the centre");
+#ifdef SCARP_ERFA
+  const Names day{"sunhours", dem, "--date", "2026-06-21"};
+  expect_refused(day + place + Names{"-o", path("x.tif")}, too_far);
+  ASSERT_EQ(run(day + place + limits + Names{"--step", "240", "-o", path("d.tif")}).status, 0);
+  EXPECT_TRUE(open(path("d.tif"))->GetMetadataItem("BLOCKS"));
+#endif
 }
 
 #ifdef SCARP_ERFA

@@ -245,12 +245,14 @@ TEST_F(SkyMaps, SweepsStateTheirError) {
                  "--engine cannot be combined with --at");
 }
 
-// 1,200 km near 60 degrees north in Mercator's projection: no metric plane fits to half a cell, which maps do not need.
+// 1,200 km near 60 degrees north in Mercator's projection: no metric plane fits to half a cell.
 TEST_F(SkyMaps, SweepsWideRasters) {
   std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 7800000\ncellsize 20000\n";
   for (int i = 0; i < 60 * 60; ++i) text += fmt::format("{} ", 100 * (i % 7));
   const std::string wide = scratch_.write("wide.asc", text);
-  const auto result = run({"skyview", wide, "--crs", "EPSG:3857", "--engine", "sweep", "-o", path("wide.tif")});
+  const Names words{"skyview", wide, "--crs", "EPSG:3857", "--engine", "sweep", "-o", path("wide.tif")};
+  expect_refused(words, "--plane-error");
+  const auto result = run(words + Names{"--plane-error", "99"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("angles compared with exact ones"), std::string::npos) << result.out;
 }

@@ -355,7 +355,8 @@ void run(ShadowOptions options, const Command& command) {
   double lowest = std::numbers::pi / 2;
   std::optional<HorizonFrames> frames;
   if (!options.per_cell && !is_geographic(input.georeference())) {
-    frames.emplace(input, HorizonInput{}, options.plane_error,
+    // Lengths are those at the centre.
+    frames.emplace(input, HorizonInput{.max_distance = 0}, options.plane_error,
                    options.times.empty() ? FrameUse::north : FrameUse::suns);
     if (frames->single()) frames.reset();
   }

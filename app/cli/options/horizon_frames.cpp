@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <climits>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -25,7 +27,7 @@ namespace {
 // sun, or by what blocks of kLeastSide have.
 constexpr double kMostTurn = 0.05 / kDegreesPerRadian;
 constexpr int kLeastSide = 128, kLeastStrip = 16;
-// Share of --plane-error that the other rows of a strip may have.
+// Share of --plane-error that the other nodes of a strip or block may have.
 constexpr double kStripShare = 0.25;
 // Places per side at which scale and north of a raster are sampled.
 constexpr int kPlaces = 5;
@@ -60,14 +62,54 @@ double steepest(const std::array<double, kPlaces>& values, int cells) {
   return cells > 1 ? largest * (kPlaces - 1) / (cells - 1) : 0;
 }
 
+// Metres up to which samples of the raster matter.
+double reach_over(const MapInput& input, const HorizonInput& horizon) {
+  const Georeference& geo = input.georeference();
+  return std::min(horizon.reach(), std::hypot(input.cols() * geo.cell_x_m, input.rows() * geo.cell_y_m));
+}
+
+// The place `i` of kPlaces along an axis of `nodes`.
+double place_along(int nodes, std::size_t i) { return static_cast<double>(i) * (nodes - 1) / (kPlaces - 1); }
+
+// How far lengths and north of a raster differ over it: a quantity at kPlaces^2 places.
+class Variation {
+ public:
+  // `value`: of a position.
+  Variation(const MapInput& input, const std::function<double(double col, double row)>& value)
+      : cols_(input.cols()), rows_(input.rows()) {
+    for (std::size_t r = 0; r < kPlaces; ++r)
+      for (std::size_t c = 0; c < kPlaces; ++c)
+        by_row_[r][c] = by_col_[c][r] = value(place_along(cols_, c), place_along(rows_, r));
+  }
+  double largest() const {
+    double most = 0;
+    for (const auto& row : by_row_)
+      for (const double value : row) most = std::max(most, std::abs(value));
+    return most;
+  }
+  double per_col() const { return most_of(by_row_, cols_); }
+  double per_row() const { return most_of(by_col_, rows_); }
+
+ private:
+  using Values = std::array<std::array<double, kPlaces>, kPlaces>;
+  static double most_of(const Values& lines, int cells) {
+    double most = 0;
+    for (const auto& line : lines) most = std::max(most, steepest(line, cells));
+    return most;
+  }
+  int cols_, rows_;
+  Values by_row_{}, by_col_{};
+};
+
 }  // namespace
 
 HorizonFrames::HorizonFrames(MapInput& input, const HorizonInput& horizon, double plane_error, FrameUse use)
     : cols_(input.cols()), rows_(input.rows()), geographic_(is_geographic(input.georeference())) {
   if (geographic_) {
     divide_degrees(input, horizon, plane_error);
-  } else if (use != FrameUse::lengths) {
-    divide_by_north(input, horizon.swept());
+  } else {
+    divide_by_lengths(input, horizon, plane_error);
+    if (use != FrameUse::lengths) divide_by_north(input, horizon.swept());
   }
   if (use == FrameUse::suns && !horizon.swept()) {
     const Georeference& geo = input.georeference();
@@ -82,7 +124,7 @@ void HorizonFrames::divide_degrees(MapInput& input, const HorizonInput& horizon,
   const dvec2 centre = input.centre();
   const MetricPlane whole = MetricPlanes(geo, input.cols(), input.rows()).around(centre, HUGE_VAL);
   const bool is_plane = whole.error_cells <= plane_error;
-  const double reach = std::min(horizon.reach(), std::hypot(input.cols() * geo.cell_x_m, input.rows() * geo.cell_y_m));
+  const double reach = reach_over(input, horizon);
   // One plane, and its note; throws if it does not do.
   if (horizon.swept() || (!is_plane && !horizon.max_distance)) input.field_at(centre.x, centre.y, HUGE_VAL);
   if (horizon.swept()) return;
@@ -91,7 +133,7 @@ void HorizonFrames::divide_degrees(MapInput& input, const HorizonInput& horizon,
   std::array<double, kPlaces> lengths{};
   double error = is_plane ? whole.error_cells : 0;
   for (std::size_t i = 0; i < kPlaces; ++i) {
-    const double row = static_cast<double>(i) * (input.rows() - 1) / (kPlaces - 1);
+    const double row = place_along(input.rows(), i);
     lengths[i] = std::log(lengths_at(geo, centre.x, row).x);
     if (!is_plane) error = std::max(error, wide.around({input.cols() - 1.0, row}, reach).error_cells);
   }
@@ -114,20 +156,56 @@ void HorizonFrames::divide_degrees(MapInput& input, const HorizonInput& horizon,
   }
 }
 
+void HorizonFrames::divide_by_lengths(MapInput& input, const HorizonInput& horizon, double plane_error) {
+  const Georeference& geo = input.georeference();
+  const double reach = reach_over(input, horizon), cells = reach / std::min(geo.cell_x_m, geo.cell_y_m);
+  // Cells by which samples at the reach are displaced, on the plane of the centre.
+  const auto of_axis = [&](int axis) {
+    return Variation(input, [&geo, cells, axis](double col, double row) {
+      const dvec2 lengths = lengths_at(geo, col, row);
+      return cells * (axis == 0 ? std::log(lengths.x / geo.cell_x_m) : std::log(lengths.y / geo.cell_y_m));
+    });
+  };
+  const Variation x = of_axis(0), y = of_axis(1);
+  const double off_centre = std::max(x.largest(), y.largest());
+  if (off_centre <= kStripShare * plane_error) return;
+  const MetricPlanes planes(geo, input.cols(), input.rows());
+  const auto error_around = [&](double col, double row) {
+    return scale_at(geo, col, row) ? planes.around({col, row}, reach).error_cells : 0;
+  };
+  double error = Variation(input, error_around).largest();
+  if (horizon.swept()) {
+    error += off_centre;
+  } else {
+    const double per_col = std::max(x.per_col(), y.per_col()), per_row = std::max(x.per_row(), y.per_row());
+    // Half of the share for each axis.
+    const auto side = [&](double per_cell) {
+      return per_cell > 0 ? side_up_to(kStripShare * plane_error / per_cell, kLeastStrip) : INT_MAX;
+    };
+    cols_ = std::min(cols_, side(per_col)), rows_ = std::min(rows_, side(per_row));
+    error += (per_col * cols_ + per_row * rows_) / 2;
+  }
+  if (error <= plane_error) {
+    if (!horizon.swept() && (cols_ < input.cols() || rows_ < input.rows()))
+      input.notes.push_back(fmt::format(
+          "computed on metric planes, one for {} x {} pixels, samples up to {:.2g} cells off", cols_, rows_, error));
+    return;
+  }
+  throw Error(
+      fmt::format("{}: samples up to {:.10g} m away are up to {:.2g} cells off the metric plane of {}, limit "
+                  "{} ({}; or raise --plane-error)",
+                  input.path(), reach, error, horizon.swept() ? "the centre" : "a block", plane_error,
+                  horizon.swept() ? "use --engine exact with --max-distance" : "set a smaller --max-distance"));
+}
+
 void HorizonFrames::divide_by_north(MapInput& input, bool swept) {
   const Georeference& geo = input.georeference();
-  std::array<std::array<double, kPlaces>, kPlaces> by_row{}, by_col{};
-  double off = 0, per_col = 0, per_row = 0;
-  for (std::size_t r = 0; r < kPlaces; ++r) {
-    for (std::size_t c = 0; c < kPlaces; ++c) {
-      const double col = static_cast<double>(c) * (input.cols() - 1) / (kPlaces - 1);
-      const auto scale = scale_at(geo, col, static_cast<double>(r) * (input.rows() - 1) / (kPlaces - 1));
-      const double north = scale ? scale->grid_north_azimuth : geo.grid_north_azimuth;
-      const double turn = std::remainder(north - geo.grid_north_azimuth, 2 * std::numbers::pi);
-      by_row[r][c] = by_col[c][r] = turn;
-      off = std::max(off, std::abs(turn));
-    }
-  }
+  const Variation turn(input, [&](double col, double row) {
+    const auto scale = scale_at(geo, col, row);
+    const double north = scale ? scale->grid_north_azimuth : geo.grid_north_azimuth;
+    return std::remainder(north - geo.grid_north_azimuth, 2 * std::numbers::pi);
+  });
+  const double off = turn.largest();
   north_off_ = off;
   if (off <= kMostTurn) return;
   if (swept) {
@@ -137,9 +215,7 @@ void HorizonFrames::divide_by_north(MapInput& input, bool swept) {
                     off * kDegreesPerRadian));
     return;
   }
-  for (std::size_t i = 0; i < kPlaces; ++i)
-    per_col = std::max(per_col, steepest(by_row[i], input.cols())),
-    per_row = std::max(per_row, steepest(by_col[i], input.rows()));
+  const double per_col = turn.per_col(), per_row = turn.per_row();
   const int side = side_up_to(2 * kMostTurn / (per_col + per_row), kLeastSide);
   cols_ = std::min(cols_, side), rows_ = std::min(rows_, side);
   north_off_ = (per_col * cols_ + per_row * rows_) / 2;
@@ -158,8 +234,10 @@ std::vector<HorizonFrame> HorizonFrames::of(MapInput& input, const RowBand& rows
                          geo.grid_north_azimuth,
                          {0.5 * (col + col_end - 1), 0.5 * (row + row_end - 1)}};
       if (geographic_) frame.cells = lengths_at(geo, frame.middle.x, frame.middle.y);
-      if (const auto scale = single_ ? std::nullopt : scale_at(geo, frame.middle.x, frame.middle.y))
+      if (const auto scale = single_ ? std::nullopt : scale_at(geo, frame.middle.x, frame.middle.y)) {
         frame.grid_north = scale->grid_north_azimuth;
+        frame.cells = lengths_at(geo, frame.middle.x, frame.middle.y);
+      }
       frames.push_back(frame);
     }
   }
@@ -168,9 +246,10 @@ std::vector<HorizonFrame> HorizonFrames::of(MapInput& input, const RowBand& rows
 
 Metadata HorizonFrames::metadata() const {
   if (single_) return {};
-  return {{"BLOCKS", fmt::format("{} x {} pixels, each with the cell lengths and the north at its middle; north within "
-                                 "{:.2g} degrees",
-                                 cols_, rows_, north_off_ * kDegreesPerRadian)}};
+  const std::string north = north_off_ ? fmt::format(" and the north at its middle; north within {:.2g} degrees",
+                                                     *north_off_ * kDegreesPerRadian)
+                                       : " at its middle";
+  return {{"BLOCKS", fmt::format("{} x {} pixels, each with the cell lengths{}", cols_, rows_, north)}};
 }
 
 void for_each_frame(const std::vector<HorizonFrame>& frames,

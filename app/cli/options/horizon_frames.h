@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Blocks of a raster for maps of horizons and shadows, each with the cell lengths and the north at its middle:
 //
-//   projected rasters   blocks in which grid north turns against true north by little; the lengths are those at the
-//                       centre of the raster
+//   projected rasters   blocks in which the lengths of cells change by little, and for azimuths also grid north against
+//                       true north
 //   degrees             strips of rows, in which a step along the columns has nearly the same length; north is up
 //   a sun per pixel     also blocks in which the zenith turns by little
 //
@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,16 @@ enum class FrameUse : std::uint8_t { lengths, north, suns };
 
 class HorizonFrames {
  public:
-  /// Before samples are read. `plane_error`: that of MapOptions. Throws Error for degrees if samples within the reach
-  /// of `horizon` are displaced by more.
+  /// Before samples are read. `plane_error`: that of MapOptions. Throws Error if samples within the reach of `horizon`
+  /// are displaced by more.
   HorizonFrames(MapInput& input, const HorizonInput& horizon, double plane_error, FrameUse use);
 
   /// The blocks that cover rows of the part that was read.
   std::vector<HorizonFrame> of(MapInput& input, const RowBand& rows) const;
+
+  /// Columns and rows of a block.
+  int cols() const { return cols_; }
+  int rows() const { return rows_; }
 
   /// Whether one block covers the raster.
   bool single() const { return single_; }
@@ -48,11 +53,12 @@ class HorizonFrames {
 
  private:
   void divide_degrees(MapInput& input, const HorizonInput& horizon, double plane_error);
+  void divide_by_lengths(MapInput& input, const HorizonInput& horizon, double plane_error);
   void divide_by_north(MapInput& input, bool swept);
 
   int cols_, rows_;  // of a block
   bool geographic_ = false, single_ = true;
-  double north_off_ = 0;  // radians between a corner of a block and its middle
+  std::optional<double> north_off_;  // radians between a corner of a block and its middle; nullopt: not a property
 };
 
 /// Calls body(frame, progress) for each frame, on all threads at once.
