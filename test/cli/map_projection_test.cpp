@@ -302,6 +302,22 @@ SubsolarPoint subsolar(double days_since_2000, double utc_hours) {
 }
 
 // A tower at a pole: its shadow lies opposite to the meridian of the sun.
+// Blocks are swept over all ground that may shade them: the more, the lower their sun.
+TEST_F(MapProjection, DryRunsOfShadowsCountWhatBlocksDependOn) {
+  const std::string dem = path("dem.vrt");
+  scratch_.write("dem.vrt", R"(<VRTDataset rasterXSize="20000" rasterYSize="20000"><SRS>EPSG:32633</SRS>
+<GeoTransform>200000, 30, 0, 5600000, 0, -30</GeoTransform><VRTRasterBand dataType="Int16" band="1"/></VRTDataset>)");
+  const auto seconds = [&](const std::string& sun) {
+    const auto result = run({"shadow", dem, "--sun", sun, "--dry-run", "-o", path("x.tif")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return std::strtod(result.out.c_str() + result.out.find("memory") + std::string("memory and ").size(), nullptr);
+  };
+  const double high = seconds("180,89.9"), low = seconds("180,10"), diagonal = seconds("135,10");
+  EXPECT_GT(high, 1);
+  EXPECT_GT(low, 1.5 * high);
+  EXPECT_GT(diagonal, low);
+}
+
 TEST_F(MapProjection, ShadowsAtPolesPointAwayFromTheSun) {
   struct Pole {
     int epsg;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "app/cli/picture/figure.h"
 #include "app/cli/picture/film.h"
 #include "app/cli/picture/render_run.h"
+#include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/frame/picture_request.h"
@@ -99,6 +101,8 @@ void run_frames(RenderOptions& options, Command& command) {
 
 void run(RenderOptions& options, Command& command) {
   const ThreadLimit limit(options.threads);
+  const auto silence = options.quiet ? std::make_optional<SilentProgress>() : std::nullopt;
+  options.frames.quiet = options.quiet;
   if (!is_film(options.output)) return run_frames(options, command);
   if (!options.frames.several()) {
     throw Error(fmt::format("output '{}': a film needs frames (add --animate, --turntable or --path, or name it *.png)",

@@ -290,6 +290,21 @@ double node_seconds(const ShadowOptions& options) {
   return codes * (!options.fraction ? 1 : options.per_cell ? 2 : 16);
 }
 
+// Samples over which a block's sun sweeps, divided by those of the block: the more, the lower the sun. An estimate for
+// ground of usual relief, as no samples have been read.
+double swept_share(const MapInput& input, const HorizonFrames& frames, const Sun& sun) {
+  constexpr double kUsualRelief = 1000;              // metres
+  constexpr double kLowest = 1 / kDegreesPerRadian;  // of a sun over the middle, radians
+  const SunDirection there = sun.at_block({{}, {}, 0, input.centre()});
+  const double reach = kUsualRelief / std::tan(std::max(there.altitude, kLowest));
+  const auto share = [&](int side, int all, double cell, double towards) {
+    return std::min(side + reach * std::abs(towards) / cell, static_cast<double>(all)) / side;
+  };
+  const Georeference& geo = input.georeference();
+  return share(frames.cols(), input.cols(), geo.cell_x_m, std::sin(there.azimuth)) *
+         share(frames.rows(), input.rows(), geo.cell_y_m, std::cos(there.azimuth));
+}
+
 // Pixels of all bands.
 struct LitPixels {
   double lit = 0, with_sample = 0;
@@ -363,7 +378,9 @@ void run(ShadowOptions options, const Command& command) {
   const std::vector<Sun> suns = suns_of(input, options, frames.has_value(), lowest);
   run.set_rows([&](const RowBand& band) { return rows_towards_suns(input, suns, options, frames, band); });
   const auto bands = static_cast<double>(suns.size());
-  if (!run.begin(bands * (options.fraction ? 4 : 1) + 1, bands * node_seconds(options))) return;
+  double sweeps = 0;
+  for (const Sun& sun : suns) sweeps += frames ? swept_share(input, *frames, sun) : 1;
+  if (!run.begin(bands * (options.fraction ? 4 : 1) + 1, sweeps * node_seconds(options))) return;
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
   LitPixels pixels;

@@ -170,8 +170,9 @@ void make_frames(const FrameOptions& o, const std::string& output, int frames,
     if (film) o.add_to_film();
     if (progress) progress((i + 1.0) / frames);
   }
+  if (film) o.end_film();
+  if (o.quiet) return;
   if (film) {
-    o.end_film();
     fmt::print("{}: {} frames, {:g} per second\n", o.film, frames, o.per_second);
     return;
   }

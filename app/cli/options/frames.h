@@ -21,6 +21,7 @@ struct FrameOptions {
   double per_second = 25;                           // of films
   std::string film{};                               // output that the frames are for; empty: the frames themselves
   std::function<void()> add_to_film{}, end_film{};  // after each frame, and after the last
+  bool quiet = false;                               // no summary
 
   /// Whether the frames have their own cameras.
   bool fly() const { return turntable || !path.empty(); }

@@ -336,6 +336,7 @@ void declare_picture(Command& command, RenderOptions& o, bool written) {
                                   "error and height",
                           .rules = {{"describes one picture, without --path, --turntable or --animate",
                                      [&o] { return !o.frames.several(); }}}});
+    add_quiet_option(command, o.quiet, {"--json"});
   }
   add_mesh_options(command, o.mesh);
   add_vox_options(command, o.vox);

@@ -60,7 +60,7 @@ struct RenderOptions : InputOptions {
   FigureOptions figure;
   std::string voxel_drawing = "compute";
   bool no_plinth = false;
-  bool json = false;
+  bool json = false, quiet = false;
   std::vector<std::string> compared;  ///< marches, a strip of the picture each; empty: `march` alone
   bool full = false;                  ///< reads all samples of large rasters
   int threads = 0;

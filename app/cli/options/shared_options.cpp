@@ -41,4 +41,9 @@ void add_json_option(Command& command, bool& json) {
   command.add(&json, {.names = "--json", .help = "one JSON object instead of text", .common = true});
 }
 
+void add_quiet_option(Command& command, bool& quiet, const std::vector<std::string>& excludes, bool common) {
+  command.add(&quiet,
+              {.names = "--quiet", .help = "no summary, notes and progress", .common = common, .excludes = excludes});
+}
+
 }  // namespace scarp::cli

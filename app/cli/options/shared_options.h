@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/options/command.h"
 
@@ -17,5 +18,9 @@ void add_threads_option(Command& command, int& threads);
 void add_tone_option(Command& command, Binding to, const std::string& output, Topic topic, Looks looks = {});
 /// Declares --json.
 void add_json_option(Command& command, bool& json);
+
+/// Declares --quiet. With it, the subcommand prints nothing but errors and warnings, and creates a SilentProgress.
+void add_quiet_option(Command& command, bool& quiet, const std::vector<std::string>& excludes = {},
+                      bool common = false);
 
 }  // namespace scarp::cli

@@ -9,6 +9,7 @@
 
 #include "app/cli/options/kept_inputs.h"
 #include "app/cli/options/part_number.h"
+#include "app/cli/options/shared_options.h"
 #include "app/cli/picture/map_preview.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -48,11 +49,6 @@ void add_dry_run_option(Command& command, bool& dry_run, const std::vector<std::
                          .help = "print size and estimated cost, and write nothing",
                          .common = common,
                          .excludes = excludes});
-}
-
-void add_quiet_option(Command& command, bool& quiet, const std::vector<std::string>& excludes, bool common) {
-  command.add(&quiet,
-              {.names = "--quiet", .help = "no summary, notes and progress", .common = common, .excludes = excludes});
 }
 
 void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes) {

@@ -37,9 +37,6 @@ void add_format_options(Command& command, FormatOptions& options, const std::vec
 /// Declares --dry-run.
 void add_dry_run_option(Command& command, bool& dry_run, const std::vector<std::string>& excludes = {},
                         bool common = false);
-/// Declares --quiet. With it, the subcommand prints nothing and creates a SilentProgress.
-void add_quiet_option(Command& command, bool& quiet, const std::vector<std::string>& excludes = {},
-                      bool common = false);
 /// Declares all of these, --part, --resume and --preview.
 void add_raster_output_options(Command& command, RasterOutput& options, const std::vector<std::string>& excludes = {});
 

@@ -53,6 +53,10 @@ class Render {
     const Picture picture = make(file, options().output, settings, camera, terminal_progress("render"));
     look_for_mesh(settings, camera);
     const double render_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (options().quiet) {
+      blank_.tell();
+      return;
+    }
     print_notes(notes());
     tell_of_contours(settings, camera);
     if (!blank_.tell()) tell_if_buried(camera, "the eye");
@@ -125,11 +129,11 @@ class Render {
       const int blank_before = blank_.count();
       make(file, frame.shown, prepared_.picture(), camera, [](double) { return caught_signal() == 0; });
       look_for_mesh(prepared_.picture(), camera);
-      if (!format().layers && blank_.count() == blank_before)
+      if (!options().quiet && !format().layers && blank_.count() == blank_before)
         tell_if_buried(camera, fmt::format("the eye of '{}'", frame.shown));
     });
-    print_notes(notes());
-    if (!cameras.empty()) tell_of_contours(prepared_.picture(), cameras.front());
+    if (!options().quiet) print_notes(notes());
+    if (!options().quiet && !cameras.empty()) tell_of_contours(prepared_.picture(), cameras.front());
     blank_.tell();
   }
 
@@ -245,7 +249,7 @@ void render_animation(InputKind kind, const RenderOptions& options,
     render.make_frame(file.shown);
     if (!notes) notes = render.notes();
   });
-  if (notes) print_notes(*notes);
+  if (notes && !options.quiet) print_notes(*notes);
   blank.tell();
 }
 
