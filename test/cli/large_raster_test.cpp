@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of rasters with more samples than they show.
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -117,6 +118,20 @@ TEST(LargeRaster, IsReadAlongLinesOfSight) {
   ASSERT_EQ(seen.status, 0) << seen.err;
   EXPECT_LT(seen.peak, 100u << 20);
   EXPECT_EQ(test::rows_of(seen.out)[0].at("visible"), "1");
+}
+
+// The blocks of a file take more memory than those of a virtual raster.
+TEST(LargeRaster, KeepsFewBlocksOfFilesAlongLines) {
+  GDALAllRegister();
+  const test::Scratch scratch;
+  const std::string dem = scratch.path("flat.tif");
+  constexpr int kSide = 40000;
+  char* options[] = {const_cast<char*>("TILED=YES"), const_cast<char*>("SPARSE_OK=TRUE"), nullptr};
+  GDALDatasetUniquePtr(
+      GetGDALDriverManager()->GetDriverByName("GTiff")->Create(dem.c_str(), kSide, kSide, 1, GDT_Int16, options));
+  const auto seen = test::run({"los", dem, "--coords", "local", "--from", "3,39997,2", "--to", "39998,5,2"});
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_LT(seen.peak, 100u << 20);
 }
 
 // A line alone is read along itself; with many others, all of the raster is read at once.

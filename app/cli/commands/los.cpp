@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,6 +27,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
+#include "scarp/source/raster/block_cache.h"
 #include "scarp/source/whole_file.h"
 
 namespace scarp::cli {
@@ -254,6 +256,9 @@ RasterWindow window_of(const NodeRect& nodes) {
 // Tests lines one after the other, each over parts along it.
 void test_along(MapInput& input, const PlaceTable& table, std::span<const std::size_t> lines, RowStatus& status,
                 std::vector<Answer>& answers, std::optional<double> frequency, BareGround* bare) {
+  // Parts share few blocks: GDAL's usual cache would be most of the memory.
+  constexpr std::int64_t kBlocks = 16 << 20;
+  const BlockCacheLimit few(kBlocks);
   const SightParts parts(input.cols(), input.rows());
   const auto stand = [&](SightEnd& end, std::string_view who) {
     input.read(window_of(parts.around(end)), {});

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/incomplete_file.h"
+#include "scarp/source/raster/block_cache.h"
 #include "scarp/source/raster/vrt_sources.h"
 
 namespace scarp {
@@ -95,5 +96,11 @@ bool is_empty_piece(GDALRasterBand& band, const RasterWindow& piece) {
   return band.GetDataCoverageStatus(piece.col, piece.row, piece.cols, piece.rows, 0, nullptr) ==
          GDAL_DATA_COVERAGE_STATUS_EMPTY;
 }
+
+BlockCacheLimit::BlockCacheLimit(std::int64_t bytes) : before_(GDALGetCacheMax64()) {
+  if (before_ > bytes) GDALSetCacheMax64(bytes);
+}
+
+BlockCacheLimit::~BlockCacheLimit() { GDALSetCacheMax64(before_); }
 
 }  // namespace scarp
