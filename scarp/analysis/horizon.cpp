@@ -2,11 +2,13 @@
 #include "scarp/analysis/horizon.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
 #include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
+#include "scarp/base/array_files.h"
 #include "scarp/base/error.h"
 #include "scarp/base/setting.h"
 
@@ -17,6 +19,7 @@ void validate(const HorizonSettings& settings) {
   require_setting("horizon", settings.eye_height >= 0 && std::isfinite(settings.eye_height), "eye height",
                   settings.eye_height, "finite, at least 0");
   require_setting("horizon", settings.max_distance > 0, "maximum distance", settings.max_distance, "above 0");
+  require_setting("horizon", settings.memory > 0, "memory", settings.memory, "above 0");
   if (settings.engine == HorizonEngine::sweep && std::isfinite(settings.max_distance))
     throw Error("horizon: the engine sweep has no maximum distance (choose exact, or an infinite distance)");
   validate(settings.curvature);
@@ -30,7 +33,7 @@ Horizons::Horizons(const HeightField& field, const HorizonSettings& settings, co
             settings,
             {field.settings().cell_x, field.settings().cell_y},
             std::make_shared<const HorizonRelief>(field, settings.engine, 1, static_cast<float>(settings.eye_height),
-                                                  progress)});
+                                                  settings.memory, progress)});
 }
 
 Horizons Horizons::with_cells(double cell_x, double cell_y) const {
@@ -59,25 +62,21 @@ HorizonRows Horizons::block(double azimuth, const NodeRect& nodes, bool distance
     for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row, slopes += width, entries += width) {
       const auto at =
           static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
-      find_angles(slopes, width, &found.angle[at]);
-      for (std::size_t i = 0; distances && i < width; ++i)
-        found.distance[at + i] = entries[i] < 0 ? std::numeric_limits<float>::quiet_NaN() : block.distances[entries[i]];
+      find_angles(slopes, width, ArrayPiece(&found.angle[at], width).data());
+      if (!distances) continue;
+      ArrayPiece to(&found.distance[at], width);
+      for (std::size_t i = 0; i < width; ++i)
+        to[i] = entries[i] < 0 ? std::numeric_limits<float>::quiet_NaN() : block.distances[entries[i]];
     }
   };
   for_each_horizon(*state_, *state_->relief, {&azimuth, 1}, nodes, keep, progress);
   return found;
 }
 
-std::optional<HorizonView> horizon_from(const HeightField& field, double col, double row, double azimuth,
-                                        const HorizonSettings& settings, const std::optional<dvec2>& cells) {
-  validate(settings);
-  require_setting("horizon", std::isfinite(azimuth), "azimuth", azimuth, "finite");
-  const SightGround ground(field, col, row, settings.curvature, cells);
-  const auto here = ground.height_at(col, row);
-  if (!here) return std::nullopt;
-  const double eye = *here + settings.eye_height;
+HorizonView horizon_over(const HeightField& field, const dvec2& cells, double col, double row, double azimuth,
+                         double eye, double max_distance, const std::function<std::optional<double>(Node)>& lowered) {
   // Cells per metre.
-  const dvec2 step(std::sin(azimuth) / ground.cells().x, -std::cos(azimuth) / ground.cells().y);
+  const dvec2 step(std::sin(azimuth) / cells.x, -std::cos(azimuth) / cells.y);
   double best = -std::numeric_limits<double>::infinity();
   HorizonView view;
   const auto cross_lines = [&](bool of_columns) {
@@ -94,11 +93,13 @@ std::optional<HorizonView> horizon_from(const HeightField& field, double col, do
       // Within rounding of a node, it is the node.
       if (std::abs(place - std::round(place)) <= HeightField::rounding_of_line(place, across + lines))
         place = std::round(place);
-      if (distance > settings.max_distance || place < 0 || place > across - 1) break;
+      if (distance > max_distance || place < 0 || place > across - 1) break;
       const int low = static_cast<int>(place);
       const double w = place - low;
-      const auto lowered = [&](int at) { return ground.lowered(of_columns ? Node{line, at} : Node{at, line}); };
-      const auto a = lowered(low), b = w > 0 ? lowered(low + 1) : a;
+      const auto at = [&](int beside_line) {
+        return lowered(of_columns ? Node{line, beside_line} : Node{beside_line, line});
+      };
+      const auto a = at(low), b = w > 0 ? at(low + 1) : a;
       if (!a || !b) continue;
       const double slope = (*a + w * (*b - *a) - eye) / distance;
       if (slope > best || (slope == best && view.distance && distance < *view.distance))
@@ -108,6 +109,17 @@ std::optional<HorizonView> horizon_from(const HeightField& field, double col, do
   cross_lines(true), cross_lines(false);
   view.angle = std::atan(best);
   return view;
+}
+
+std::optional<HorizonView> horizon_from(const HeightField& field, double col, double row, double azimuth,
+                                        const HorizonSettings& settings, const std::optional<dvec2>& cells) {
+  validate(settings);
+  require_setting("horizon", std::isfinite(azimuth), "azimuth", azimuth, "finite");
+  const SightGround ground(field, col, row, settings.curvature, cells);
+  const auto here = ground.height_at(col, row);
+  if (!here) return std::nullopt;
+  return horizon_over(field, ground.cells(), col, row, azimuth, *here + settings.eye_height, settings.max_distance,
+                      [&](Node node) { return ground.lowered(node); });
 }
 
 }  // namespace scarp

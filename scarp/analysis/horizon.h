@@ -35,6 +35,10 @@ struct HorizonSettings {
   double max_distance = std::numeric_limits<double>::infinity();  ///< metres; ground farther away does not count; > 0
   SightCurvature curvature{};
   HorizonEngine engine = HorizonEngine::exact;
+  /// Bytes for the heights and what is built from them, above 0. If they take more, strips of the ground are copied
+  /// from an array of 4 bytes per node, which the caller may keep in a file, and dropped after use. The results are the
+  /// same.
+  double memory = std::numeric_limits<double>::infinity();
 };
 
 /// Nodes [col_begin, col_end) x [row_begin, row_end).
@@ -57,8 +61,9 @@ struct HorizonRows {
 class Horizons {
  public:
   /// Copies the heights, as floats, and builds maxima over them: about 9 bytes per node, and 512 per row and column of
-  /// the border. The engine sweep keeps two copies, 8 bytes per node. Throws Error for a wrapped field, a side above
-  /// kMaxSightSide, a setting out of range, and a maximum distance for the engine sweep; Interrupted.
+  /// the border. The engine sweep keeps two copies, 8 bytes per node. HorizonSettings::memory limits both. Throws Error
+  /// for a wrapped field, a side above kMaxSightSide, a setting out of range, and a maximum distance for the engine
+  /// sweep; Interrupted.
   explicit Horizons(const HeightField& field, const HorizonSettings& settings = {}, const Progress& progress = {});
 
   /// Rows [first, last) for an azimuth in radians clockwise from grid north, finite. Runs on all threads. Throws Error

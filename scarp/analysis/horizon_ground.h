@@ -9,6 +9,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "scarp/analysis/horizon_heights.h"
@@ -21,6 +23,19 @@ inline constexpr int kGroupCols = 16, kGroupRows = 2;
 
 class HorizonGround {
  public:
+  /// Maxima of a level; -inf over a window without ground. `corner` counts strides, and may be before the first sample.
+  struct Maxima {
+    LargeVector<float> values;
+    std::ptrdiff_t pitch = 0;
+    int first = 0;              // corner of the first value, in strides; not of strips
+    std::ptrdiff_t origin = 0;  // place of corner (0, 0)
+    const float* at(int corner_col, int corner_row) const {
+      return &values[static_cast<std::size_t>(corner_row * pitch + corner_col + origin)];
+    }
+  };
+  /// Levels 1, 2, ...
+  using CoarseMaxima = std::vector<Maxima>;
+
   /// Steps of a segment of a level.
   static constexpr int steps_of(int level) { return 8 << (2 * level); }
   /// Distance of the corners of windows, in samples.
@@ -30,28 +45,28 @@ class HorizonGround {
   /// Interrupted.
   HorizonGround(const HeightField& field, int sign, float eye, const Progress& progress = {});
 
+  /// The ground of a strip, with coarse levels of the whole field. `memory`: as of HorizonHeights.
+  HorizonGround(HorizonHeights strip, float eye, std::shared_ptr<const CoarseMaxima> coarse, LargeVector<float> memory);
+  std::pair<LargeVector<float>, LargeVector<float>> release() {
+    return {heights_.release(), std::move(finest_.values)};
+  }
+  static CoarseMaxima coarse_maxima(const HorizonTiles& tiles, float eye, const Progress& progress);
+  /// Bytes of these levels, while they are built.
+  static double coarse_bytes(int cols, int rows);
+  static int levels_of(int cols, int rows);
+
   const HorizonHeights& heights() const { return heights_; }
   int cols() const { return heights_.cols(); }
   int rows() const { return heights_.rows(); }
-  int levels() const { return static_cast<int>(levels_.size()); }
-
-  /// Maxima of a level; -inf over a window without ground. `corner` counts strides, and may be before the first sample.
-  struct Maxima {
-    LargeVector<float> values;
-    std::ptrdiff_t pitch = 0;
-    int first = 0;  // corner of the first value, in strides
-    const float* at(int corner_col, int corner_row) const {
-      return &values[static_cast<std::size_t>((corner_row - first) * pitch + (corner_col - first))];
-    }
-  };
-  const Maxima& maxima(int level) const { return levels_[static_cast<std::size_t>(level)]; }
+  int levels() const { return 1 + static_cast<int>(coarse_->size()); }
+  const Maxima& maxima(int level) const {
+    return level == 0 ? finest_ : (*coarse_)[static_cast<std::size_t>(level) - 1];
+  }
 
  private:
-  void build_first(float above, const Progress& progress);
-  void build_coarser(int level);
-
   HorizonHeights heights_;
-  std::vector<Maxima> levels_;
+  Maxima finest_;
+  std::shared_ptr<const CoarseMaxima> coarse_;
 };
 
 }  // namespace scarp

@@ -7,14 +7,14 @@
 
 namespace scarp {
 
-HorizonTable::HorizonTable(const HorizonGround& ground, const HorizonCrossings& crossings)
+HorizonTable::HorizonTable(const HorizonLayout& heights, const HorizonCrossings& crossings)
     : col_sign_(crossings.col_sign()), row_sign_(crossings.row_sign()) {
-  const std::ptrdiff_t pitch = ground.heights().pitch();
+  const std::ptrdiff_t pitch = heights.pitch;
   entries_.reserve(crossings.all().size());
   for (const HorizonCrossing& c : crossings.all()) {
     distances_.push_back(static_cast<float>(c.steps * crossings.step()));
     entries_.push_back({c.row * pitch + c.col, static_cast<std::int32_t>(c.second_row * pitch + c.second_col), c.w,
-                        c.per_distance, static_cast<float>(ground.heights().sign()) * c.drop});
+                        c.per_distance, static_cast<float>(heights.sign) * c.drop});
   }
   const bool along_columns = crossings.along_columns();
   const auto counts = [](int lines, const auto& count) {
@@ -24,14 +24,15 @@ HorizonTable::HorizonTable(const HorizonGround& ground, const HorizonCrossings& 
   };
   const auto to_major = [&](int i) { return crossings.count_to_major(i); };
   const auto to_minor = [&](int i) { return crossings.tilt() > 0 ? crossings.count_to_minor(i) : entries_.size(); };
-  by_col_ = along_columns ? counts(ground.cols(), to_major) : counts(ground.cols(), to_minor);
-  by_row_ = along_columns ? counts(ground.rows(), to_minor) : counts(ground.rows(), to_major);
+  by_col_ = along_columns ? counts(heights.cols, to_major) : counts(heights.cols, to_minor);
+  by_row_ = along_columns ? counts(heights.rows, to_minor) : counts(heights.rows, to_major);
   const double per_row = along_columns ? 0 : (1 + crossings.tilt()) * kGroupRows;
   shift_ = static_cast<std::int32_t>(std::lround(per_row)) * -row_sign_;
 
-  segments_.resize(static_cast<std::size_t>(ground.levels()));
+  const int levels = HorizonGround::levels_of(heights.cols, heights.rows);
+  segments_.resize(static_cast<std::size_t>(levels));
   const double steps = crossings.all().empty() ? 0 : crossings.all().back().steps;
-  for (int level = 0; level < ground.levels(); ++level) {
+  for (int level = 0; level < levels; ++level) {
     const int length = HorizonGround::steps_of(level), window = length + 2;
     for (int p = 0; p * length <= steps; ++p) {
       Segment to{};

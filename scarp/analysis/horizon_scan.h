@@ -32,7 +32,9 @@ namespace scarp {
 /// The crossings of an azimuth with offsets in the memory of a ground, and the segments of its levels.
 class HorizonTable {
  public:
-  HorizonTable(const HorizonGround& ground, const HorizonCrossings& crossings);
+  HorizonTable(const HorizonGround& ground, const HorizonCrossings& crossings)
+      : HorizonTable(ground.heights().layout(), crossings) {}
+  HorizonTable(const HorizonLayout& heights, const HorizonCrossings& crossings);
 
   struct Entry {
     std::ptrdiff_t first;  ///< samples from the node to the first sample

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -22,10 +23,8 @@ constexpr int kStripCols = 256, kBlockRows = 128;
 // Tables of this many azimuths are kept at once: 28 bytes per crossing.
 constexpr std::size_t kTablesAtOnce = 64;
 
-using Body = std::function<void(const HorizonBlock&)>;
-
 void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-          const NodeRect& nodes, const Body& body, const Progress& progress) {
+          const NodeRect& nodes, const HorizonBody& body, const Progress& progress) {
   const HorizonGround& ground = *relief.ground;
   const std::int64_t across = (nodes.col_end - nodes.col_begin + kStripCols - 1) / kStripCols;
   const std::int64_t down = (nodes.row_end - nodes.row_begin + kBlockRows - 1) / kBlockRows;
@@ -54,10 +53,11 @@ void scan(const Horizons::State& state, const HorizonRelief& relief, std::span<c
 }
 
 // Collects the horizons of neighbouring columns, one after another, and passes them on by rows.
+template <int kCols>
 class CollectedColumns {
  public:
   // `ascending`: whether columns come from west to east.
-  CollectedColumns(std::size_t azimuth, bool ascending, const float* distances, const Body& body)
+  CollectedColumns(std::size_t azimuth, bool ascending, const float* distances, const HorizonBody& body)
       : azimuth_(azimuth), ascending_(ascending), distances_(distances), body_(body) {}
 
   void add(int col, int row, int count, const float* slopes, const std::int32_t* entries) {
@@ -90,12 +90,12 @@ class CollectedColumns {
   }
 
  private:
-  static constexpr int kCols = 16, kRows = kSweptLines + 2 * kCols;
+  static constexpr int kRows = kSweptLines + 2 * kCols;
 
   const std::size_t azimuth_;
   const bool ascending_;
   const float* const distances_;
-  const Body& body_;
+  const HorizonBody& body_;
   int count_ = 0, first_col_ = 0, first_row_ = 0;
   int begin_[kRows], end_[kRows];  // columns that a row has
   float slopes_[kRows][kCols];
@@ -103,50 +103,117 @@ class CollectedColumns {
 };
 
 void sweep(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-           const NodeRect& nodes, const Body& body, const Progress& progress) {
+           const NodeRect& nodes, const HorizonBody& body, const Progress& progress) {
   for (std::size_t i = 0; i < azimuths.size(); ++i) {
     const HorizonCrossings crossings = state.crossings(azimuths[i]);
-    const bool transposed = crossings.along_columns();
-    const HorizonHeights& heights = transposed ? *relief.transposed : *relief.heights;
+    const HorizonHeights& heights = crossings.along_columns() ? *relief.transposed : *relief.heights;
     const SweepTable table(heights, crossings);
-    // In the rows and columns of the heights.
-    const NodeRect inner =
-        transposed ? NodeRect{nodes.row_begin, nodes.col_begin, nodes.row_end, nodes.col_end} : nodes;
-    // Rows nearer than the nodes hide nothing in them.
-    const int visits = table.row_sign() > 0 ? heights.rows() - inner.row_begin : inner.row_end;
-    const int drift = swept_place(table, visits - 1).nearest;
-    const int first = inner.col_begin - std::max(drift, 0), last = inner.col_end - std::min(drift, 0);
+    const SweptNodes swept(i, crossings.along_columns(), table, heights.rows(), nodes);
     const auto strips = [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t strip = begin; strip < end; ++strip) {
-        CollectedColumns columns(i, table.row_sign() < 0, table.distances().data(), body);
-        const SweepSink sink = [&](int col, int row, int count, const float* slopes, const std::int32_t* entries) {
-          const int before = std::max(inner.col_begin - col, 0), behind = std::max(col + count - inner.col_end, 0);
-          if (row < inner.row_begin || row >= inner.row_end || before + behind >= count) return;
-          const int to = col + before, kept = count - before - behind;
-          if (transposed) {
-            columns.add(row, to, kept, slopes + before, entries + before);
-          } else {
-            body({{to, row, to + kept, row + 1}, i, slopes + before, entries + before, table.distances().data()});
-          }
-        };
-        sweep_horizons(heights, table, relief.eye, first + static_cast<int>(strip) * kSweptLines, visits, sink);
-        columns.pass_on();
-      }
+      for (std::int64_t strip = begin; strip < end; ++strip)
+        sweep_lines(heights, table, relief.eye, swept, strip, body, false);
     };
-    parallel_for((last - first + kSweptLines - 1) / kSweptLines, 1, strips,
+    parallel_for(swept.strips, 1, strips,
                  progress_part(progress, static_cast<double>(i), static_cast<double>(azimuths.size())));
   }
 }
 
 }  // namespace
 
-HorizonRelief::HorizonRelief(const HeightField& field, HorizonEngine engine, int sign, float eye_height,
+SweptNodes::SweptNodes(std::size_t of_azimuth, bool is_transposed, const SweepTable& table, int rows,
+                       const NodeRect& nodes)
+    : azimuth(of_azimuth),
+      transposed(is_transposed),
+      inner(transposed ? NodeRect{nodes.row_begin, nodes.col_begin, nodes.row_end, nodes.col_end} : nodes),
+      visits(table.row_sign() > 0 ? rows - inner.row_begin : inner.row_end) {
+  const int drift = swept_place(table, visits - 1).nearest;
+  first_line = inner.col_begin - std::max(drift, 0);
+  strips = (inner.col_end - std::min(drift, 0) - first_line + kSweptLines - 1) / kSweptLines;
+}
+
+void sweep_lines(const HorizonHeights& heights, const SweepTable& table, float eye, const SweptNodes& swept,
+                 std::int64_t strip, const HorizonBody& body, bool long_rows) {
+  const float* distances = table.distances().data();
+  const auto run = [&](const auto& pass_on) {
+    const SweepSink sink = [&](int col, int row, int count, const float* slopes, const std::int32_t* entries) {
+      const NodeRect& inner = swept.inner;
+      const int before = std::max(inner.col_begin - col, 0), behind = std::max(col + count - inner.col_end, 0);
+      if (row < inner.row_begin || row >= inner.row_end || before + behind >= count) return;
+      pass_on(col + before, row, count - before - behind, slopes + before, entries + before);
+    };
+    sweep_horizons(heights, table, eye, swept.line(strip), swept.visits, sink);
+  };
+  if (!swept.transposed) {
+    return run([&](int col, int row, int count, const float* slopes, const std::int32_t* entries) {
+      body({{col, row, col + count, row + 1}, swept.azimuth, slopes, entries, distances});
+    });
+  }
+  const auto run_columns = [&]<int kCols>(CollectedColumns<kCols>& columns) {
+    run([&](int col, int row, int count, const float* slopes, const std::int32_t* entries) {
+      columns.add(row, col, count, slopes, entries);
+    });
+    columns.pass_on();
+  };
+  const bool ascending = table.row_sign() < 0;
+  if (long_rows) {
+    run_columns(*std::make_unique<CollectedColumns<128>>(swept.azimuth, ascending, distances, body));
+  } else {
+    CollectedColumns<16> columns(swept.azimuth, ascending, distances, body);
+    run_columns(columns);
+  }
+}
+
+void StripMemory::take(double bytes) {
+  std::unique_lock lock(mutex_);
+  given_.wait(lock, [&] { return used_ == 0 || used_ + bytes <= bytes_; });
+  used_ += bytes;
+}
+
+void StripMemory::give(double bytes) {
+  {
+    const std::lock_guard lock(mutex_);
+    used_ -= bytes;
+  }
+  given_.notify_all();
+}
+
+LargeVector<float> StripMemory::spare() {
+  const std::lock_guard lock(mutex_);
+  if (spares_.empty()) return {};
+  LargeVector<float> last = std::move(spares_.back());
+  spares_.pop_back();
+  return last;
+}
+
+void StripMemory::keep(LargeVector<float> array) {
+  const std::lock_guard lock(mutex_);
+  spares_.push_back(std::move(array));
+}
+
+HorizonRelief::HorizonRelief(const HeightField& field, HorizonEngine engine, int sign, float eye_height, double memory,
                              const Progress& progress)
     : eye(eye_height) {
-  if (engine == HorizonEngine::exact) {
+  const bool exact = engine == HorizonEngine::exact;
+  const double nodes = static_cast<double>(field.cols()) * field.rows(), bytes = (exact ? 9 : 8) * nodes;
+  if (bytes > memory) {
+    const double most = exact ? HorizonGround::coarse_bytes(field.cols(), field.rows()) : 0;
+    require_strip_memory("maxima over", field.cols(), field.rows(), most, memory);
+    tiles.emplace(field, sign, progress);
+    if (exact)
+      coarse = std::make_shared<const HorizonGround::CoarseMaxima>(HorizonGround::coarse_maxima(*tiles, eye, {}));
+    strips = std::make_unique<StripMemory>(memory - most / 2);
+  } else if (exact) {
     ground.emplace(field, sign, eye, progress);
   } else {
     heights.emplace(field, sign), transposed.emplace(field, sign, true);
+  }
+}
+
+void HorizonRelief::copy_heights(int col, int row, int count, float* to) const {
+  if (tiles) {
+    tiles->read_row(col, row, count, to);
+  } else {
+    std::copy_n((ground ? ground->heights() : *heights).height(col, row), count, to);
   }
 }
 
@@ -158,9 +225,11 @@ void require_nodes(const HeightField& field, const NodeRect& nodes) {
 }
 
 void for_each_horizon(const Horizons::State& state, const HorizonRelief& relief, std::span<const double> azimuths,
-                      const NodeRect& nodes, const Body& body, const Progress& progress) {
+                      const NodeRect& nodes, const HorizonBody& body, const Progress& progress) {
   require_nodes(state.field, nodes);
-  (relief.ground ? scan : sweep)(state, relief, azimuths, nodes, body, progress);
+  const bool exact = state.settings.engine == HorizonEngine::exact;
+  const auto& find = relief.tiles ? (exact ? scan_strips : sweep_strips) : (exact ? scan : sweep);
+  find(state, relief, azimuths, nodes, body, progress);
 }
 
 }  // namespace scarp

@@ -7,32 +7,32 @@
 
 namespace scarp {
 
-SweepTable::SweepTable(const HorizonHeights& heights, const HorizonCrossings& crossings) : tilt_(crossings.tilt()) {
+SweepTable::SweepTable(const HorizonLayout& heights, const HorizonCrossings& crossings) : tilt_(crossings.tilt()) {
   const bool transposed = crossings.along_columns();
   row_sign_ = transposed ? crossings.col_sign() : crossings.row_sign();
   col_sign_ = transposed ? crossings.row_sign() : crossings.col_sign();
   per_step_ = static_cast<float>(1 / crossings.step());
-  bend_ = static_cast<float>(heights.sign() * crossings.curvature() * crossings.step() * crossings.step());
-  const auto entry_of = [&](const HorizonCrossing& c, std::ptrdiff_t& first) {
-    const std::ptrdiff_t pitch = heights.pitch();
-    const auto offset = [&](std::ptrdiff_t col, std::ptrdiff_t row) {
-      return transposed ? col * pitch + row : row * pitch + col;
-    };
-    first = offset(c.col, c.row);
-    return Entry{static_cast<std::int32_t>(first), static_cast<std::int32_t>(offset(c.second_col, c.second_row)), c.w,
-                 c.per_distance, static_cast<float>(heights.sign()) * c.drop};
+  bend_ = static_cast<float>(heights.sign * crossings.curvature() * crossings.step() * crossings.step());
+  const auto offset = [&](std::ptrdiff_t col, std::ptrdiff_t row, std::ptrdiff_t pitch) {
+    return transposed ? col * pitch + row : row * pitch + col;
+  };
+  const auto entry_of = [&](const HorizonCrossing& c) {
+    const std::ptrdiff_t pitch = heights.pitch;
+    return Entry{static_cast<std::int32_t>(offset(c.col, c.row, pitch)),
+                 static_cast<std::int32_t>(offset(c.second_col, c.second_row, pitch)), c.w, c.per_distance,
+                 static_cast<float>(heights.sign) * c.drop};
   };
   const auto distance_of = [&](double steps) { return static_cast<float>(steps * crossings.step()); };
-  std::ptrdiff_t first = 0;
   for (std::size_t i = 0; i < crossings.count_to_major(kNearSteps); ++i) {
-    near_.push_back(entry_of(crossings.all()[i], first));
+    near_.push_back(entry_of(crossings.all()[i]));
     distances_.push_back(distance_of(crossings.all()[i].steps));
   }
-  for (int step = 0; step < heights.rows(); ++step) {
+  for (int step = 0; step < heights.rows; ++step) {
     Entry e{0, 0, std::numeric_limits<float>::quiet_NaN(), 0, 0};
     if (crossings.has_major(step)) {
-      const Entry found = entry_of(crossings.all()[crossings.count_to_major(step) - 1], first);
-      if (std::abs(first) <= std::numeric_limits<std::int32_t>::max()) e = found;
+      const HorizonCrossing& c = crossings.all()[crossings.count_to_major(step) - 1];
+      if (std::abs(offset(c.col, c.row, heights.whole_pitch)) <= std::numeric_limits<std::int32_t>::max())
+        e = entry_of(c);
     }
     majors_.first.push_back(e.first), majors_.w.push_back(e.w);
     majors_.per_distance.push_back(e.per_distance), majors_.drop.push_back(e.drop);

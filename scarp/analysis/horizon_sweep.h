@@ -40,7 +40,9 @@ class SweepTable {
   static constexpr int kNearSteps = 8;
 
   /// `heights` are transposed if the crossings are along the columns.
-  SweepTable(const HorizonHeights& heights, const HorizonCrossings& crossings);
+  SweepTable(const HorizonHeights& heights, const HorizonCrossings& crossings)
+      : SweepTable(heights.layout(), crossings) {}
+  SweepTable(const HorizonLayout& heights, const HorizonCrossings& crossings);
 
   struct Entry {
     std::int32_t first;   ///< samples from the node to the first sample
@@ -52,7 +54,7 @@ class SweepTable {
 
   /// The major crossings by their step, one for each row, in arrays for gathers. The second sample, if w is not 0, is
   /// that in the column beside(). w is NaN where no node has such a crossing, and where an offset needs more than 32
-  /// bits.
+  /// bits in the memory of a whole field.
   struct Majors {
     std::vector<std::int32_t> first;
     std::vector<float> w, per_distance, drop;

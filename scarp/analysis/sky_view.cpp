@@ -10,6 +10,7 @@
 #include "scarp/analysis/horizon_measures.h"
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/analysis/tangent_planes.h"
+#include "scarp/base/array_files.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/progress_part.h"
 #include "scarp/base/setting.h"
@@ -34,12 +35,15 @@ SkyView::SkyView(const HeightField& field, const HorizonSettings& settings, int 
   require_setting("sky view", azimuths >= 1 && azimuths <= 3600, "number of azimuths", azimuths, "1 to 3600");
   const bool inverted = std::any_of(measures.begin(), measures.end(), is_inverted);
   const double parts = inverted ? 2 : 1;
+  // Both share the memory.
+  HorizonSettings each = settings;
+  each.memory /= parts;
   auto state = std::make_unique<State>(
-      State{Horizons(field, settings, progress_part(progress, 0, parts)), {}, std::move(measures), {}});
+      State{Horizons(field, each, progress_part(progress, 0, parts)), {}, std::move(measures), {}});
   for (int i = 0; i < azimuths; ++i) state->azimuths.push_back(2 * std::numbers::pi * i / azimuths);
   if (inverted)
-    state->inverted =
-        std::make_shared<const HorizonRelief>(field, settings.engine, -1, 0.0f, progress_part(progress, 1, parts));
+    state->inverted = std::make_shared<const HorizonRelief>(field, settings.engine, -1, 0.0f, each.memory,
+                                                            progress_part(progress, 1, parts));
   state_ = std::move(state);
 }
 
@@ -67,6 +71,8 @@ std::vector<std::vector<float>> SkyView::block(const NodeRect& nodes, const Prog
   if (std::find(state_->measures.begin(), state_->measures.end(), SkyMeasure::sky_view_factor) !=
       state_->measures.end())
     planes = TangentPlanes(state.field, nodes, state.cells);
+  const float *const planes_east = planes.east.data(), *const planes_north = planes.north.data(),
+                     *const planes_level = planes.level.data();
   const auto add = [&](const HorizonRelief& relief, bool inverted, const Progress& of_pass) {
     const auto add_block = [&](const HorizonBlock& block) {
       const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
@@ -78,12 +84,14 @@ std::vector<std::vector<float>> SkyView::block(const NodeRect& nodes, const Prog
             static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
         for (std::size_t m = 0; m < maps.size(); ++m) {
           if (is_inverted(state_->measures[m]) != inverted) continue;
-          float* sums = maps[m].data() + at;
+          ArrayPiece piece(maps[m].data() + at, width);
+          float* sums = piece.data();
           if (state_->measures[m] == SkyMeasure::sky_fraction) {
             add_sky_fraction(slopes, width, sums);
           } else if (state_->measures[m] == SkyMeasure::sky_view_factor) {
-            add_sky_view_factor(slopes, {planes.east.data() + at, planes.north.data() + at, planes.level.data() + at},
-                                east, north, width, sums);
+            ArrayPiece to_east(&planes_east[at], width), to_north(&planes_north[at], width),
+                level(&planes_level[at], width);
+            add_sky_view_factor(slopes, {to_east.data(), to_north.data(), level.data()}, east, north, width, sums);
           } else {
             add_openness(slopes, width, sums);
           }

@@ -10,6 +10,7 @@
 #include "scarp/analysis/clear_sky.h"
 #include "scarp/analysis/horizon_state.h"
 #include "scarp/analysis/tangent_planes.h"
+#include "scarp/base/array_files.h"
 #include "scarp/base/error.h"
 #include "scarp/base/setting.h"
 
@@ -55,7 +56,6 @@ class EnergySums {
              const ClearSkyGround& ground)
       : planes_(state.field, nodes, state.cells), ground_(ground) {
     const HeightField& field = state.field;
-    const HorizonHeights& heights = state.relief->of_nodes();
     for (const SunMoment& moment : moments) {
       beams_.emplace_back(field, moment, ground);
       const SunDirection& sun = moment.sun;
@@ -65,9 +65,11 @@ class EnergySums {
       const double diffuse = clear_sky(sun.altitude, 0, moment.day_of_year, ground.linke, ground.transmittance).diffuse;
       diffuse_ += moment.hours * diffuse / 1000;
     }
+    std::vector<float> heights(static_cast<std::size_t>(nodes.col_end - nodes.col_begin));
+    places_.reserve(nodes.count());
     for (int row = nodes.row_begin; row < nodes.row_end; ++row) {
-      for (int col = nodes.col_begin; col < nodes.col_end; ++col) {
-        const float height = *heights.height(col, row);
+      state.relief->copy_heights(nodes.col_begin, row, static_cast<int>(heights.size()), heights.data());
+      for (const float height : heights) {
         const bool hole = std::isnan(height) || moments.empty();
         places_.push_back(hole ? 0 : beams_.front().place(static_cast<double>(height)));
       }
@@ -75,14 +77,20 @@ class EnergySums {
     sums_.resize(places_.size());
   }
 
-  // Adds the beam of a moment on a lit node.
-  void add(std::size_t moment, std::size_t node, double hours) {
+  // Adds the beam of a moment on the lit nodes among some neighbours.
+  void add(std::size_t moment, std::size_t node, std::size_t count, double hours, const float* slopes, float sun) {
     const Direction& to = towards_[moment];
-    const float cosine = planes_.east[node] * to.east + planes_.north[node] * to.north + planes_.level[node] * to.up;
-    if (cosine > 0) sums_[node] += hours / 1000 * static_cast<double>(cosine * beams_[moment].at(places_[node]));
+    ArrayPiece<const float> east(&planes_.east[node], count), north(&planes_.north[node], count),
+        level(&planes_.level[node], count), places(&places_[node], count);
+    ArrayPiece sums(&sums_[node], count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(slopes[i] <= sun)) continue;
+      const float cosine = east[i] * to.east + north[i] * to.north + level[i] * to.up;
+      if (cosine > 0) sums[i] += hours / 1000 * static_cast<double>(cosine * beams_[moment].at(places[i]));
+    }
   }
 
-  SunEnergy total(std::span<const SunMoment> moments, const std::vector<double>& hours) const {
+  SunEnergy total(std::span<const SunMoment> moments, const std::vector<float>& hours) const {
     // The beam on level ground by height.
     std::vector<double> level(BeamByHeight::kSteps + 2);
     for (std::size_t m = 0; m < moments.size(); ++m) {
@@ -141,40 +149,52 @@ SunHours sun_hours(const Horizons& horizons, std::span<const SunMoment> moments,
   const auto& state = state_of(horizons);
   require_nodes(state.field, nodes);
   const std::ptrdiff_t cols = nodes.col_end - nodes.col_begin;
-  std::vector<double> sums;  // hours; NaN on holes
+  // Together: where they lie in files, a piece of them is one piece of a file.
+  struct Lit {
+    double hours;  // NaN on holes
+    std::int32_t first, last;
+  };
+  std::vector<Lit> lit;
+  lit.reserve(nodes.count());
+  std::vector<float> heights(static_cast<std::size_t>(cols));
   for (int row = nodes.row_begin; row < nodes.row_end; ++row) {
-    const float* heights = state.relief->of_nodes().height(nodes.col_begin, row);
-    for (std::ptrdiff_t col = 0; col < cols; ++col)
-      sums.push_back(std::isnan(heights[col]) ? std::numeric_limits<double>::quiet_NaN() : 0);
+    state.relief->copy_heights(nodes.col_begin, row, static_cast<int>(cols), heights.data());
+    for (const float height : heights)
+      lit.push_back({std::isnan(height) ? std::numeric_limits<double>::quiet_NaN() : 0, -1, -1});
   }
   std::optional<EnergySums> energy;
   if (ground) {
-    validate(*ground, sums.size());
+    validate(*ground, lit.size());
     energy.emplace(state, nodes, moments, *ground);
   }
   SunHours found;
-  found.hours.resize(sums.size());
-  found.first.assign(sums.size(), -1), found.last.assign(sums.size(), -1);
   std::vector<double> azimuths;
   for (const SunMoment& moment : moments) azimuths.push_back(moment.sun.azimuth);
   const auto add = [&](const HorizonBlock& block) {
     const SunMoment& moment = moments[block.azimuth];
     const auto sun = static_cast<float>(std::tan(moment.sun.altitude));
-    const float* slope = block.slopes;
-    for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row) {
-      auto at = static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
-      for (int col = block.nodes.col_begin; col < block.nodes.col_end; ++col, ++at, ++slope) {
-        if (!(*slope <= sun)) continue;  // holes, too
-        sums[at] += moment.hours;
-        found.last[at] = static_cast<std::int32_t>(block.azimuth);
-        if (found.first[at] < 0) found.first[at] = found.last[at];
-        if (energy) energy->add(block.azimuth, at, moment.hours);
+    const auto width = static_cast<std::size_t>(block.nodes.col_end - block.nodes.col_begin);
+    const float* slopes = block.slopes;
+    for (int row = block.nodes.row_begin; row < block.nodes.row_end; ++row, slopes += width) {
+      const auto at =
+          static_cast<std::size_t>((row - nodes.row_begin) * cols + block.nodes.col_begin - nodes.col_begin);
+      ArrayPiece piece(&lit[at], width);
+      for (std::size_t i = 0; i < width; ++i) {
+        if (!(slopes[i] <= sun)) continue;  // holes, too
+        Lit& node = piece[i];
+        node.hours += moment.hours, node.last = static_cast<std::int32_t>(block.azimuth);
+        if (node.first < 0) node.first = node.last;
       }
+      if (energy) energy->add(block.azimuth, at, width, moment.hours, slopes, sun);
     }
   };
   for_each_horizon(state, *state.relief, azimuths, nodes, add, progress);
-  for (std::size_t i = 0; i < sums.size(); ++i) found.hours[i] = static_cast<float>(sums[i]);
-  if (energy) found.energy = energy->total(moments, sums);
+  found.hours.reserve(lit.size()), found.first.reserve(lit.size()), found.last.reserve(lit.size());
+  for (const Lit& node : lit) {
+    found.hours.push_back(static_cast<float>(node.hours));
+    found.first.push_back(node.first), found.last.push_back(node.last);
+  }
+  if (energy) found.energy = energy->total(moments, found.hours);
   return found;
 }
 

@@ -21,6 +21,7 @@
 #include "app/cli/memory/memory_limit.h"
 #include "app/cli/options/part_number.h"
 #include "cli/map_limits.h"
+#include "scarp/base/array_files.h"
 #include "scarp/base/error.h"
 
 namespace scarp::test {
@@ -63,6 +64,34 @@ TEST_F(MapLimits, SkyMapsAreTheSameInFiles) {
     const std::string all = written(words, "all.tif");
     EXPECT_TRUE(written(words + Names{"--memory", "256M", "--threads", "1"}, "files.tif") == all);
   }
+}
+
+// Lines of sight across wide rows read a page of memory for each few samples.
+TEST_F(MapLimits, HorizonsKeepTheLimit) {
+  std::string hills = "ncols 300\nnrows 300\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+  for (int i = 0; i < 300 * 300; ++i) hills += std::to_string(300 + i * 7919 % 101) + ' ';
+  scratch_.write("hills.asc", hills);
+  const std::string dem = scratch_.write("wide.vrt", R"(<VRTDataset rasterXSize="16000" rasterYSize="1500">
+<SRS>EPSG:32633</SRS><GeoTransform>400000, 10, 0, 5000000, 0, -10</GeoTransform>
+<VRTRasterBand dataType="Int16" band="1">
+<SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
+<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="300" ySize="300"/>
+<DstRect xOff="0" yOff="0" xSize="16000" ySize="1500"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+  for (const char* engine : {"exact", "sweep"}) {
+    const Result result = run({"horizon", dem, "--azimuths", "1", "--engine", engine, "--memory", "256M", "--scratch",
+                               path("."), "-o", path("horizon.tif")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_GT(result.peak, 0u) << "unknown";
+    EXPECT_LE(result.peak, std::uint64_t{256} << 20) << engine;
+  }
+  // A strip of the exact engine is as long as a row, and its blocks are 64 x 32 nodes.
+  const std::string line = scratch_.write("line.vrt", R"(<VRTDataset rasterXSize="60000" rasterYSize="400">
+<SRS>EPSG:32633</SRS><GeoTransform>400000, 1, 0, 5000000, 0, -1</GeoTransform>
+<VRTRasterBand dataType="Int16" band="1">
+<SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
+<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="300" ySize="300"/>
+<DstRect xOff="0" yOff="0" xSize="60000" ySize="400"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+  expect_refused({"skyview", line, "--azimuths", "4", "--memory", "256M", "-o", path("sky.tif")}, "allow more memory");
 }
 
 TEST_F(MapLimits, ReadsOnlyRowsTowardsTheSunOfAPart) {
@@ -316,6 +345,14 @@ TEST(MemoryLimit, KeepsTheContentsOfArraysInFiles) {
   EXPECT_GE(cli::bytes_in_files(), 2 * kNumbers * sizeof(std::uint32_t));
   EXPECT_TRUE(fs::is_empty(folder.path("."))) << "files have names";
   cli::forget_pages_in_files();
+  // Pieces of files are those of the memory.
+  std::vector<std::uint32_t> piece(1000, 7);
+  write_array(&arrays[2][5001], piece.data(), 1000 * sizeof(std::uint32_t));
+  EXPECT_EQ(arrays[2][5001], 7u);
+  EXPECT_EQ(arrays[2][6000], 7u);
+  std::iota(&arrays[2][5001], &arrays[2][6001], 5003u);
+  read_array(piece.data(), &arrays[2][5001], 1000 * sizeof(std::uint32_t));
+  for (std::uint32_t i = 0; i < 1000; ++i) ASSERT_EQ(piece[i], 5003 + i);
   for (std::uint32_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < kNumbers; k += 997) ASSERT_EQ(arrays[i][k], k + i);
   // Any alignment, and memory that is not in a file.

@@ -95,6 +95,7 @@ void run(HorizonOptions options, const Command& command) {
   run.set_reach(options.horizon.reach());
   const double bytes = (options.pack ? 2 : 4) * count * (options.distance ? 2 : 1) + (options.farthest ? 8 : 0);
   if (!run.begin(13 + bytes, count * options.horizon.node_azimuth_s())) return;
+  options.horizon.memory = run.working_memory();
   MapInput& input = run.input();
   double highest = -90;
   std::optional<Horizons> horizons;
@@ -140,7 +141,8 @@ void run(HorizonOptions options, const Command& command) {
              compute,
              summary,
              {&highest},
-             !options.horizon.swept()});
+             !options.horizon.swept(),
+             rows_of_strip(options.horizon, input)});
 }
 
 }  // namespace

@@ -79,6 +79,7 @@ void run(SkyviewOptions options, const Command& command) {
   if (!run.begin(13 + 8 * static_cast<double>(options.measures.size()),
                  options.azimuths * options.horizon.node_azimuth_s()))
     return;
+  options.horizon.memory = run.working_memory();
   MapInput& input = run.input();
   std::vector<SkyMeasure> measures;
   Metadata metadata = horizon_metadata(options.horizon, input);
@@ -124,7 +125,7 @@ void run(SkyviewOptions options, const Command& command) {
   std::vector<double*> totals;
   for (Mean& mean : means) totals.insert(totals.end(), {&mean.sum, &mean.count});
   run.write({horizon_method(options.horizon) + kSkyMethod, metadata, "grey", compute, summary, totals,
-             !options.horizon.swept()});
+             !options.horizon.swept(), rows_of_strip(options.horizon, input)});
 }
 
 }  // namespace

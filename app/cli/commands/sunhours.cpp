@@ -266,6 +266,7 @@ void run(SunHoursOptions options, const Command& command) {
   const double bytes = options.masks ? static_cast<double>(masked.size()) : 4 * count * bands_per_period;
   const double suns = days * kMinutesPerDay / options.minutes() / 2 + (options.energy ? kSkyAzimuths : 0);
   if (!run.begin(29 + bytes, suns * options.horizon.node_azimuth_s())) return;
+  options.horizon.memory = run.working_memory() / (options.energy ? 2 : 1);
   double longest = 0;
   std::optional<Horizons> horizons;
   std::optional<SkyView> sky;
@@ -331,7 +332,8 @@ void run(SunHoursOptions options, const Command& command) {
              compute,
              summary,
              {&longest},
-             !options.horizon.swept()});
+             !options.horizon.swept(),
+             rows_of_strip(options.horizon, input)});
 }
 
 }  // namespace

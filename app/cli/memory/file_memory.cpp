@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <utility>
 
 namespace scarp::cli {
 namespace {
@@ -21,12 +22,16 @@ namespace {
 struct Mapping {
   std::byte* begin;
   std::size_t bytes;
+  int file;
   Mapping* next;
 };
 
 std::mutex mutex;
 Mapping* mappings = nullptr;
 std::atomic<std::size_t> all_bytes{0};
+// Files that stay open; further ones are used through their mapping alone. Systems allow a program about 1,000.
+constexpr int kMostOpen = 256;
+int open_files = 0;
 
 int open_nameless(const char* folder) {
 #ifdef O_TMPFILE
@@ -68,6 +73,33 @@ void* map_aligned(int file, std::size_t bytes, std::size_t alignment) {
   return memory;
 }
 
+// A piece of an array in a file.
+struct Piece {
+  int file = -1;  // -1: not in a file
+  off_t offset = 0;
+};
+
+Piece piece_at(const void* memory, std::size_t bytes) noexcept {
+  if (all_bytes == 0) return {};
+  const auto* const at = static_cast<const std::byte*>(memory);
+  const std::lock_guard lock(mutex);
+  for (const Mapping* one = mappings; one; one = one->next)
+    if (at >= one->begin && at + bytes <= one->begin + one->bytes) return {one->file, at - one->begin};
+  return {};
+}
+
+// Calls step(done) for the bytes that are left, which returns how many it has copied.
+template <class Step>
+bool copy_by_steps(std::size_t bytes, const Step& step) noexcept {
+  for (std::size_t done = 0; done < bytes;) {
+    const ssize_t more = step(done);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) return false;
+    done += static_cast<std::size_t>(more);
+  }
+  return true;
+}
+
 }  // namespace
 
 NoFileMemory::NoFileMemory(std::size_t bytes, const char* folder, const char* why) noexcept {
@@ -83,13 +115,14 @@ void* allocate_in_file(std::size_t bytes, std::size_t alignment, const char* fol
   if (!entry) throw std::bad_alloc();
   void* memory = MAP_FAILED;
   int reason = ENAMETOOLONG;
-  if (const int file = open_nameless(folder); file >= 0) {
+  int file = open_nameless(folder);
+  if (file >= 0) {
     reason = reserve(file, bytes);
     if (reason == 0) {
       memory = map_aligned(file, bytes, alignment);
       reason = errno;
     }
-    ::close(file);  // the mapping keeps the file
+    if (memory == MAP_FAILED) ::close(file);
   } else {
     reason = errno;
   }
@@ -98,7 +131,12 @@ void* allocate_in_file(std::size_t bytes, std::size_t alignment, const char* fol
     fail(reason);
   }
   const std::lock_guard lock(mutex);
-  *entry = {static_cast<std::byte*>(memory), bytes, mappings};
+  if (open_files < kMostOpen) {
+    ++open_files;
+  } else {
+    ::close(std::exchange(file, -1));  // the mapping keeps the file
+  }
+  *entry = {static_cast<std::byte*>(memory), bytes, file, mappings};
   mappings = entry;
   all_bytes += bytes;
   return memory;
@@ -113,10 +151,27 @@ bool release_in_file(void* memory) noexcept {
     *at = found->next;
     all_bytes -= found->bytes;
     ::munmap(memory, found->bytes);
+    if (found->file >= 0) ::close(found->file), --open_files;
     std::free(found);
     return true;
   }
   return false;
+}
+
+bool read_in_file(void* to, const void* from, std::size_t bytes) noexcept {
+  const Piece piece = piece_at(from, bytes);
+  return piece.file >= 0 && copy_by_steps(bytes, [&](std::size_t done) {
+           return ::pread(piece.file, static_cast<std::byte*>(to) + done, bytes - done,
+                          piece.offset + static_cast<off_t>(done));
+         });
+}
+
+bool write_in_file(void* to, const void* from, std::size_t bytes) noexcept {
+  const Piece piece = piece_at(to, bytes);
+  return piece.file >= 0 && copy_by_steps(bytes, [&](std::size_t done) {
+           return ::pwrite(piece.file, static_cast<const std::byte*>(from) + done, bytes - done,
+                           piece.offset + static_cast<off_t>(done));
+         });
 }
 
 void forget_pages_in_files() noexcept {

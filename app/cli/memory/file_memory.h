@@ -27,6 +27,11 @@ void* allocate_in_file(std::size_t bytes, std::size_t alignment, const char* fol
 /// Releases memory of allocate_in_file(). Returns false, and does nothing, for any other address.
 bool release_in_file(void* memory) noexcept;
 
+/// Copies `bytes` of such memory by reading its file, or to it by writing, so that none of its pages becomes part of
+/// the program's memory. Returns false, and does nothing, for any other address.
+bool read_in_file(void* to, const void* from, std::size_t bytes) noexcept;
+bool write_in_file(void* to, const void* from, std::size_t bytes) noexcept;
+
 /// Removes the pages of all such memory from the program's memory; they stay in the file.
 void forget_pages_in_files() noexcept;
 

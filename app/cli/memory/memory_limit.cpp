@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "app/cli/memory/file_memory.h"
+#include "scarp/base/array_files.h"
 
 namespace scarp::cli {
 namespace {
@@ -36,6 +37,8 @@ std::atomic<std::size_t> most_private{0}, most_granted{0}, most_granted_to_large
 // Of counted arrays in memory. Pages that are not yet used are not resident.
 std::atomic<std::size_t> granted_bytes{0};
 char scratch_folder[4096];  // written before is_limited
+
+constexpr ArrayFiles kArrayFiles{[]() noexcept { return bytes_in_files() > 0; }, read_in_file, write_in_file};
 
 struct Resident {
   std::size_t privately = 0, of_files = 0;  // bytes
@@ -59,7 +62,7 @@ Resident resident() {
 MemoryLimit::MemoryLimit(double bytes, const std::string& folder)
     : bytes_(bytes), folder_(folder.empty() ? "." : folder) {
   constexpr double kOfFilePages = 0.5;
-  const double rest = std::max(0.0, bytes - kProgram), file_pages = rest * kOfFilePages;
+  const double rest = bytes_of_arrays(), file_pages = rest * kOfFilePages;
   std::snprintf(scratch_folder, sizeof scratch_folder, "%s", folder_.c_str());
   const Resident now = resident();
   const auto in_memory = static_cast<std::size_t>(rest - file_pages);
@@ -67,8 +70,11 @@ MemoryLimit::MemoryLimit(double bytes, const std::string& folder)
   most_granted = granted_bytes + in_memory;
   most_granted_to_large = granted_bytes + static_cast<std::size_t>((1 - kOfOthers) * static_cast<double>(in_memory));
   is_limited = true;
+  set_array_files(&kArrayFiles);
   watcher_ = std::thread([this, most = now.of_files + static_cast<std::size_t>(file_pages)] { watch(most); });
 }
+
+double MemoryLimit::bytes_of_arrays() const { return std::max(0.0, bytes_ - kProgram); }
 
 MemoryLimit::~MemoryLimit() {
   is_limited = false;

@@ -30,6 +30,8 @@ class MemoryLimit {
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
   double bytes() const { return bytes_; }
+  /// Bytes of arrays that are in memory at once: half of them for arrays that stay there.
+  double bytes_of_arrays() const;
   const std::string& folder() const { return folder_; }
 
  private:

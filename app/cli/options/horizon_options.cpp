@@ -35,11 +35,18 @@ void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<
   add_curvature_option(command, curvature);
 }
 
+int rows_of_strip(const HorizonInput& horizon, const MapInput& input) {
+  constexpr double kBytes = 9;  // as Horizons has
+  constexpr int kRows = 2048;
+  return kBytes * input.part().cols * input.part().rows > horizon.memory ? kRows : 1;
+}
+
 HorizonSettings horizon_settings(const HorizonInput& horizon, const MapInput& input) {
   HorizonSettings settings;
   settings.eye_height = horizon.eye_height;
   settings.max_distance = horizon.reach();
   settings.curvature = input.curvature();
+  settings.memory = horizon.memory;
   settings.engine = horizon.swept() ? HorizonEngine::sweep : HorizonEngine::exact;
   return settings;
 }

@@ -18,6 +18,7 @@ struct HorizonInput {
   double eye_height = 0;  ///< metres
   std::optional<double> max_distance;
   std::string engine = "exact";
+  double memory = std::numeric_limits<double>::infinity();  ///< HorizonSettings::memory
 
   bool swept() const { return engine == "sweep"; }
   /// Estimated time of one horizon of one node.
@@ -30,6 +31,10 @@ struct HorizonInput {
 /// map.
 void add_horizon_options(Command& command, HorizonInput& horizon, std::optional<double>& curvature,
                          const std::vector<std::string>& excludes = {});
+
+/// Rows that a strip of MapRecipe should have, for the samples that were read: horizons of ground beyond the memory are
+/// found by strips along each azimuth, which few rows would not use.
+int rows_of_strip(const HorizonInput& horizon, const MapInput& input);
 
 HorizonSettings horizon_settings(const HorizonInput& horizon, const MapInput& input);
 

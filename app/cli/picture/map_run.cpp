@@ -162,6 +162,11 @@ bool MapRun::begin(double bytes_per_pixel, double seconds_per_pixel, double more
   return true;
 }
 
+double MapRun::working_memory() const {
+  const double arrays = memory_->bytes_of_arrays();
+  return needed_ <= arrays ? arrays : arrays / 2;
+}
+
 int MapRun::strips_of(const MapRecipe& recipe) const {
   // A run that is killed loses at most one strip. Thin strips take longer: most maps depend on ground beside them.
   constexpr int kOfResume = 16, kLeastRows = 256;
@@ -169,7 +174,7 @@ int MapRun::strips_of(const MapRecipe& recipe) const {
   const double share = memory_->bytes() / 4, most = 1000;
   int strips = options_.raster_output.resume ? std::min(kOfResume, rows / kLeastRows) : 1;
   if (recipe.has_cheap_strips && needed_ > memory_->bytes())
-    strips = std::max(strips, static_cast<int>(std::min(needed_ / share, most)));
+    strips = std::max(strips, static_cast<int>(std::min({needed_ / share, most, rows / (1.0 * recipe.rows_of_strip)})));
   return std::clamp(strips, 1, std::max(1, rows));
 }
 

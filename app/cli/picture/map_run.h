@@ -76,6 +76,7 @@ struct MapRecipe {
   /// Whether strips of rows take together about as long as all rows at once. If a map is beyond the limit of memory, it
   /// is then computed by strips, which use it place by place.
   bool has_cheap_strips = false;
+  int rows_of_strip = 1;  ///< least, of these
   /// A file for each band, in place of the output; empty: all bands are in the output.
   std::vector<std::string> files{};
   std::vector<DrawnMark> marks{};  ///< on the preview, in columns and rows of the raster
@@ -106,6 +107,9 @@ class MapRun {
   /// Reads the samples. With --dry-run, prints size, memory and time instead, and returns false.
   /// `more_bytes`: per sample that is read, of other rasters.
   bool begin(double bytes_per_pixel, double seconds_per_pixel, double more_bytes = 0);
+
+  /// Bytes for what the map is computed from besides the samples. After begin().
+  double working_memory() const;
 
   /// The rows of the samples that were read which write() computes.
   RowBand rows() const { return area_.rows(); }
