@@ -17,7 +17,7 @@ namespace scarp::viewer {
 namespace {
 
 constexpr std::array<const char*, 4> kModes = {"orbit", "fly", "walk", "top"};
-constexpr std::array<const char*, 4> kPasses = {"moving", "full resolution", "refining", "complete"};
+constexpr std::array<const char*, 5> kPasses = {"moving", "coarse", "full resolution", "refining", "complete"};
 // Pixels at a scale of 1.
 constexpr float kControlWidth = 160, kTextWidth = 350, kProfileHeight = 70;
 

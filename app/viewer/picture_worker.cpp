@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -34,6 +35,22 @@ WorkedPicture begun(const ViewRequest& request, std::uint64_t generation) {
   worked.large_pixels = std::any_of(request.sides.begin(), request.sides.end(),
                                     [](const PictureSide& side) { return entry_of(side.settings.look).large_pixels; });
   return worked;
+}
+
+PictureSettings with_rows(PictureSettings settings, int rows) {
+  settings.width =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(settings.width) * rows / settings.height)));
+  settings.height = rows;
+  settings.aa = 1, settings.samples = 0;
+  return settings;
+}
+
+// Renders a side into `worked`, with its time.
+void add_side(WorkedPicture& worked, const ViewRequest& request, const PictureSide& side,
+              const PictureSettings& settings, const Progress& progress) {
+  const Watch watch;
+  worked.sides.push_back(side.render(request.camera(settings.width, settings.height), settings, progress));
+  worked.side_seconds.push_back(watch.seconds());
 }
 
 // Renders into `worked`, or sets its error. Returns false if it was interrupted.
@@ -95,6 +112,14 @@ int PictureWorker::rows_for(double pixels_per_second, int width, int height) {
   return std::clamp(rows, std::min(kLeastRows, height), height);
 }
 
+std::vector<int> PictureWorker::rows_between(int rows, int height) {
+  std::vector<int> between;
+  for (const int part : {4, 2}) {
+    if (height / part > rows) between.push_back(height / part);
+  }
+  return between;
+}
+
 std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings& settings) {
   std::vector<PictureSettings> passes{settings};
   // Other looks trace one ray per pixel.
@@ -137,7 +162,9 @@ void PictureWorker::work() {
       generation = generation_;
       busy_ = true;
     }
-    if (!render_moving(request, generation) || request.moving) continue;
+    const bool shown = request.stays && moved_ + 1 == generation;
+    if ((!shown && !render_moving(request, generation)) || request.moving) continue;
+    if (!render_between(request, generation)) continue;
     if (render_at_rest(request, generation)) judge(request, generation);
   }
 }
@@ -155,28 +182,47 @@ bool PictureWorker::deliver(WorkedPicture worked) {
 
 // Returns whether the next pass is needed, like the two functions below.
 bool PictureWorker::render_moving(const ViewRequest& request, std::uint64_t generation) {
-  std::int64_t most_pixels = 0;  // of one side
+  std::int64_t most_pixels = 0;                      // of one side
+  int least_rows = std::numeric_limits<int>::max();  // of sides that need more
   WorkedPicture worked = begun(request, generation);
   const Watch watch;
   const bool done = attempt(worked, [&] {
     for (const PictureSide& side : request.sides) {
-      PictureSettings settings = side.settings;
-      const int rows = rows_for(pixels_per_second_, settings.width, settings.height);
-      settings.width =
-          std::max(1, static_cast<int>(std::lround(static_cast<double>(settings.width) * rows / settings.height)));
-      settings.height = rows;
-      settings.aa = 1, settings.samples = 0;
+      const int rows = rows_for(pixels_per_second_, side.settings.width, side.settings.height);
+      const PictureSettings settings = with_rows(side.settings, rows);
       most_pixels = std::max(most_pixels, std::int64_t{settings.width} * settings.height);
+      least_rows = std::min(least_rows, rows < side.settings.height ? rows : least_rows);
       // A picture that was started while moving is always shown; only closing the window cancels it.
-      worked.sides.push_back(
-          side.render(request.camera(settings.width, settings.height), settings, [&](double) { return !stopped(); }));
+      add_side(worked, request, side, settings, [&](double) { return !stopped(); });
     }
   });
   if (!done) return false;
   worked.seconds = watch.seconds();
-  if (worked.error.empty())
+  if (worked.error.empty()) {
     pixels_per_second_ = static_cast<double>(most_pixels) / std::max(worked.seconds, kLeastSeconds);
+    moved_ = generation, moved_rows_ = least_rows;
+  }
   return deliver(std::move(worked)) && !outdated(generation);
+}
+
+bool PictureWorker::render_between(const ViewRequest& request, std::uint64_t generation) {
+  int height = 0;
+  for (const PictureSide& side : request.sides) height = std::max(height, side.settings.height);
+  for (const int rows : rows_between(moved_rows_, height)) {
+    WorkedPicture worked = begun(request, generation);
+    worked.pass = PicturePass::coarse;
+    const Watch watch;
+    const bool done = attempt(worked, [&] {
+      for (const PictureSide& side : request.sides) {
+        // Large pixels are few: they are all there from the first pass on.
+        const int own = std::min(rows, side.settings.height);
+        add_side(worked, request, side, with_rows(side.settings, own), [&](double) { return !outdated(generation); });
+      }
+    });
+    worked.seconds = watch.seconds();
+    if (!done || !deliver(std::move(worked)) || outdated(generation)) return false;
+  }
+  return true;
 }
 
 bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t generation) {
@@ -187,6 +233,7 @@ bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t gen
     count = std::max(count, passes.back().size());
   }
   std::vector<Picture> before;
+  std::vector<double> seconds_before;
   for (std::size_t i = 0; i < count; ++i) {
     WorkedPicture worked = begun(request, generation);
     worked.pass = i + 1 == count ? PicturePass::converged : i == 0 ? PicturePass::full : PicturePass::refining;
@@ -198,15 +245,15 @@ bool PictureWorker::render_at_rest(const ViewRequest& request, std::uint64_t gen
         const PictureSettings& settings = passes[s][last - std::min(last, left)];
         if (i > 0 && left >= last) {
           worked.sides.push_back(before[s]);  // its only pass so far
+          worked.side_seconds.push_back(seconds_before[s]);
           continue;
         }
         if (s == 0) worked.aa = settings.aa, worked.samples = settings.samples;
-        worked.sides.push_back(request.sides[s].render(request.camera(settings.width, settings.height), settings,
-                                                       [&](double) { return !outdated(generation); }));
+        add_side(worked, request, request.sides[s], settings, [&](double) { return !outdated(generation); });
       }
     });
     worked.seconds = watch.seconds();
-    if (i + 1 < count) before = worked.sides;
+    if (i + 1 < count) before = worked.sides, seconds_before = worked.side_seconds;
     if (!done || !deliver(std::move(worked)) || outdated(generation)) return false;
   }
   return true;

@@ -2,7 +2,7 @@
 // A thread that renders the picture of a window, so that the window never waits.
 //
 //   while moving   only as many rows as can be traced in a frame; one sample per pixel, hard shadows
-//   then           full resolution, one sample per pixel
+//   then           a quarter and half of the resolution, where that is finer; full resolution, one sample per pixel
 //   refining       more and more samples, see refinement_of()
 //   at rest        the settings as requested: the picture of `scarp render`
 //   afterwards     some rays of the picture are judged
@@ -28,7 +28,7 @@
 
 namespace scarp::viewer {
 
-enum class PicturePass { moving, full, refining, converged };
+enum class PicturePass { moving, coarse, full, refining, converged };
 
 struct PictureSide {
   PictureSettings settings;  ///< of the converged picture
@@ -42,6 +42,9 @@ struct ViewRequest {
   std::function<Camera(int width, int height)> camera;
   std::vector<PictureSide> sides;  ///< at least one
   bool moving = false;             ///< more requests will follow soon: only the first pass is started
+  /// The view is that of the request before: its first pass, once shown, is not rendered again, because its resolution
+  /// might be coarser this time.
+  bool stays = false;
 };
 
 struct WorkedPicture {
@@ -51,7 +54,8 @@ struct WorkedPicture {
   bool large_pixels = false;  ///< at least one side has the look comanche
   std::uint64_t generation = 0;
   double seconds = 0;
-  std::string error{};  ///< empty: there is a picture
+  std::vector<double> side_seconds{};  ///< of each side; a side that an earlier pass completed keeps its time
+  std::string error{};                 ///< empty: there is a picture
 };
 
 struct WorkedVerdict {
@@ -81,6 +85,8 @@ class PictureWorker {
   /// Number of rows of the first pass, at most `height`: as many as can be rendered in a frame, given the rate in
   /// pixels per second of the previous first pass.
   static int rows_for(double pixels_per_second, int width, int height);
+  /// The rows of the passes between a first pass of `rows` and one of `height` rows, each finer than the one before.
+  static std::vector<int> rows_between(int rows, int height);
   /// The settings of the passes at rest, from one sample per pixel to the requested ones. Each costs at least about
   /// four times as much as the previous one, so all earlier passes together cost about a third of the last.
   static std::vector<PictureSettings> refinement_of(const PictureSettings& settings);
@@ -88,6 +94,7 @@ class PictureWorker {
  private:
   void work();
   bool render_moving(const ViewRequest& request, std::uint64_t generation);
+  bool render_between(const ViewRequest& request, std::uint64_t generation);
   bool render_at_rest(const ViewRequest& request, std::uint64_t generation);
   void judge(const ViewRequest& request, std::uint64_t generation);
   bool deliver(WorkedPicture worked);
@@ -102,7 +109,10 @@ class PictureWorker {
   std::optional<WorkedVerdict> verdict_;
   std::uint64_t generation_ = 0;
   bool stop_ = false, busy_ = false;
-  double pixels_per_second_ = 4e6;  // until measured; used only by the worker's thread
+  // Used only by the worker's thread.
+  double pixels_per_second_ = 4e6;  // until measured
+  std::uint64_t moved_ = 0;         // generation of the last first pass that was shown
+  int moved_rows_ = 0;              // of its coarsest side
   std::thread thread_;
 };
 

@@ -11,7 +11,7 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr std::array<const char*, 4> kPassNames = {"moving", "full", "refining", "converged"};
+constexpr std::array<const char*, 5> kPassNames = {"moving", "coarse", "full", "refining", "converged"};
 
 // A clock shared with other programs.
 double unix_seconds() {

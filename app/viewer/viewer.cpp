@@ -229,7 +229,7 @@ void Viewer::ask(bool moving) {
   // A copy: the navigator moves on.
   const Navigator there = *navigator_;
   generation_ = worker_->request({[there](int width, int height) { return there.camera(width, height); },
-                                  subject_->sides(width_, height_), moving});
+                                  subject_->sides(width_, height_), moving, !moving});
   camera_ = navigator_->camera(width_, height_);
 }
 

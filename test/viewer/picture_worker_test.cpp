@@ -234,6 +234,71 @@ TEST_F(Worker, ReportsErrorsAndContinues) {
   EXPECT_TRUE(converged(*worker));
 }
 
+// A first pass of 283 rows, by the assumed rate, is followed by a quarter, half and all of 1,200.
+TEST_F(Worker, ResolutionGrowsInSteps) {
+  ViewRequest large = request(false, 1, 0);
+  PictureSettings& settings = large.sides.front().settings;
+  settings.width = 1600, settings.height = 1200;
+  const auto worker = make();
+  worker->request(large);
+  const auto last = converged(*worker);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->side_seconds.size(), 1u);
+  const std::scoped_lock lock(mutex_);
+  ASSERT_EQ(asked_.size(), 4u);
+  EXPECT_LT(asked_[0].height, 300);
+  EXPECT_EQ(asked_[1].height, 300);
+  EXPECT_EQ(asked_[1].width, 400);
+  EXPECT_EQ(asked_[2].height, 600);
+  EXPECT_EQ(asked_[3].height, 1200);
+}
+
+// A view that stays gets no second first pass: it might be coarser than what is shown.
+TEST_F(Worker, ResolutionNeverFalls) {
+  render_time_ = 40ms;  // a slow first pass: a second one would have fewer rows
+  ViewRequest large = request(true, 1, 0);
+  PictureSettings& settings = large.sides.front().settings;
+  settings.width = 1600, settings.height = 1200;
+  const auto worker = make();
+  worker->request(large);
+  ASSERT_TRUE(next(*worker));
+  while (worker->busy()) std::this_thread::sleep_for(1ms);
+  large.moving = false, large.stays = true;
+  worker->request(large);
+  ASSERT_TRUE(converged(*worker));
+  {
+    const std::scoped_lock lock(mutex_);
+    for (std::size_t i = 1; i < asked_.size(); ++i) EXPECT_GT(asked_[i].height, asked_[i - 1].height) << i;
+    EXPECT_EQ(asked_.back().height, 1200);
+    asked_.clear();
+  }
+  // Without a first pass of the request before, it is rendered.
+  fails_ = true;
+  worker->request(large);
+  ASSERT_TRUE(next(*worker));
+  fails_ = false;
+  while (worker->busy()) std::this_thread::sleep_for(1ms);
+  const std::scoped_lock lock(mutex_);
+  ASSERT_FALSE(asked_.empty());
+  EXPECT_LT(asked_.front().height, 300);
+}
+
+TEST_F(Worker, MeasuresTheTimeOfEachSide) {
+  ViewRequest both = request(false, 1, 0);
+  both.sides.push_back(both.sides.front());
+  both.sides.back().render = [](const Camera&, const PictureSettings& asked, const Progress&) {
+    std::this_thread::sleep_for(30ms);
+    return Picture{Image(asked.width, asked.height)};
+  };
+  const auto worker = make();
+  worker->request(both);
+  const auto last = converged(*worker);
+  ASSERT_TRUE(last);
+  ASSERT_EQ(last->side_seconds.size(), 2u);
+  EXPECT_GE(last->side_seconds[1], 0.03);
+  EXPECT_GE(last->seconds, last->side_seconds[0] + last->side_seconds[1]);
+}
+
 TEST_F(Worker, StopsWhileRendering) {
   render_time_ = 20s;
   const auto begin = std::chrono::steady_clock::now();
