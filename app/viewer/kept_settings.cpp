@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +15,16 @@ namespace {
 constexpr int kLeastSide = 64, kMostSide = 16384;  // minimum size of a usable window
 
 }  // namespace
+
+double text_size_after(double size, int steps) {
+  int nearest = 0;
+  const auto count = static_cast<int>(kTextSizes.size());
+  const auto at = [](int i) { return kTextSizes[static_cast<std::size_t>(i)]; };
+  for (int i = 1; i < count; ++i) {
+    if (std::abs(at(i) - size) < std::abs(at(nearest) - size)) nearest = i;
+  }
+  return at(std::clamp(nearest + steps, 0, count - 1));
+}
 
 std::string settings_file() {
   const char* const folder = std::getenv("XDG_CONFIG_HOME");
@@ -34,6 +46,9 @@ KeptSettings read_settings(const std::string& file) {
     } else if (word == "panel") {
       bool panel = true;
       if (in >> panel) settings.panel = panel;
+    } else if (word == "text") {
+      double text = 1;
+      if (in >> text) settings.text = text_size_after(text, 0);
     }
   }
   return settings;
@@ -50,7 +65,8 @@ bool write_kept(const std::string& file, const std::string& text) {
 }
 
 bool write_settings(const std::string& file, const KeptSettings& settings) {
-  return write_kept(file, fmt::format("size {} {}\npanel {:d}\n", settings.width, settings.height, settings.panel));
+  return write_kept(file, fmt::format("size {} {}\npanel {:d}\ntext {}\n", settings.width, settings.height,
+                                      settings.panel, settings.text));
 }
 
 }  // namespace scarp::viewer

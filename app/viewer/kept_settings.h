@@ -2,14 +2,21 @@
 // Settings that the window keeps between runs: scarp/view in the XDG configuration folder.
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace scarp::viewer {
 
 struct KeptSettings {
-  int width = 1280, height = 720;  ///< of the window
-  bool panel = true;               ///< whether it is visible
+  int width = 0, height = 0;  ///< of the window; 0: not kept yet
+  bool panel = true;          ///< whether it is visible
+  double text = 1;            ///< size of text, one of kTextSizes
 };
+
+/// Sizes of text, as multiples of the usual one, ascending.
+inline constexpr std::array kTextSizes = {1.0, 1.25, 1.5, 2.0};
+/// The size that is `steps` larger, within kTextSizes.
+double text_size_after(double size, int steps);
 
 /// $XDG_CONFIG_HOME/scarp/view, or ~/.config/scarp/view; empty if neither variable is set.
 std::string settings_file();

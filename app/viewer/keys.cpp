@@ -18,7 +18,7 @@ std::optional<Value> find(const std::array<std::pair<int, Value>, Count>& table,
   return found == table.end() ? std::nullopt : std::optional(found->second);
 }
 
-constexpr std::array<std::pair<int, WindowAction>, 24> kActions = {{
+constexpr std::array<std::pair<int, WindowAction>, 25> kActions = {{
     {GLFW_KEY_O, WindowAction::orbit},        {GLFW_KEY_F, WindowAction::fly},
     {GLFW_KEY_G, WindowAction::walk},         {GLFW_KEY_T, WindowAction::top},
     {GLFW_KEY_H, WindowAction::first_view},   {GLFW_KEY_M, WindowAction::measure},
@@ -30,7 +30,8 @@ constexpr std::array<std::pair<int, WindowAction>, 24> kActions = {{
     {GLFW_KEY_LEFT, WindowAction::look_left}, {GLFW_KEY_RIGHT, WindowAction::look_right},
     {GLFW_KEY_UP, WindowAction::look_up},     {GLFW_KEY_DOWN, WindowAction::look_down},
     {GLFW_KEY_F5, WindowAction::reopen},      {GLFW_KEY_TAB, WindowAction::panel},
-    {GLFW_KEY_F1, WindowAction::help},        {GLFW_KEY_ESCAPE, WindowAction::escape},
+    {GLFW_KEY_F6, WindowAction::panel_keys},  {GLFW_KEY_F1, WindowAction::help},
+    {GLFW_KEY_ESCAPE, WindowAction::escape},
 }};
 
 constexpr std::array<std::pair<int, MoveKey>, 8> kMoves = {{
@@ -96,6 +97,8 @@ std::vector<HelpLine> help_lines() {
           {"R", "copy the coordinates under the cursor"},
           {"Ctrl Z, Ctrl Y", "take a change of the panel back, make it again"},
           {"F5", "open the input again"},
+          {"F6", "keys for the panel: Tab, Space, arrows; Esc ends it"},
+          {"Ctrl +, Ctrl -", "larger, smaller text"},
           {"Tab, F11", "hide the panel; full screen"},
           {"F1", "this list"},
           {"Esc", "end measuring, close lists; without any, the window"},

@@ -23,6 +23,7 @@ enum class WindowAction {
   save,
   reopen,
   panel,
+  panel_keys,
   help,
   through_ground,
   copy_reading,

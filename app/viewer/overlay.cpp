@@ -10,15 +10,15 @@
 #include "app/viewer/scaled.h"
 
 namespace scarp::viewer {
-void draw_toast(const Toast& toast) {
+void draw_toast(const Toast& toast, const WindowLayout& layout) {
   constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255), kBlack = IM_COL32(0, 0, 0, 200),
                   kRed = IM_COL32(160, 20, 20, 230);
   ImDrawList& list = *ImGui::GetForegroundDrawList();
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  const float margin = scaled(kMargin), wrap = std::max(window.x - 4 * margin, 1.0f);
+  const auto left = static_cast<float>(layout.left), width = static_cast<float>(layout.width);
+  const float margin = scaled(kMargin), wrap = std::max(width - 4 * margin, 1.0f);
   const char *begin = toast.text.c_str(), *end = begin + toast.text.size();
   const ImVec2 text = ImGui::CalcTextSize(begin, end, false, wrap);
-  const ImVec2 at{(window.x - text.x) / 2, window.y - text.y - 3 * margin};
+  const ImVec2 at{left + (width - text.x) / 2, static_cast<float>(layout.height) - text.y - 3 * margin};
   list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + text.x + margin, at.y + text.y + margin / 2},
                      toast.is_error ? kRed : kBlack, margin / 2);
   list.AddText(nullptr, 0, at, kWhite, begin, end, wrap);
@@ -39,13 +39,14 @@ void draw_split(double x, const std::vector<std::string>& names) {
   }
 }
 
-void draw_measured(const MeasuredLine& line, const Scene& scene, const Camera& camera, double exaggeration) {
+void draw_measured(const MeasuredLine& line, const Scene& scene, const Camera& camera, double exaggeration,
+                   const WindowLayout& layout) {
   constexpr ImU32 kSeen = IM_COL32(255, 230, 60, 255), kHidden = IM_COL32(255, 230, 60, 90),
                   kDark = IM_COL32(0, 0, 0, 160);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float scale = static_cast<float>(ImGui::GetIO().DisplaySize.x) / static_cast<float>(camera.size().x);
+  const double scale = layout.width / camera.size().x;
   const auto on_screen = [&](const dvec2& pixel) {
-    return ImVec2(static_cast<float>(pixel.x) * scale, static_cast<float>(pixel.y) * scale);
+    return ImVec2(static_cast<float>(layout.left + pixel.x * scale), static_cast<float>(pixel.y * scale));
   };
   // Slightly above the ground, which would hide it everywhere else.
   const double lift = 1e-3 * line.flat;

@@ -30,6 +30,7 @@ struct Presenter::Impl {
   VkFence done = VK_NULL_HANDLE;
   DeviceMemory texture, staging, readback;
   int width = 0, height = 0;  // size of the texture
+  int left = 0;               // column at which the picture starts
   bool uploads = false;       // the texture must be filled from the staging buffer
   bool has_imgui = false;
 
@@ -125,6 +126,11 @@ struct Presenter::Impl {
     ImGui_ImplVulkan_DestroyFontUploadObjects();
   }
 
+  void clear(VkImage target, const VkClearColorValue& colour) const {
+    const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdClearColorImage(commands, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &colour, 1, &whole);
+  }
+
   void draw_picture(VkImage target) {
     const VkExtent2D extent = swapchain.extent();
     constexpr VkImageLayout kUndefined = VK_IMAGE_LAYOUT_UNDEFINED, kTo = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -139,19 +145,27 @@ struct Presenter::Impl {
       uploads = false;
     }
     barrier(target, kUndefined, kTo, 0, VK_ACCESS_TRANSFER_WRITE_BIT);
+    const std::int32_t across = static_cast<std::int32_t>(extent.width),
+                       down = static_cast<std::int32_t>(extent.height);
+    // Wider than the window for a moment, while its size changes.
+    const std::int32_t from = std::min(left, across - 1);
+    if (texture.image && from > 0) {
+      constexpr VkClearColorValue kBlack{{0.0f, 0.0f, 0.0f, 1.0f}};
+      clear(target, kBlack);
+      barrier(target, kTo, kTo, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+    }
     if (texture.image) {
       VkImageBlit blit{};
       blit.srcSubresource = blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
       blit.srcOffsets[1] = {width, height, 1};
-      blit.dstOffsets[1] = {static_cast<std::int32_t>(extent.width), static_cast<std::int32_t>(extent.height), 1};
-      const bool same =
-          static_cast<std::uint32_t>(width) == extent.width && static_cast<std::uint32_t>(height) == extent.height;
+      blit.dstOffsets[0] = {from, 0, 0};
+      blit.dstOffsets[1] = {across, down, 1};
+      const bool same = width == across - from && height == down;
       vkCmdBlitImage(commands, texture.image, kFrom, target, kTo, 1, &blit,
                      same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
     } else {
       constexpr VkClearColorValue kGrey{{0.2f, 0.2f, 0.2f, 1.0f}};
-      const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      vkCmdClearColorImage(commands, target, kTo, &kGrey, 1, &whole);
+      clear(target, kGrey);
     }
     barrier(target, kTo, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
             VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT);
@@ -212,6 +226,8 @@ void Presenter::set_image(const Image& image) {
   }
   all.uploads = true;
 }
+
+void Presenter::set_left(int column) { impl_->left = column; }
 
 void Presenter::begin_frame() { ImGui_ImplVulkan_NewFrame(); }
 

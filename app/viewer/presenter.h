@@ -23,8 +23,10 @@ class Presenter {
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
 
-  /// Replaces the picture, which fills the window.
+  /// Replaces the picture, which fills the window, or its part right of set_left().
   void set_image(const Image& image);
+  /// Sets the column of the window at which the picture starts; left of it the window is black.
+  void set_left(int column);
   /// Call before ImGui::NewFrame().
   void begin_frame();
   /// Shows the picture and the output of ImGui::Render(). With `seen`, also returns the presented image. Returns false

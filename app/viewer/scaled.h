@@ -4,10 +4,11 @@
 
 #include <imgui.h>
 
+#include "app/viewer/layout.h"
+
 namespace scarp::viewer {
 
 /// Pixels of the screen for pixels at a scale of 1.
 inline float scaled(float pixels) { return pixels * ImGui::GetFontSize() / 13; }
-constexpr float kMargin = 10;  ///< pixels at a scale of 1
 
 }  // namespace scarp::viewer

@@ -198,6 +198,23 @@ std::vector<PictureSide> Subject::sides(int width, int height) const {
   return sides;
 }
 
+std::vector<JudgedPixel> Subject::judged(const Ray& ray) const {
+  std::vector<JudgedPixel> pixels;
+  for (const Side* side : {&main_, other_ ? &*other_ : nullptr}) {
+    if (!side) continue;
+    Opened& opened = *side->opened;
+    if (opened.prepared.input().coarse_voxels || entry_of(side->settings.look).large_pixels) return {};
+    const Scene& scene = opened.prepared.given_scene();
+    try {
+      if (!opened.pixel_judges) opened.pixel_judges = scene.judge();
+      pixels.push_back(judge_pixel(scene, *opened.pixel_judges, ray, kOneCell));
+    } catch (const Error&) {
+      return {};
+    }
+  }
+  return pixels;
+}
+
 std::vector<const Opening*> Subject::openings() const {
   std::vector<const Opening*> openings{&main_.opening};
   if (other_) openings.push_back(&other_->opening);

@@ -12,6 +12,7 @@
 #include "app/viewer/controls.h"
 #include "app/viewer/opening.h"
 #include "app/viewer/picture_worker.h"
+#include "app/viewer/verdict_text.h"
 
 namespace scarp::viewer {
 
@@ -54,6 +55,9 @@ class Subject {
 
   /// The pictures for a window of this size: that of the input, and that of the comparison.
   std::vector<PictureSide> sides(int width, int height) const;
+  /// The verdict on one ray of each side, in the same order, by the CPU; empty where a side cannot be judged: large
+  /// pixels, coarser voxels, fields that are only on a device.
+  std::vector<JudgedPixel> judged(const Ray& ray) const;
   /// The inputs with their options, in the same order.
   std::vector<const Opening*> openings() const;
 
@@ -65,7 +69,8 @@ class Subject {
     Opened(cli::InputKind kind, cli::RenderOptions options, ImageSize size)
         : prepared(kind, std::move(options), size) {}
     cli::PreparedScene prepared;
-    std::optional<Scene> judges{};  // created on request
+    std::optional<Scene> judges{};        // created on request
+    std::optional<Scene> pixel_judges{};  // the same for single pixels, on the window's thread
   };
   struct Side {
     Opening opening;

@@ -56,6 +56,22 @@ std::string save_numbered(const Image& image) {
   return name;
 }
 
+std::string save_line(const dvec2& from_lonlat, const dvec2& to_lonlat) {
+  std::string name = first_free("scarp-line-", ".geojson");
+  ReplaceFile replace(name);
+  std::ofstream out(replace.temporary_path());
+  // RFC 7946: longitude before latitude, WGS 84.
+  out << fmt::format(
+      R"({{"type": "FeatureCollection", "features": [{{"type": "Feature", "properties": {{"name": "measured line"}}, )"
+      R"("geometry": {{"type": "LineString", "coordinates": [[{:.9f}, {:.9f}], [{:.9f}, {:.9f}]]}}}}]}})"
+      "\n",
+      from_lonlat.x, from_lonlat.y, to_lonlat.x, to_lonlat.y);
+  out.close();
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", name));
+  replace.commit();
+  return name;
+}
+
 std::string next_path() { return first_free("scarp-path-", ".csv"); }
 
 void add_to_path(const std::string& file, const Pose& pose) {

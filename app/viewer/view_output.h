@@ -20,6 +20,10 @@ std::string render_command(const Opening& opening, const cli::Places& places, co
 /// if it cannot be written.
 std::string save_numbered(const Image& image);
 
+/// Saves a line under the first free name of scarp-line-1.geojson, ... and returns it: for `scarp render --top --draw`.
+/// The ends are longitude and latitude in degrees on WGS 84. Throws Error if it cannot be written.
+std::string save_line(const dvec2& from_lonlat, const dvec2& to_lonlat);
+
 /// Adds the pose of a perspective camera to a file for `scarp render --path`. Throws Error if it cannot be written;
 /// then it stays as it was.
 void add_to_path(const std::string& file, const Pose& pose);

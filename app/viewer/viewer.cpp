@@ -27,24 +27,40 @@ constexpr double kSignalWait = 0.5;     // seconds between two checks for Ctrl-C
 constexpr double kWatch = 0.5;          // seconds between two looks at the input's files
 constexpr std::array<const char*, 6> kCameraOptions = {"--view", "--eye", "--eye-above", "--target", "--top", "--area"};
 
+constexpr int kFirstWidth = 1280, kFirstHeight = 720;  // pixels at a scale of 1
+
+// The size of a window that has not been used before: it fits on the screen.
+ImageSize first_size(const Glfw::Screen& screen) {
+  const auto side = [&](int pixels, int most) {
+    const auto scaled = static_cast<int>(pixels * screen.scale);
+    return most > 0 ? std::min(scaled, most) : scaled;
+  };
+  return {side(kFirstWidth, screen.width), side(kFirstHeight, screen.height)};
+}
+
 }  // namespace
 
 Viewer::Viewer(Opening opening) : options_(*opening.options), timings_(options_.timings) {
+  const Glfw::Screen screen = Glfw::screen();
   if (!options_.play.empty()) played_ = read_recording(options_.play);
   if (played_) {
     width_ = played_->width, height_ = played_->height;
   } else {
     const KeptSettings kept = read_settings(settings_file());
-    const ImageSize size = window_size(options_.picture).value_or(ImageSize{kept.width, kept.height});
+    const ImageSize first = kept.width > 0 ? ImageSize{kept.width, kept.height} : first_size(screen);
+    const ImageSize size = window_size(options_.picture).value_or(first);
     width_ = size.width, height_ = size.height;
     shows_panel_ = kept.panel;
+    text_ = kept.text;
   }
-  show_first_view(std::make_unique<Subject>(std::move(opening), width_, height_));
+  lay_out(screen.scale * text_);
+  show_first_view(std::make_unique<Subject>(std::move(opening), area_.width, area_.height));
   glfw_ = std::make_unique<Glfw>(width_, height_, title());
   if (!played_) listen();
-  imgui_ = std::make_unique<Imgui>(glfw_->get(), !played_);
+  imgui_ = std::make_unique<Imgui>(glfw_->get(), !played_, text_);
   panel_.reopens = [this](const OptionChange& change) { return reopens(change); };
   presenter_ = std::make_unique<Presenter>(glfw_->get(), options_.window_device, options_.validation);
+  lay_out(imgui_->scale());
   worker_ = std::make_unique<PictureWorker>([] { glfwPostEmptyEvent(); });
 }
 
@@ -54,7 +70,7 @@ void Viewer::run() {
   } else {
     loop();
     keep_view();
-    write_settings(settings_file(), {width_, height_, shows_panel_});
+    write_settings(settings_file(), {width_, height_, shows_panel_, text_});
   }
   worker_.reset();
   if (!options_.record.empty()) {
@@ -207,7 +223,10 @@ void Viewer::step(double now, double, double since) {
   int across = 0, down = 0;
   glfwGetFramebufferSize(glfw_->get(), &across, &down);
   const bool resized = across > 0 && down > 0 && (across != width_ || down != height_) && !played_;
-  if (resized) width_ = across, height_ = down;
+  if (resized) {
+    width_ = across, height_ = down;
+    lay_out(imgui_->scale());
+  }
   if (navigator_->advance(since) || settings_changed_ || resized) {
     settings_changed_ = false;
     changed_at_ = now;
@@ -229,8 +248,8 @@ void Viewer::ask(bool moving) {
   // A copy: the navigator moves on.
   const Navigator there = *navigator_;
   generation_ = worker_->request({[there](int width, int height) { return there.camera(width, height); },
-                                  subject_->sides(width_, height_), moving, !moving});
-  camera_ = navigator_->camera(width_, height_);
+                                  subject_->sides(area_.width, area_.height), moving, !moving});
+  camera_ = navigator_->camera(area_.width, area_.height);
 }
 
 void Viewer::show(WorkedPicture worked) {
@@ -255,13 +274,27 @@ void Viewer::show_sides() {
   std::vector<Image> images;
   for (const Picture& side : shown_->sides) {
     // Large pixels keep sharp edges; a picture next to them has a different size.
-    images.push_back(shown_->large_pixels ? stretched(side.image, width_, height_) : side.image);
+    images.push_back(shown_->large_pixels ? stretched(side.image, area_.width, area_.height) : side.image);
   }
   if (images.size() > 1) {
     presenter_->set_image(split_image(images[0], images[1], line_.column(images[0].width)));
   } else {
     presenter_->set_image(images[0]);
   }
+}
+
+// The picture and the panel change their places; the old picture is stretched until there is one of the new size.
+void Viewer::lay_out(double scale) {
+  area_ = layout_of(width_, height_, shows_panel_, scale);
+  if (presenter_) presenter_->set_left(area_.left);
+  settings_changed_ = true;
+}
+
+void Viewer::set_text(double size) {
+  text_ = size;
+  imgui_->set_text(size);
+  lay_out(imgui_->scale());
+  say(fmt::format("text of {:.0f} %", 100 * size));
 }
 
 std::optional<Reading> Viewer::reading_at(const dvec2& at) const {
@@ -274,7 +307,24 @@ std::optional<Reading> Viewer::reading_at(const dvec2& at) const {
   }
 }
 
-void Viewer::draw(Image* seen) {
+PanelActions Viewer::draw_controls() {
+  panel_.mode = navigator_->pose().mode;
+  panel_.speed = navigator_->speed();
+  panel_.fov_deg = navigator_->pose().fov_deg;
+  panel_.first_fov_deg = first_.fov_deg;
+  panel_.text = text_;
+  panel_.shown = shown_ ? &*shown_ : nullptr;
+  panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
+  panel_.times = !played_;  // times differ from run to run
+  panel_.busy = worker_->busy();
+  const bool inside = camera_ && area_.contains(cursor_) && !ImGui::GetIO().WantCaptureMouse;
+  panel_.reading = inside ? reading_at(pointed()) : std::nullopt;
+  // Where a march finds nothing, too: that may be its error.
+  panel_.pixel = inside ? subject_->judged(camera_->ray(pointed().x, pointed().y)) : std::vector<JudgedPixel>{};
+  return draw_panel(panel_, area_);
+}
+
+void Viewer::draw(Image* seen, bool clean) {
   presenter_->begin_frame();
   ImGui_ImplGlfw_NewFrame();
   if (played_) {
@@ -283,24 +333,15 @@ void Viewer::draw(Image* seen) {
     io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
     std::copy(played_buttons_.begin(), played_buttons_.end(), std::begin(io.MouseDown));
   }
+  let_panel_have_keys(panel_);
   ImGui::NewFrame();
   if (panel_.line && camera_)
-    draw_measured(*panel_.line, subject_->prepared().given_scene(), *camera_, subject_->prepared().exaggeration());
-  if (compares()) draw_split(line_.share() * ImGui::GetIO().DisplaySize.x, panel_.names);
+    draw_measured(*panel_.line, subject_->prepared().given_scene(), *camera_, subject_->prepared().exaggeration(),
+                  area_);
+  if (compares()) draw_split(area_.left + line_.share() * area_.width, panel_.names);
   PanelActions actions;
-  if (shows_panel_) {
-    panel_.mode = navigator_->pose().mode;
-    panel_.speed = navigator_->speed();
-    panel_.fov_deg = navigator_->pose().fov_deg;
-    panel_.first_fov_deg = first_.fov_deg;
-    panel_.shown = shown_ ? &*shown_ : nullptr;
-    panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
-    panel_.times = !played_;  // times differ from run to run
-    panel_.busy = worker_->busy();
-    panel_.reading = reading_at(cursor_);
-    actions = draw_panel(panel_);
-  }
-  if (!panel_.message.text.empty() && seconds() < panel_.message.until) draw_toast(panel_.message);
+  if (shows_panel_ && !clean) actions = draw_controls();
+  if (!clean && !panel_.message.text.empty() && seconds() < panel_.message.until) draw_toast(panel_.message, area_);
   panel_.lists_open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
   ImGui::Render();
   if (presenter_->present(seen)) {
@@ -308,10 +349,11 @@ void Viewer::draw(Image* seen) {
   } else if (int across = 0, down = 0; glfwGetFramebufferSize(glfw_->get(), &across, &down), across > 0 && down > 0) {
     redraws_ = kRedraws;  // again: the size changed meanwhile
   }
-  act(actions);
+  if (!clean) act(actions);
 }
 
 void Viewer::act(const PanelActions& actions) {
+  if (actions.text) set_text(*actions.text);
   if (actions.mode) set_mode(*actions.mode);
   if (actions.fov_deg) navigator_->set_fov(*actions.fov_deg);
   if (!actions.error.empty()) fail(actions.error, 0);

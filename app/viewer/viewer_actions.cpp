@@ -3,8 +3,15 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/viewer/view_output.h"
 #include "app/viewer/viewer_window.h"
@@ -91,7 +98,7 @@ void Viewer::drag_sun(const dvec2& drag) {
 void Viewer::open_files(const std::vector<std::string>& files) {
   redraws_ = kRedraws;
   try {
-    auto subject = std::make_unique<Subject>(opening_of(files), width_, height_);
+    auto subject = std::make_unique<Subject>(opening_of(files), area_.width, area_.height);
     keep_view();
     panel_.message = {};
     show_first_view(std::move(subject));
@@ -107,8 +114,8 @@ void Viewer::say(const std::string& message) {
 }
 
 std::string Viewer::command(std::size_t side, const std::string& output) const {
-  return render_command(*subject_->openings()[side], subject_->prepared().places(), navigator_->pose(), width_, height_,
-                        output);
+  return render_command(*subject_->openings()[side], subject_->prepared().places(), navigator_->pose(), area_.width,
+                        area_.height, output);
 }
 
 // The last good picture stays. `line` is the line of a recording that
@@ -120,7 +127,7 @@ void Viewer::fail(const std::string& message, int line) {
 }
 
 void Viewer::copy_reading() {
-  const std::optional<Reading> reading = reading_at(cursor_);
+  const std::optional<Reading> reading = area_.contains(cursor_) ? reading_at(pointed()) : std::nullopt;
   if (!reading) return say("there is nothing under the cursor");
   glfwSetClipboardString(glfw_->get(), reading->place.c_str());
   say(reading->place);
@@ -128,18 +135,47 @@ void Viewer::copy_reading() {
   std::fflush(stdout);
 }
 
+// Saves the picture as the window shows it, with the names of its sides and the measured line, if anything is drawn
+// over it. Returns the file's name.
+std::string Viewer::save_drawn() {
+  const bool drawn = compares() || panel_.line;
+  Image seen;
+  if (drawn) draw(&seen, true);
+  if (seen.width != width_ || seen.height != height_) return {};
+  Image part(area_.width, area_.height);
+  for (int y = 0; y < part.height; ++y) {
+    std::copy_n(seen.pixel(area_.left, y), std::ptrdiff_t{3} * part.width, part.pixel(0, y));
+  }
+  std::string name = save_numbered(part);
+  fmt::print("{}: the picture with what is drawn over it in the window\n", name);
+  return name;
+}
+
+// Maps by `scarp render` draw vectors: the measured line as one, with the command of the map.
+void Viewer::save_line_of_map() {
+  if (!panel_.line || !frames_->lonlat || navigator_->pose().mode != MoveMode::top) return;
+  std::array<dvec3, 2> ends{panel_.line->from, panel_.line->to};
+  if (frames_->lonlat->from_local(ends)) return;
+  const std::string name = save_line({ends[0].x, ends[0].y}, {ends[1].x, ends[1].y});
+  fmt::print("{}: {} --draw {}\n", name, command(0, "map.png"), name);
+}
+
 // Saves both sides if there are two.
 void Viewer::save_picture() {
   saves_ = false;
   redraws_ = kRedraws;
   try {
-    std::string names;
+    std::vector<std::string> names;
     for (std::size_t i = 0; i < shown_->sides.size(); ++i) {
       const std::string name = save_numbered(shown_->sides[i].image);
-      names += (names.empty() ? "" : " and ") + name;
+      names.push_back(name);
       fmt::print("{}: {}\n", name, command(i, name));
     }
-    say(names + (shown_->sides.size() > 1 ? " are saved" : " is saved"));
+    if (std::string drawn = save_drawn(); !drawn.empty()) names.push_back(std::move(drawn));
+    save_line_of_map();
+    const std::string last = names.back();
+    names.pop_back();
+    say(names.empty() ? last + " is saved" : fmt::format("{} and {} are saved", fmt::join(names, ", "), last));
     std::fflush(stdout);
   } catch (const Error& error) {
     fail(error.what(), save_line_);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "app/viewer/kept_settings.h"
 #include "app/viewer/viewer_window.h"
 
 namespace scarp::viewer {
@@ -49,7 +50,7 @@ void Viewer::take(const WindowEvent& event) {
     case WindowEvent::Kind::button:
       return take_button(event, io.WantCaptureMouse);
     case WindowEvent::Kind::wheel:
-      if (!io.WantCaptureMouse) navigator_->wheel(event.y, cursor_, size());
+      if (!io.WantCaptureMouse) navigator_->wheel(event.y, pointed(), size());
       return;
     case WindowEvent::Kind::key:
       if (!io.WantTextInput || !event.down) take_key(event);
@@ -75,18 +76,19 @@ void Viewer::take_drag(const dvec2& drag) {
     case Dragged::sun:
       return drag_sun(drag);
     case Dragged::line:
-      line_.drag_to(cursor_.x, size().x);
+      line_.drag_to(pointed().x, size().x);
       show_sides();
   }
 }
 
 void Viewer::take_button(const WindowEvent& event, bool on_panel) {
   if (event.down) {
+    panel_.keyboard = false;
     if (on_panel || dragging_ >= 0) return;
     dragging_ = event.code;
-    dragged_ = compares() && line_.is_at(cursor_, size())  ? Dragged::line
-               : (event.modifiers & GLFW_MOD_CONTROL) != 0 ? Dragged::sun
-                                                           : Dragged::view;
+    dragged_ = compares() && line_.is_at(pointed(), size()) ? Dragged::line
+               : (event.modifiers & GLFW_MOD_CONTROL) != 0  ? Dragged::sun
+                                                            : Dragged::view;
     way_ = 0;
     return;
   }
@@ -94,7 +96,7 @@ void Viewer::take_button(const WindowEvent& event, bool on_panel) {
   dragging_ = -1;
   if (way_ > kClickPixels || event.code != GLFW_MOUSE_BUTTON_LEFT || dragged_ != Dragged::view) return;
   const double now = seconds();
-  const std::optional<Reading> clicked = reading_at(cursor_);
+  const std::optional<Reading> clicked = reading_at(pointed());
   if (panel_.measures) {
     if (clicked) measure(clicked->point);
   } else if (now - last_click_ < kDoubleClick) {
@@ -121,13 +123,38 @@ void Viewer::measure(const dvec3& from, const dvec3& to) {
   panel_.line = measure_line(prepared.given_scene(), from, to, kAbove, prepared.exaggeration());
 }
 
+bool Viewer::panel_takes(int letter, int modifiers) {
+  if (!panel_.keyboard) return false;
+  switch (letter) {
+    case GLFW_KEY_TAB:
+      panel_.tabs = (modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
+      return true;
+    case GLFW_KEY_ESCAPE:
+      if (!panel_.lists_open) panel_.keyboard = false;
+      return true;  // lists close themselves
+    case GLFW_KEY_LEFT:
+    case GLFW_KEY_RIGHT:
+    case GLFW_KEY_UP:
+    case GLFW_KEY_DOWN:
+    case GLFW_KEY_SPACE:
+    case GLFW_KEY_ENTER:
+      return true;
+    default:
+      return false;
+  }
+}
+
 void Viewer::take_key(const WindowEvent& event) {
   const int letter = event.letter != 0 ? event.letter : event.code;
   if (event.down && (event.modifiers & GLFW_MOD_CONTROL) != 0) {
     if (letter == GLFW_KEY_Q) return glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
     if (letter == GLFW_KEY_Z) return (event.modifiers & GLFW_MOD_SHIFT) != 0 ? redo() : undo();
     if (letter == GLFW_KEY_Y) return redo();
+    const auto action = action_of(letter);
+    if (action == WindowAction::nearer) return set_text(text_size_after(text_, 1));
+    if (action == WindowAction::farther) return set_text(text_size_after(text_, -1));
   }
+  if (event.down && panel_takes(letter, event.modifiers)) return;
   if (const auto key = move_key_of(event.code)) {
     navigator_->key(*key, event.down);
     // Some layouts have the letter of an action there.
@@ -199,6 +226,13 @@ void Viewer::act(WindowAction action) {
       return;
     case WindowAction::panel:
       shows_panel_ = !shows_panel_;
+      panel_.keyboard = false;
+      return lay_out(imgui_->scale());
+    case WindowAction::panel_keys:
+      if (!shows_panel_) act(WindowAction::panel);
+      panel_.keyboard = !panel_.keyboard;
+      panel_.tabs = 1;
+      if (panel_.keyboard) say("the panel has the keyboard: Tab goes on, Space changes, Esc goes back");
       return;
     case WindowAction::reopen:
       return reopen();

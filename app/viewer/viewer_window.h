@@ -17,6 +17,7 @@
 #include "app/viewer/file_watch.h"
 #include "app/viewer/kept_view.h"
 #include "app/viewer/keys.h"
+#include "app/viewer/layout.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/picture_worker.h"
@@ -77,7 +78,10 @@ class Viewer {
 
   double seconds() const;
 
-  dvec2 size() const { return {static_cast<double>(width_), static_cast<double>(height_)}; }
+  // The size of the picture.
+  dvec2 size() const { return {static_cast<double>(area_.width), static_cast<double>(area_.height)}; }
+  // The cursor in the picture.
+  dvec2 pointed() const { return area_.in_picture(cursor_); }
 
   void take(const WindowEvent& event);
   void take_drag(const dvec2& drag);
@@ -88,6 +92,8 @@ class Viewer {
   void act(WindowAction action);
 
   void set_mode(MoveMode mode);
+  // Whether the panel takes this key, while the keyboard is its own.
+  bool panel_takes(int letter, int modifiers);
 
   void escape();
 
@@ -103,8 +109,12 @@ class Viewer {
   bool compares() const { return !subject_->compared().empty(); }
 
   void show_sides();
+  void lay_out(double scale);
+  void set_text(double size);
   std::optional<Reading> reading_at(const dvec2& at) const;
-  void draw(Image* seen);
+  // `clean`: without the panel and messages.
+  void draw(Image* seen, bool clean = false);
+  PanelActions draw_controls();
   void act(const PanelActions& actions);
   void open_files(const std::vector<std::string>& files);
 
@@ -115,6 +125,8 @@ class Viewer {
   // --- output -------------------------------------------------------------------------------------------------------
 
   void save_picture();
+  std::string save_drawn();
+  void save_line_of_map();
 
   std::string command(std::size_t side, const std::string& output) const;
 
@@ -129,7 +141,9 @@ class Viewer {
 
   const cli::ViewOptions options_;  // of the window itself
   Timings timings_;
-  int width_ = 0, height_ = 0;
+  int width_ = 0, height_ = 0;  // of the window
+  WindowLayout area_;
+  double text_ = 1;  // size of text
   std::optional<Recording> played_;
   std::array<bool, ImGuiMouseButton_COUNT> played_buttons_{};
   Recording recorded_;

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/viewer/kept_settings.h"
 #include "app/viewer/keys.h"
 #include "scarp/base/error.h"
 
@@ -22,6 +23,25 @@ constexpr float kFontPixels = 13;  // size for which Dear ImGui's font is drawn
 constexpr float kMostScale = 8;    // limit for fonts in textures
 
 }  // namespace
+
+namespace {
+
+double limited_scale(float x, float y) { return std::clamp(std::max(x, y), 1.0f, kMostScale); }
+
+}  // namespace
+
+Glfw::Screen Glfw::screen() {
+  Screen screen;
+  glfwSetErrorCallback([](int, const char*) {});
+  GLFWmonitor* const monitor = glfwInit() ? glfwGetPrimaryMonitor() : nullptr;
+  if (!monitor) return screen;
+  float x = 1, y = 1;
+  glfwGetMonitorContentScale(monitor, &x, &y);
+  screen.scale = limited_scale(x, y);
+  int left = 0, top = 0;
+  glfwGetMonitorWorkarea(monitor, &left, &top, &screen.width, &screen.height);
+  return screen;
+}
 
 Glfw::Glfw(int width, int height, const std::string& title) {
   glfwSetErrorCallback([](int, const char*) {});
@@ -94,20 +114,34 @@ void listen(GLFWwindow* window, WindowListener listener) {
   });
 }
 
-Imgui::Imgui(GLFWwindow* window, bool listens) {
+Imgui::Imgui(GLFWwindow* window, bool listens, double text) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
-  ImGui::StyleColorsDark();
   float x = 1, y = 1;
   glfwGetWindowContentScale(window, &x, &y);
-  const float scale = std::clamp(std::max(x, y), 1.0f, kMostScale);
-  ImFontConfig font;
-  font.SizePixels = std::round(kFontPixels * scale);
-  io.Fonts->AddFontDefault(&font);
-  ImGui::GetStyle().ScaleAllSizes(scale);
+  screen_ = limited_scale(x, y);
+  // Scaled fonts are blurred: each size has its own.
+  for (const double size : kTextSizes) {
+    ImFontConfig font;
+    font.SizePixels = std::round(kFontPixels * static_cast<float>(screen_ * size));
+    io.Fonts->AddFontDefault(&font);
+  }
+  set_text(text);
   ImGui_ImplGlfw_InitForVulkan(window, listens);
 }
+
+void Imgui::set_text(double size) {
+  text_ = size;
+  const auto at = std::find(kTextSizes.begin(), kTextSizes.end(), size) - kTextSizes.begin();
+  ImGuiIO& io = ImGui::GetIO();
+  io.FontDefault = io.Fonts->Fonts[static_cast<int>(at) % io.Fonts->Fonts.Size];
+  ImGui::GetStyle() = ImGuiStyle();
+  ImGui::StyleColorsDark();
+  ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale()));
+}
+
+double Imgui::scale() const { return std::round(kFontPixels * screen_ * text_) / kFontPixels; }
 
 Imgui::~Imgui() {
   ImGui_ImplGlfw_Shutdown();

@@ -14,6 +14,13 @@ namespace scarp::viewer {
 
 class Glfw {
  public:
+  /// The screen on which windows open.
+  struct Screen {
+    double scale = 1;           ///< pixels per pixel of an ordinary screen, >= 1
+    int width = 0, height = 0;  ///< without the desktop's bars, in pixels; 0: unknown
+  };
+  /// Answers without a display, too.
+  static Screen screen();
   /// Throws Error if there is no display.
   Glfw(int width, int height, const std::string& title);
   ~Glfw();
@@ -42,11 +49,18 @@ void listen(GLFWwindow* window, WindowListener listener);
 class Imgui {
  public:
   /// With `listens`, receives the window's events after the installed callbacks. The font and the panels are scaled for
-  /// the window's screen.
-  Imgui(GLFWwindow* window, bool listens);
+  /// the window's screen, and by the size of text, one of kTextSizes.
+  Imgui(GLFWwindow* window, bool listens, double text);
   ~Imgui();
   Imgui(const Imgui&) = delete;
   Imgui& operator=(const Imgui&) = delete;
+  /// Call between frames.
+  void set_text(double size);
+  /// Pixels for a pixel at a scale of 1, by the screen and the size of text.
+  double scale() const;
+
+ private:
+  double screen_ = 1, text_ = 1;
 };
 
 }  // namespace scarp::viewer

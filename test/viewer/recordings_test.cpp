@@ -31,6 +31,7 @@ constexpr Recorded kRecordings[] = {
     {"measure", "dem.tif --exaggeration 3 --look height", Recorded::Run::always},
     {"voxels", "SCENES/church.vox --samples 4", Recorded::Run::always},
     {"steps", "--function hills --march naive --look steps", Recorded::Run::always},
+    {"compare", "dem.tif --exaggeration 3", Recorded::Run::always},
     {"map", "dem.tif --ramp viridis --contours 100"},
     {"bookmarks", "dem.tif --haze 0.5"},
     {"error", "dem.tif --march naive --look error --exaggeration 3"},
@@ -72,6 +73,18 @@ void expect_differences_in_panel(const Rgb& window, const Rgb& film) {
   for (int y = top; y <= bottom; ++y) EXPECT_TRUE(differs(left, y) && differs(right, y)) << "row " << y;
 }
 
+// Right of the panel, the window shows the picture that P has saved.
+void expect_picture_beside_panel(const Rgb& window, const Rgb& saved) {
+  ASSERT_EQ(window.height, saved.height);
+  ASSERT_LT(saved.width, window.width);
+  const int left = window.width - saved.width;
+  for (int y = 0; y < saved.height; ++y) {
+    EXPECT_TRUE(
+        std::equal(window.pixel(left, y), window.pixel(left, y) + std::ptrdiff_t{3} * saved.width, saved.pixel(0, y)))
+        << "row " << y;
+  }
+}
+
 class Recordings : public Window, public testing::WithParamInterface<Recorded> {};
 
 TEST_P(Recordings, EndWithTheirPicture) {
@@ -94,11 +107,22 @@ TEST_P(Recordings, EndWithTheirPicture) {
   const Rgb film = read_png((folder_ / "scarp-view-1.png").string());
   std::ifstream in(recording);
   const std::string events{std::istreambuf_iterator<char>(in), {}};
-  if (events.find(" key 258 1 ") != std::string::npos) {
+  const bool compares = events.find(" compare ") != std::string::npos;
+  if (compares) {
+    expect_picture_beside_panel(window, read_png((folder_ / "scarp-view-3.png").string()));
+  } else if (events.find(" key 258 1 ") != std::string::npos) {
     EXPECT_TRUE(window.bytes == film.bytes) << "without the panel, the window shows the film";
   } else if (events.find(" key 290 1 ") == std::string::npos && events.find(" key 77 1 ") == std::string::npos) {
     // Neither the help nor a measured line is there.
     expect_differences_in_panel(window, film);
+  }
+  if (events.find(" key 77 1 ") != std::string::npos) {
+    const Rgb drawn = read_png((folder_ / "scarp-view-2.png").string());
+    ASSERT_EQ(drawn.bytes.size(), film.bytes.size());
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < film.bytes.size(); ++i) others += drawn.bytes[i] != film.bytes[i];
+    EXPECT_GT(others, 0u) << "the measured line is in the second picture";
+    EXPECT_LT(others, film.bytes.size() / 20) << "the panel is not";
   }
   const std::string command = printed_command("again.png");
   ASSERT_EQ(run(command), 0) << output_;

@@ -78,8 +78,9 @@ class Window : public testing::Test {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n" << events;
     return run("'" SCARP_VIEW "' " + arguments + " --play events --validation");
   }
-  // Opens the window, waits for its picture, and runs xdotool's commands on it; $window is its ID.
-  int use(const std::string& arguments, const std::string& commands) {
+  // Opens the window, waits for its picture, and runs xdotool's commands on it; $window is its ID. `script` is run: it
+  // may prepare the display for use.sh.
+  int use(const std::string& arguments, const std::string& commands, const std::string& script = "use.sh") {
     std::ofstream(folder_ / "use.sh")
         << "export XDG_CONFIG_HOME=$PWD/settings\n"
            "rm -f times.csv\n"
@@ -90,7 +91,7 @@ class Window : public testing::Test {
            "until grep -qs converged times.csv; do kill -0 $pid || exit 9; sleep 0.05; done\n"
            "window=$(xdotool search --name Scarp)\n"
         << commands << "\nwait $pid\n";
-    return run("timeout 60 bash use.sh");
+    return run("timeout 60 bash " + script);
   }
   // The command in output_, `scarp render ... -o FILE ...`, with another FILE.
   std::string printed_command(const std::string& file) const {

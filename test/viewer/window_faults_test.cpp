@@ -120,7 +120,7 @@ TEST_F(WindowFaults, MissingFileKeepsTheLastPicture) {
           "xdotool key Escape"),
       0)
       << output_;
-  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 0\n");
+  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 0\ntext 1\n");
   const std::string first = bytes_of("scarp-view-1.png");
   EXPECT_TRUE(bytes_of("scarp-view-2.png") == first) << "without the file";
   EXPECT_TRUE(bytes_of("scarp-view-3.png") == first) << "with half of the file";
@@ -139,7 +139,7 @@ TEST_F(WindowFaults, SceneErrorKeepsTheLastPicture) {
                 "sed -i s/radius/rade/ scene.json; xdotool key F5 sleep 0.5 key p sleep 0.5 key Escape"),
             0)
       << output_;
-  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 0\n");
+  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 320 240\npanel 0\ntext 1\n");
   std::ofstream(folder_ / "scene.json") << scene;
   ASSERT_EQ(run(printed_command("again.png")), 0) << output_;
   EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cases.h"
 #include "output/read_png.h"
@@ -102,6 +103,145 @@ TEST_F(Window, SavesBothSides) {
   expect_saved_again(1);
   expect_saved_again(2);
   EXPECT_FALSE(bytes_of("scarp-view-1.png") == bytes_of("scarp-view-2.png"));
+  // The third picture shows one beside the other, with their names at the bottom.
+  const auto picture = [&](int number) {
+    return read_png((folder_ / ("scarp-view-" + std::to_string(number) + ".png")).string());
+  };
+  const Rgb left = picture(1), right = picture(2), both = picture(3);
+  ASSERT_TRUE(both.width == 320 && both.height == 240);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      if (std::abs(x - 160) <= 3) continue;  // the line between them
+      const Rgb& side = x < 160 ? left : right;
+      ASSERT_TRUE(std::equal(both.pixel(x, y), both.pixel(x, y) + 3, side.pixel(x, y))) << x << ", " << y;
+    }
+  }
+  for (const auto& [from, side] : {std::pair{20, &left}, {165, &right}}) {
+    int others = 0;
+    for (int y = 215; y < 235; ++y) {
+      for (int x = from; x < from + 130; ++x)
+        others += !std::equal(both.pixel(x, y), both.pixel(x, y) + 3, side->pixel(x, y));
+    }
+    EXPECT_GT(others, 500) << "the name is missing";
+  }
+}
+
+// The picture beside the panel is that of a window as wide as what the panel leaves free, and so are clicks on it.
+TEST_F(Window, PictureIsBesideThePanel) {
+  const auto play = [&](const char* size, const std::string& events) {
+    std::ofstream(folder_ / "beside") << "scarp-view " << size << '\n' << events;
+    return run("'" SCARP_VIEW "' dem.tif --exaggeration 2 --play beside --screenshot window.png");
+  };
+  ASSERT_EQ(play("800x300",
+                 "0.1 move 610 160\n0.2 button 0 1 0\n0.3 button 0 0 0\n0.4 button 0 1 0\n0.5 button 0 0 0\n"
+                 "0.6 wheel 0 2\n0.7 key 82 1 0\n0.8 key 80 1 0\n"),
+            0)
+      << output_;
+  const std::string place = output_.substr(0, output_.find('\n'));
+  EXPECT_NE(place.find("lon,lat"), std::string::npos) << output_;
+  EXPECT_NE(output_.find(" --size 440x300"), std::string::npos) << output_;
+  const Rgb window = read_png((folder_ / "window.png").string()),
+            saved = read_png((folder_ / "scarp-view-1.png").string());
+  ASSERT_EQ(saved.width, 440);
+  for (int y = 0; y < 300; ++y) {
+    EXPECT_TRUE(std::equal(saved.pixel(0, y), saved.pixel(0, y) + 3 * 440, window.pixel(360, y))) << "row " << y;
+  }
+  ASSERT_EQ(play("440x300",
+                 "0.05 key 258 1 0\n0.1 move 250 160\n0.2 button 0 1 0\n0.3 button 0 0 0\n0.4 button 0 1 0\n"
+                 "0.5 button 0 0 0\n0.6 wheel 0 2\n0.7 key 82 1 0\n0.8 key 80 1 0\n"),
+            0)
+      << output_;
+  EXPECT_EQ(output_.substr(0, output_.find('\n')), place);
+  EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("scarp-view-2.png"));
+}
+
+// F6 gives the keyboard to the panel: Tab goes to the field of view, in which Enter types a number, and on to the check
+// box of shadows, which Space unticks. Arrows do not turn the view meanwhile; after Esc they do.
+TEST_F(Window, ControlsAreReachedByKeys) {
+  double time = 0.1;
+  std::string events;
+  const auto press = [&](int key, int times = 1) {
+    for (int i = 0; i < times; ++i) {
+      for (const int down : {1, 0}) {
+        events += std::to_string(time) + " key " + std::to_string(key) + ' ' + std::to_string(down) + " 0\n";
+        time += 0.03;
+      }
+    }
+  };
+  constexpr int kF6 = 295, kTab = 258, kSpace = 32, kEnter = 257, kDown = 264, kEscape = 256, kC = 67;
+  press(kF6);      // the first button
+  press(kTab, 7);  // buttons, modes, field of view
+  press(kEnter);
+  events += std::to_string(time += 0.1) + " text 55\n";
+  time += 0.1;
+  press(kEnter);
+  press(kTab, 5);  // look, sun, sky, shadows
+  press(kSpace);
+  press(kDown);
+  press(kC);
+  press(kEscape);
+  press(kDown);
+  press(kC);
+  ASSERT_EQ(view(events, "dem.tif --eye 1000,-3000,3000 --target 1000,1000,0"), 0) << output_;
+  const std::size_t second = output_.find('\n');
+  const std::string in_panel = output_.substr(0, second), after = output_.substr(second);
+  EXPECT_TRUE(in_panel.starts_with("scarp render dem.tif --no-shadows -o picture.png")) << output_;
+  EXPECT_NE(in_panel.find(" --eye=1000,-3000,3000 "), std::string::npos) << output_;
+  EXPECT_NE(in_panel.find(" --fov 55"), std::string::npos) << output_;
+  EXPECT_EQ(after.find(" --eye=1000,-3000,3000 "), std::string::npos) << output_;
+}
+
+// On a map, P saves the measured line as a vector, and prints the command that draws it.
+TEST_F(Window, SavesTheMeasuredLineOfAMap) {
+  const std::string click = " button 0 1 0\n", up = " button 0 0 0\n";
+  ASSERT_EQ(view("0.05 key 258 1 0\n0.1 key 84 1 0\n0.2 key 77 1 0\n0.3 move 100 120\n0.4" + click + "0.5" + up +
+                     "0.6 move 220 120\n1.2" + click + "1.3" + up + "1.5 key 80 1 0\n",
+                 "dem.tif --look height"),
+            0)
+      << output_;
+  const std::string begin = "scarp-line-1.geojson: scarp ";
+  const std::size_t at = output_.find(begin);
+  ASSERT_NE(at, std::string::npos) << output_;
+  const std::string command = output_.substr(at + begin.size(), output_.find('\n', at) - at - begin.size());
+  EXPECT_NE(command.find(" --draw scarp-line-1.geojson"), std::string::npos) << command;
+  ASSERT_EQ(run("'" SCARP_PROGRAM "' " + command), 0) << output_;
+  // Between the clicks, and only there, the map is red.
+  const Rgb map = read_png((folder_ / "map.png").string());
+  ASSERT_EQ(map.width, 320);
+  const auto is_red = [&](int x) {
+    bool red = false;
+    for (int y = 117; y < 123; ++y) red |= map.pixel(x, y)[0] > map.pixel(x, y)[1] + 60;
+    return red;
+  };
+  for (int x = 103; x < 218; ++x) EXPECT_TRUE(is_red(x)) << x;
+  EXPECT_FALSE(is_red(95) || is_red(225));
+}
+
+// A size of text is that of the panel, too; it is kept.
+TEST_F(Window, TextHasItsSize) {
+  std::ofstream(folder_ / "large") << "scarp-view 1300x400\n0.1 key 61 1 2\n0.2 key 80 1 0\n";
+  ASSERT_EQ(run("'" SCARP_VIEW "' dem.tif --play large"), 0) << output_;
+  EXPECT_NE(output_.find(" --size " + std::to_string(1300 - (360 * 16 + 6) / 13) + "x400"), std::string::npos)
+      << output_;
+  ASSERT_EQ(use("dem.tif --size 300x200",
+                "xdotool key ctrl+plus sleep 0.3 key ctrl+plus sleep 0.3 key ctrl+minus "
+                "sleep 0.3 key Escape"),
+            0)
+      << output_;
+  EXPECT_NE(bytes_of("settings/scarp/view").find("text 1.25\n"), std::string::npos) << bytes_of("settings/scarp/view");
+}
+
+// On a dense screen, the first window has more pixels, but no more than the screen.
+TEST_F(Window, FirstWindowFitsTheScreen) {
+  if (run("command -v xprop") != 0) GTEST_SKIP() << "xprop is missing (Debian: x11-utils)";
+  // Desktops set it for all programs, while one of them is there.
+  std::ofstream(folder_ / "dense.sh") << "xprop -root -spy >/dev/null & other=$!\n"
+                                         "xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 120'\n"
+                                         "bash use.sh; result=$?\n"
+                                         "xprop -root -remove RESOURCE_MANAGER\nkill $other\nexit $result\n";
+  EXPECT_EQ(use("dem.tif --march naive --record events", "xdotool key Escape", "dense.sh"), 0) << output_;
+  // 1.25 times 1280 x 720 is more than the screen of 1024 x 768, and 720 is not.
+  EXPECT_TRUE(bytes_of("events").starts_with("scarp-view 1024x768\n")) << bytes_of("events");
 }
 
 // Whether two pictures are the same where neither the line between two sides nor their names are drawn.
@@ -204,7 +344,7 @@ TEST_F(Window, HandlesRealPressesAndDrags) {
 TEST_F(Window, TypedNumbersMayHaveAComma) {
   // Into the first slider of the panel, the field of view, after Ctrl and a click; 257 is Enter.
   const auto typed = [&](const std::string& text) {
-    EXPECT_EQ(view("0.1 move 60 70\n0.2 key 341 1 2\n0.3 button 0 1 2\n0.4 button 0 0 2\n0.5 key 341 0 0\n0.7 text " +
+    EXPECT_EQ(view("0.1 move 60 118\n0.2 key 341 1 2\n0.3 button 0 1 2\n0.4 button 0 0 2\n0.5 key 341 0 0\n0.7 text " +
                        text + "\n0.9 key 257 1 0\n1 key 257 0 0\n1.2 key 67 1 0\n",
                    "dem.tif --screenshot window.png"),
               0)
@@ -241,7 +381,7 @@ TEST_F(Window, WorkIsNotClosedByMistake) {
       << output_;
   // Esc closes a list first: that of the looks.
   ASSERT_EQ(use("dem.tif --size 320x240",
-                "xdotool mousemove 100 93 sleep 0.2 click 1 sleep 0.5 key Escape sleep 0.5\n"
+                "xdotool mousemove 100 141 sleep 0.2 click 1 sleep 0.5 key Escape sleep 0.5\n"
                 "kill -0 $pid || exit 7\n"
                 "xdotool key Escape"),
             0)
@@ -299,7 +439,7 @@ TEST_F(Window, SurvivesResizing) {
             0)
       << output_;
   // The next window is as large.
-  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 333 222\npanel 1\n");
+  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 333 222\npanel 1\ntext 1\n");
   ASSERT_EQ(use("dem.tif --record events", "xdotool mousemove 300 200 sleep 0.1 key Escape"), 0) << output_;
   EXPECT_TRUE(bytes_of("events").starts_with("scarp-view 333x222\n"));
 }
@@ -337,7 +477,7 @@ std::string random_events(int count, unsigned seed) {
       constexpr const char* kTyped[] = {"1,5", "-2", "1e3", "nan", "4.5.6", "text", "\u00e4"};
       text << "text " << kTyped[pick(0, static_cast<int>(std::size(kTyped)) - 1)] << '\n';
     } else if (kind < 9) {
-      constexpr int kOthers[] = {256, 257, 258, 259, 262, 263, 264, 265, 61, 45, 290, 294, 340, 344, 32, 320};
+      constexpr int kOthers[] = {256, 257, 258, 259, 262, 263, 264, 265, 61, 45, 290, 294, 295, 340, 344, 32, 320};
       const int which = pick(0, static_cast<int>(keys.size() + std::size(kOthers)) - 1);
       const int code = which < static_cast<int>(keys.size()) ? keys[static_cast<std::size_t>(which)]
                                                              : kOthers[which - static_cast<int>(keys.size())];
