@@ -18,12 +18,14 @@ std::optional<Value> find(const std::array<std::pair<int, Value>, Count>& table,
   return found == table.end() ? std::nullopt : std::optional(found->second);
 }
 
-constexpr std::array<std::pair<int, WindowAction>, 25> kActions = {{
+constexpr std::array<std::pair<int, WindowAction>, 29> kActions = {{
     {GLFW_KEY_O, WindowAction::orbit},        {GLFW_KEY_F, WindowAction::fly},
     {GLFW_KEY_G, WindowAction::walk},         {GLFW_KEY_T, WindowAction::top},
     {GLFW_KEY_H, WindowAction::first_view},   {GLFW_KEY_M, WindowAction::measure},
     {GLFW_KEY_K, WindowAction::keep_in_path}, {GLFW_KEY_C, WindowAction::copy},
     {GLFW_KEY_P, WindowAction::save},         {GLFW_KEY_X, WindowAction::through_ground},
+    {GLFW_KEY_V, WindowAction::observe},      {GLFW_KEY_N, WindowAction::horizon},
+    {GLFW_KEY_U, WindowAction::sun},          {GLFW_KEY_SPACE, WindowAction::play_sun},
     {GLFW_KEY_R, WindowAction::copy_reading}, {GLFW_KEY_F11, WindowAction::full_screen},
     {GLFW_KEY_EQUAL, WindowAction::nearer},   {GLFW_KEY_KP_ADD, WindowAction::nearer},
     {GLFW_KEY_MINUS, WindowAction::farther},  {GLFW_KEY_KP_SUBTRACT, WindowAction::farther},
@@ -67,7 +69,8 @@ int letter_of(int key, int scancode) {
 
 bool repeats(int letter) {
   const auto action = action_of(letter);
-  return action && *action >= WindowAction::nearer && *action <= WindowAction::look_down;
+  return action &&
+         (*action == WindowAction::observe || (*action >= WindowAction::nearer && *action <= WindowAction::look_down));
 }
 
 std::optional<WindowAction> action_of(int letter) { return find(kActions, letter); }
@@ -91,8 +94,11 @@ std::vector<HelpLine> help_lines() {
           {"H", "the first view"},
           {"Ctrl 1 to 9, 1 to 9", "keep a view, return to it"},
           {"M", "measure between two clicks"},
+          {"V", "what one sees from under the cursor (held: follows it)"},
+          {"N", "the horizon under the cursor, as a polar plot"},
+          {"U, Space", "the sun of a date and time; play its day"},
           {"K", "add the view to a path, for scarp render --path"},
-          {"C", "copy the command that makes the picture again"},
+          {"C", "copy the command of the picture, or of the answers shown"},
           {"P", "save the picture"},
           {"R", "copy the coordinates under the cursor"},
           {"Ctrl Z, Ctrl Y", "take a change of the panel back, make it again"},
@@ -101,7 +107,7 @@ std::vector<HelpLine> help_lines() {
           {"Ctrl +, Ctrl -", "larger, smaller text"},
           {"Tab, F11", "hide the panel; full screen"},
           {"F1", "this list"},
-          {"Esc", "end measuring, close lists; without any, the window"},
+          {"Esc", "remove the observer, end measuring, close lists, the window"},
           {"Ctrl Q", "close the window"}};
 }
 

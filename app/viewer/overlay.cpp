@@ -39,26 +39,30 @@ void draw_split(double x, const std::vector<std::string>& names) {
   }
 }
 
-void draw_measured(const MeasuredLine& line, const Scene& scene, const Camera& camera, double exaggeration,
-                   const WindowLayout& layout) {
-  constexpr ImU32 kSeen = IM_COL32(255, 230, 60, 255), kHidden = IM_COL32(255, 230, 60, 90),
-                  kDark = IM_COL32(0, 0, 0, 160);
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+namespace {
+
+constexpr ImU32 kDark = IM_COL32(0, 0, 0, 160), kYellow = IM_COL32(255, 230, 60, 255);
+
+ImVec2 on_screen(const dvec2& pixel, const Camera& camera, const WindowLayout& layout) {
   const double scale = layout.width / camera.size().x;
-  const auto on_screen = [&](const dvec2& pixel) {
-    return ImVec2(static_cast<float>(layout.left + pixel.x * scale), static_cast<float>(pixel.y * scale));
-  };
-  // Slightly above the ground, which would hide it everywhere else.
-  const double lift = 1e-3 * line.flat;
+  return {static_cast<float>(layout.left + pixel.x * scale), static_cast<float>(pixel.y * scale)};
+}
+
+ImU32 dim(ImU32 colour) {
+  constexpr ImU32 kAlpha = 90;
+  return (colour & ~IM_COL32_A_MASK) | (kAlpha << IM_COL32_A_SHIFT);
+}
+
+}  // namespace
+
+void draw_on_ground(const std::vector<GroundPoint>& line, double lift, const Scene& scene, const Camera& camera,
+                    const WindowLayout& layout) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
   std::optional<dvec2> before;
   bool seen_before = false;
-  const auto count = line.heights.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double height = static_cast<double>(line.heights[i]) * exaggeration + lift;
-    const dvec3 at(line.from.x + share * (line.to.x - line.from.x), line.from.y + share * (line.to.y - line.from.y),
-                   height);
-    const std::optional<dvec2> pixel = std::isfinite(height) ? camera.pixel(at) : std::nullopt;
+  for (const GroundPoint& point : line) {
+    const dvec3 at = point.at + dvec3(0, 0, lift);
+    const std::optional<dvec2> pixel = std::isfinite(at.z) ? camera.pixel(at) : std::nullopt;
     if (!pixel) {
       before.reset();
       continue;
@@ -67,18 +71,51 @@ void draw_measured(const MeasuredLine& line, const Scene& scene, const Camera& c
     sight.t_max = dot(at - sight.origin, sight.direction) / dot(sight.direction, sight.direction);
     const bool seen = sight.t_max > 0 && !scene.occluded(sight);
     if (before) {
-      const ImVec2 from = on_screen(*before), to = on_screen(*pixel);
+      const ImVec2 from = on_screen(*before, camera, layout), to = on_screen(*pixel, camera, layout);
       if (seen && seen_before) list.AddLine(from, to, kDark, scaled(4));
-      list.AddLine(from, to, seen && seen_before ? kSeen : kHidden, scaled(2));
+      list.AddLine(from, to, seen && seen_before ? point.colour : dim(point.colour), scaled(2));
     }
     before = pixel, seen_before = seen;
   }
-  for (const dvec3& end : {line.from, line.to}) {
-    const std::optional<dvec2> pixel = camera.pixel(end);
-    if (!pixel) continue;
-    list.AddCircleFilled(on_screen(*pixel), scaled(5), kDark);
-    list.AddCircleFilled(on_screen(*pixel), scaled(3.5f), kSeen);
+}
+
+void draw_mark(const dvec3& at, ImU32 colour, const Camera& camera, const WindowLayout& layout) {
+  const std::optional<dvec2> pixel = std::isfinite(at.z) ? camera.pixel(at) : std::nullopt;
+  if (!pixel) return;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddCircleFilled(on_screen(*pixel, camera, layout), scaled(5), kDark);
+  list.AddCircleFilled(on_screen(*pixel, camera, layout), scaled(3.5f), colour);
+}
+
+void draw_measured(const MeasuredLine& line, const Scene& scene, const Camera& camera, double exaggeration,
+                   const WindowLayout& layout) {
+  std::vector<GroundPoint> points;
+  const auto count = line.heights.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    points.push_back({{line.from.x + share * (line.to.x - line.from.x), line.from.y + share * (line.to.y - line.from.y),
+                       static_cast<double>(line.heights[i]) * exaggeration},
+                      kYellow});
   }
+  // Slightly above the ground, which would hide it everywhere else.
+  draw_on_ground(points, 1e-3 * line.flat, scene, camera, layout);
+  for (const dvec3& end : {line.from, line.to}) draw_mark(end, kYellow, camera, layout);
+}
+
+void draw_sight(const SightAnswer& sight, const Scene& scene, const Camera& camera, const WindowLayout& layout) {
+  constexpr ImU32 kVisible = IM_COL32(80, 255, 120, 255), kBlocked = IM_COL32(255, 70, 60, 255);
+  constexpr std::size_t kPieces = 400;  // more crossings than this share pieces, which are blocked if one of them is
+  const std::size_t count = sight.ground.size(), step = 1 + count / kPieces;
+  std::vector<GroundPoint> points;
+  for (std::size_t i = 0; i < count; i += step) {
+    const auto begin = sight.ground.begin() + static_cast<std::ptrdiff_t>(i > step ? i - step + 1 : 0),
+               end = sight.ground.begin() + static_cast<std::ptrdiff_t>(i + 1);
+    const bool visible = std::all_of(begin, end, [](const SightAnswer::Point& one) { return one.visible; });
+    points.push_back({sight.ground[i].at, visible ? kVisible : kBlocked});
+  }
+  if (count > 0) points.push_back({sight.ground.back().at, sight.ground.back().visible ? kVisible : kBlocked});
+  draw_on_ground(points, 1e-3 * sight.line.distance, scene, camera, layout);
+  if (count > 0) draw_mark(sight.ground.back().at, sight.line.visible ? kVisible : kBlocked, camera, layout);
 }
 
 }  // namespace scarp::viewer

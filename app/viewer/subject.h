@@ -23,6 +23,8 @@ class Subject {
 
   const Opening& opening() const { return main_.opening; }
   const cli::PreparedScene& prepared() const { return main_.opened->prepared; }
+  /// The same, for owners that may outlive a change of the input.
+  std::shared_ptr<const cli::PreparedScene> shared() const { return {main_.opened, &main_.opened->prepared}; }
   /// The settings of the picture, for any camera and of any size.
   const PictureSettings& settings() const { return main_.settings; }
   /// The camera of the options.

@@ -53,6 +53,7 @@ Viewer::Viewer(Opening opening) : options_(*opening.options), timings_(options_.
     shows_panel_ = kept.panel;
     text_ = kept.text;
   }
+  answers_ = std::make_unique<MapAnswers>([] { glfwPostEmptyEvent(); });
   lay_out(screen.scale * text_);
   show_first_view(std::make_unique<Subject>(std::move(opening), area_.width, area_.height));
   glfw_ = std::make_unique<Glfw>(width_, height_, title());
@@ -89,6 +90,8 @@ std::string Viewer::title() const {
 // Switches to another input, at its first view.
 void Viewer::show_first_view(std::unique_ptr<Subject> subject) {
   std::swap(subject_, subject);  // the previous one lives until nothing refers to it
+  answers_->unpin();
+  sun_clock_.reset();
   navigate(subject_->first_camera());
   first_ = navigator_->pose();
   bookmarks_ = {};
@@ -152,6 +155,7 @@ void Viewer::navigate(const Camera& first) {
                                            subject_->prepared().view().fov_deg, input.subject.across);
   navigator_->keep_above_ground(above);
   frames_ = std::make_unique<ReadingFrames>(input.raster);
+  answers_->follow(*subject_);
   camera_.reset();
   line_from_.reset();
   note_change();
@@ -184,7 +188,8 @@ double Viewer::seconds() const {
 }
 
 bool Viewer::is_complete() const {
-  return shown_ && shown_->pass == PicturePass::converged && shown_->generation == generation_;
+  return shown_ && shown_->pass == PicturePass::converged && shown_->generation == generation_ && !settings_changed_ &&
+         !answers_->busy();
 }
 
 void Viewer::loop() {
@@ -222,6 +227,8 @@ void Viewer::loop() {
 void Viewer::step(double now, double, double since) {
   int across = 0, down = 0;
   glfwGetFramebufferSize(glfw_->get(), &across, &down);
+  take_answers();
+  move_sun(since);
   const bool resized = across > 0 && down > 0 && (across != width_ || down != height_) && !played_;
   if (resized) {
     width_ = across, height_ = down;
@@ -247,8 +254,10 @@ void Viewer::step(double now, double, double since) {
 void Viewer::ask(bool moving) {
   // A copy: the navigator moves on.
   const Navigator there = *navigator_;
+  std::vector<PictureSide> sides = subject_->sides(area_.width, area_.height);
+  for (PictureSide& side : sides) answers_->paint(side.settings);
   generation_ = worker_->request({[there](int width, int height) { return there.camera(width, height); },
-                                  subject_->sides(area_.width, area_.height), moving, !moving});
+                                  std::move(sides), moving, !moving});
   camera_ = navigator_->camera(area_.width, area_.height);
 }
 
@@ -338,6 +347,7 @@ void Viewer::draw(Image* seen, bool clean) {
   if (panel_.line && camera_)
     draw_measured(*panel_.line, subject_->prepared().given_scene(), *camera_, subject_->prepared().exaggeration(),
                   area_);
+  draw_answers(clean);
   if (compares()) draw_split(area_.left + line_.share() * area_.width, panel_.names);
   PanelActions actions;
   if (shows_panel_ && !clean) actions = draw_controls();
@@ -380,7 +390,8 @@ void Viewer::play() {
     draw(nullptr);
   }
   navigator_->release_keys();  // a key that is still held would move the view for ever
-  while (!is_complete() || saves_ || worker_->busy()) {
+  sun_time_.plays = false;
+  while (!is_complete() || saves_ || worker_->busy() || answers_->busy()) {
     glfwWaitEventsTimeout(kRest);
     if (cli::caught_signal() != 0) throw Interrupted();
     play_seconds_ += kPlayStep;

@@ -138,7 +138,7 @@ void Viewer::copy_reading() {
 // Saves the picture as the window shows it, with the names of its sides and the measured line, if anything is drawn
 // over it. Returns the file's name.
 std::string Viewer::save_drawn() {
-  const bool drawn = compares() || panel_.line;
+  const bool drawn = compares() || panel_.line || answers_->pinned();
   Image seen;
   if (drawn) draw(&seen, true);
   if (seen.width != width_ || seen.height != height_) return {};
@@ -170,6 +170,7 @@ void Viewer::save_picture() {
       const std::string name = save_numbered(shown_->sides[i].image);
       names.push_back(name);
       fmt::print("{}: {}\n", name, command(i, name));
+      if (answers_->seen()) fmt::print("{}: shows the map of {}\n", name, answers_->commands().front());
     }
     if (std::string drawn = save_drawn(); !drawn.empty()) names.push_back(std::move(drawn));
     save_line_of_map();
@@ -183,6 +184,13 @@ void Viewer::save_picture() {
 }
 
 void Viewer::copy_command() {
+  if (const std::vector<std::string> commands = answer_commands(); !commands.empty()) {
+    const std::string text = fmt::format("{}", fmt::join(commands, "\n"));
+    glfwSetClipboardString(glfw_->get(), text.c_str());
+    fmt::print("{}\n", text);
+    std::fflush(stdout);
+    return say(commands.size() > 1 ? "the commands of the answers are copied" : "the command of the answer is copied");
+  }
   const bool two = subject_->openings().size() > 1;
   std::string text = command(0, two ? "left.png" : "picture.png");
   if (two) text += "\n" + command(1, "right.png");

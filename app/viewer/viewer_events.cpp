@@ -197,6 +197,15 @@ void Viewer::act(WindowAction action) {
       return;
     case WindowAction::copy_reading:
       return copy_reading();
+    case WindowAction::observe:
+      return observe();
+    case WindowAction::horizon:
+      return toggle_horizon();
+    case WindowAction::sun:
+      return toggle_sun();
+    case WindowAction::play_sun:
+      sun_time_.plays = sun_clock_ && !sun_time_.plays;
+      return;
     case WindowAction::full_screen:
       return glfw_->toggle_full_screen();
     case WindowAction::nearer:
@@ -250,6 +259,9 @@ void Viewer::escape() {
     panel_.close_lists = true;
   } else if (panel_.measures || panel_.help) {
     panel_.measures = panel_.help = false;
+  } else if (answers_->pinned()) {
+    answers_->unpin();
+    note_change();
   } else if (worked_) {
     say("Ctrl Q closes the window");
   } else {

@@ -18,6 +18,7 @@
 #include "app/viewer/kept_view.h"
 #include "app/viewer/keys.h"
 #include "app/viewer/layout.h"
+#include "app/viewer/map_answers.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/picture_worker.h"
@@ -26,6 +27,7 @@
 #include "app/viewer/recording.h"
 #include "app/viewer/split.h"
 #include "app/viewer/subject.h"
+#include "app/viewer/sun_clock.h"
 #include "app/viewer/timings.h"
 #include "app/viewer/window.h"
 
@@ -105,6 +107,17 @@ class Viewer {
   void show(WorkedPicture worked);
 
   bool is_complete() const;
+  std::optional<dvec3> ground_under_cursor() const;
+  void observe();
+  void take_answers();
+  // `clean`: without panels.
+  void draw_answers(bool clean);
+  void draw_answer_panels(bool clean);
+  void toggle_horizon();
+  void toggle_sun();
+  void move_sun(double seconds);
+  void shine();
+  std::vector<std::string> answer_commands() const;
   // Independent of the displayed picture, so recordings end at the same view regardless of rendering times.
   bool compares() const { return !subject_->compared().empty(); }
 
@@ -177,6 +190,9 @@ class Viewer {
   SplitLine line_;
   dvec2 cursor_{-1.0};
   std::optional<dvec3> line_from_;
+  std::unique_ptr<MapAnswers> answers_;
+  std::optional<SunClock> sun_clock_{};  // while the sun of a date is shown
+  SunTime sun_time_{};
   std::unique_ptr<PictureWorker> worker_;  // ends first
 };
 
