@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "app/viewer/answer_panels.h"
 #include "app/viewer/observer_panel.h"
@@ -23,7 +24,7 @@ void Viewer::observe() {
     answers_->pin(*ground);
     worked_ = true;
   } catch (const Error& error) {
-    fail(error.what(), played_line_);
+    fail(error.what(), 0);
   }
 }
 
@@ -40,7 +41,7 @@ void Viewer::toggle_horizon() {
   try {
     answers_->toggle_horizon();
   } catch (const Error& error) {
-    fail(error.what(), played_line_);
+    fail(error.what(), 0);
   }
 }
 
@@ -54,13 +55,13 @@ void Viewer::toggle_sun() {
   namespace chrono = std::chrono;
   try {
     sun_clock_.emplace(subject_->opening());
-    if (sun_time_.day == chrono::sys_days{})
-      sun_time_.day = played_ ? chrono::sys_days(chrono::year(2026) / chrono::June / 21)
-                              : chrono::floor<chrono::days>(chrono::system_clock::now());
-    shine();
   } catch (const Error& error) {
-    fail(error.what(), played_line_);
+    return fail(error.what(), 0);
   }
+  if (sun_time_.day == chrono::sys_days{})
+    sun_time_.day = played_ ? chrono::sys_days(chrono::year(2026) / chrono::June / 21)
+                            : chrono::floor<chrono::days>(chrono::system_clock::now());
+  shine();
 }
 
 // Nights are passed over.
@@ -73,6 +74,7 @@ void Viewer::move_sun(double seconds) {
     return sun_clock_->at(sun_time_.day, static_cast<int>(sun_time_.minutes)).altitude <= 0;
   };
   for (int i = 0; i < kSteps && is_night(); ++i) sun_time_.advance(0.25);
+  if (is_night()) sun_time_.plays = false;  // in winter near a pole
   if (static_cast<int>(sun_time_.minutes) != before) shine();
 }
 
@@ -80,9 +82,12 @@ void Viewer::move_sun(double seconds) {
 void Viewer::shine() {
   redraws_ = kRedraws;
   const SunPosition sun = sun_clock_->at(sun_time_.day, static_cast<int>(sun_time_.minutes));
-  if (sun.altitude > 0)
-    change({"--sun",
-            fmt::format("{:.4f},{:.4f}", sun.azimuth * cli::kDegreesPerRadian, sun.altitude * cli::kDegreesPerRadian)});
+  if (sun.altitude <= 0) return;
+  const int line = std::exchange(played_line_, 0);  // a look without sunlight does not end a recording
+  change({"--sun",
+          fmt::format("{:.4f},{:.4f}", sun.azimuth * cli::kDegreesPerRadian, sun.altitude * cli::kDegreesPerRadian)});
+  played_line_ = line;
+  if (panel_.message.is_error) sun_time_.plays = false;
 }
 
 // The answers that are shown, each with its command.
