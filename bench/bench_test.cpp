@@ -464,7 +464,7 @@ TEST(ScarpBench, SeamsLoseNoRay) {
 TEST(ScarpBench, PitchesWritesTheDocumentedFields) {
   const json all = output_of("pitches --size 129 --repeats 1 --step 45");
   expect_documented(all, "pitches");
-  EXPECT_EQ(all["rows"].size(), 12u);
+  EXPECT_EQ(all["rows"].size(), 15u);
 }
 
 TEST(ScarpBench, SkyComparesHorizonsWithEmbree) {
@@ -496,7 +496,7 @@ TEST(ScarpBench, SkyComparesHorizonsWithEmbree) {
 TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
   const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
   expect_documented(all, "sweeps");
-  int judged = 0;
+  int judged = 0, surfaces = 0;
   for (const json& row : all["rows"]) {
     if (row.contains("tunnelled")) {
       ++judged;
@@ -504,10 +504,16 @@ TEST(ScarpBench, SweepsAgreeWithBulletWithoutTunnelling) {
       EXPECT_EQ(row["untouched"], 0) << row;
       continue;
     }
+    // Rows of both surfaces have no peer.
+    if (row.contains("bilinear_us")) {
+      ++surfaces;
+      continue;
+    }
     // Bullet computes in float, so it may decide grazing contacts differently.
     EXPECT_LE(row["differ"].get<int>(), row["sweeps"].get<int>() / 50 + 1) << row;
   }
   EXPECT_EQ(judged, 2);
+  EXPECT_GT(surfaces, 0);
 }
 
 TEST(ScarpBench, ReportsErrorsInOneLine) {

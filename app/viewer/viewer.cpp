@@ -256,8 +256,8 @@ void Viewer::ask(bool moving) {
   const Navigator there = *navigator_;
   std::vector<PictureSide> sides = subject_->sides(area_.width, area_.height);
   for (PictureSide& side : sides) answers_->paint(side.settings);
-  generation_ = worker_->request({[there](int width, int height) { return there.camera(width, height); },
-                                  std::move(sides), moving, !moving});
+  generation_ = worker_->request(
+      {[there](int width, int height) { return there.camera(width, height); }, std::move(sides), moving, !moving});
   camera_ = navigator_->camera(area_.width, area_.height);
 }
 

@@ -13,7 +13,7 @@
 namespace scarp::viewer {
 
 std::optional<dvec3> Viewer::ground_under_cursor() const {
-  const std::optional<Reading> reading = reading_at(cursor_);
+  const std::optional<Reading> reading = area_.contains(cursor_) ? reading_at(pointed()) : std::nullopt;
   return reading ? std::optional(reading->point) : std::nullopt;
 }
 

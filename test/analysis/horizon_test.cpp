@@ -158,8 +158,9 @@ TEST(Horizons, CellsOfAPlaceAreThoseOfAFieldWithThem) {
   const auto field = HeightField::view(samples.data(), 40, 50, {.cell_x = 10, .cell_y = 10});
   const auto other = HeightField::view(samples.data(), 40, 50, {.cell_x = 12.5, .cell_y = 9.25});
   int different = 0;
+  const auto share = [&](unsigned below) { return static_cast<double>(random() % below) / 100; };
   for (int i = 0; i < 200; ++i) {
-    const double col = random() % 3900 / 100., row = random() % 4900 / 100., turn = random() % 628 / 100.;
+    const double col = share(3900), row = share(4900), turn = share(628);
     const auto wanted = horizon_from(other, col, row, turn), own = horizon_from(field, col, row, turn);
     const auto found = horizon_from(field, col, row, turn, {}, dvec2(12.5, 9.25));
     ASSERT_TRUE(wanted && own && found);

@@ -79,7 +79,7 @@ TEST_F(MapLimits, HorizonsKeepTheLimit) {
 <DstRect xOff="0" yOff="0" xSize="16000" ySize="1500"/></SimpleSource></VRTRasterBand></VRTDataset>)");
   for (const char* engine : {"exact", "sweep"}) {
     const Result result = run({"horizon", dem, "--azimuths", "1", "--engine", engine, "--memory", "256M", "--scratch",
-                               path("."), "-o", path("horizon.tif")});
+                               path("."), "--plane-error", "100", "-o", path("horizon.tif")});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_GT(result.peak, 0u) << "unknown";
     EXPECT_LE(result.peak, std::uint64_t{256} << 20) << engine;
@@ -91,7 +91,9 @@ TEST_F(MapLimits, HorizonsKeepTheLimit) {
 <SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
 <SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="300" ySize="300"/>
 <DstRect xOff="0" yOff="0" xSize="60000" ySize="400"/></SimpleSource></VRTRasterBand></VRTDataset>)");
-  expect_refused({"skyview", line, "--azimuths", "4", "--memory", "256M", "-o", path("sky.tif")}, "allow more memory");
+  expect_refused(
+      {"skyview", line, "--azimuths", "4", "--memory", "256M", "--plane-error", "100", "-o", path("sky.tif")},
+      "allow more memory");
 }
 
 TEST_F(MapLimits, ReadsOnlyRowsTowardsTheSunOfAPart) {
