@@ -178,8 +178,8 @@ HorizonGround::CoarseMaxima HorizonGround::coarse_maxima(const HorizonTiles& til
 
 double HorizonGround::coarse_bytes(int cols, int rows) {
   // Twice those of level 1, which make up nearly all.
-  constexpr double kBeside = 40, kStride = 4;
-  return 2 * sizeof(float) * (cols / kStride + kBeside) * (rows / kStride + kBeside);
+  constexpr double kMargin = 40, kCoarser = 4;
+  return 2 * sizeof(float) * (cols / kCoarser + kMargin) * (rows / kCoarser + kMargin);
 }
 
 }  // namespace scarp

@@ -234,9 +234,13 @@ TEST_F(Window, TextHasItsSize) {
 // On a dense screen, the first window has more pixels, but no more than the screen.
 TEST_F(Window, FirstWindowFitsTheScreen) {
   if (run("command -v xprop") != 0) GTEST_SKIP() << "xprop is missing (Debian: x11-utils)";
-  // Desktops set it for all programs, while one of them is there.
+  // Desktops set it for all programs. It is lost when the last program leaves the screen, so it is set until another
+  // one is there.
   std::ofstream(folder_ / "dense.sh") << "xprop -root -spy >/dev/null & other=$!\n"
-                                         "xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 120'\n"
+                                         "until xprop -root RESOURCE_MANAGER | grep -q 'dpi: 120'; do\n"
+                                         "  xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 120'\n"
+                                         "  sleep 0.1\n"
+                                         "done\n"
                                          "bash use.sh; result=$?\n"
                                          "xprop -root -remove RESOURCE_MANAGER\nkill $other\nexit $result\n";
   EXPECT_EQ(use("dem.tif --march naive --record events", "xdotool key Escape", "dense.sh"), 0) << output_;

@@ -270,7 +270,7 @@ void test_along(MapInput& input, const PlaceTable& table, std::span<const std::s
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const std::size_t i = lines[k];
     Answer& one = answers[i];
-    auto& [from, to] = one.ends;
+    SightEnd &from = one.ends.from, &to = one.ends.to;
     status.attempt(i, RowStatus::kNodata,
                    [&] { of_line(input, table, i, [&] { stand(from, "observer"), stand(to, "target"); }); });
     status.attempt(i, RowStatus::kInvalid, [&] {

@@ -15,7 +15,7 @@
 namespace scarp::test {
 namespace {
 
-constexpr double kSlack = 0x1p-21, kRounding = 0x1p-44;
+constexpr double kSlack = 0x1p-21, kPatchRounding = 0x1p-44;
 constexpr int kParts = 24;  // the judge looks at (kParts + 1)^2 points
 
 // A cell with sides of about 1, and corners that are up to 4 apart.
@@ -69,9 +69,10 @@ TEST(PatchContact, IsTheFirstWhereProven) {
     // It touches a point of the patch.
     const dvec3 way = contact->t * motion, &p = contact->point;
     const double u = (p.x - patch.corner.x) / patch.along_u.x, v = (p.y - patch.corner.y) / patch.along_v.y;
-    ASSERT_TRUE(u >= -kRounding && u <= 1 + kRounding && v >= -kRounding && v <= 1 + kRounding) << round;
-    ASSERT_NEAR(length(patch.at(u, v) - p), 0, kRounding) << round;
-    ASSERT_NEAR(length(contact->normal), 1, kRounding);
+    ASSERT_TRUE(u >= -kPatchRounding && u <= 1 + kPatchRounding && v >= -kPatchRounding && v <= 1 + kPatchRounding)
+        << round;
+    ASSERT_NEAR(length(patch.at(u, v) - p), 0, kPatchRounding) << round;
+    ASSERT_NEAR(length(contact->normal), 1, kPatchRounding);
     const double away = bench::to_segment(p, capsule.a + way, capsule.b + way);
     if (contact->t > 0) {
       ASSERT_NEAR(away, capsule.radius, kSlack) << round;
@@ -81,7 +82,8 @@ TEST(PatchContact, IsTheFirstWhereProven) {
     if (!contact->proven) continue;
     ++proven;
     for (const dvec3& point : points)
-      ASSERT_GE(to_swept(point, capsule, way), (contact->t > 0 ? capsule.radius : 0) - kSlack - kRounding) << round;
+      ASSERT_GE(to_swept(point, capsule, way), (contact->t > 0 ? capsule.radius : 0) - kSlack - kPatchRounding)
+          << round;
   }
   EXPECT_GT(found, cases(20'000, 4000, 1000) / 3);
   EXPECT_GT(proven, found / 2);
@@ -98,7 +100,7 @@ TEST(PatchContact, ClosestPointIsTheClosestWhereProven) {
     const PatchPoint found = closest_of_patch(patch, p, kSlack);
     ASSERT_TRUE(found.u >= 0 && found.u <= 1 && found.v >= 0 && found.v <= 1);
     ASSERT_EQ(length(found.point - patch.at(found.u, found.v)), 0);
-    ASSERT_NEAR(found.distance, length(found.point - p), kRounding);
+    ASSERT_NEAR(found.distance, length(found.point - p), kPatchRounding);
     if (!found.proven) continue;
     ++proven;
     for (const dvec3& point : points_of(patch)) ASSERT_GE(length(point - p), found.distance - kSlack) << round;
