@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from ._arguments import array_of_numbers, refuse_unused, shown
+from ._arguments import array_of_numbers, refuse_unused
 from ._core import Error
 from ._hits import Hits
 
@@ -49,10 +49,7 @@ def limit(value: Any, shape: tuple[int, ...], name: str) -> Any:
     """Returns None, one number, or one number per ray."""
     if value is None or isinstance(value, (int, float)):
         return value
-    try:
-        values = np.asarray(value, float)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name}: {shown(value)} is not a number, nor an array of numbers") from None
+    values = array_of_numbers(value, name).astype(float, copy=False)
     try:
         return np.ascontiguousarray(np.broadcast_to(values, shape))
     except ValueError:

@@ -38,7 +38,7 @@ class Voxels(Rays, _core.Voxels):
     """
 
     def __init__(self, indices: np.ndarray, side: float = 1.0, palette: Optional["ArrayLike"] = None) -> None:
-        array = np.asarray(indices)
+        array = array_of_numbers(indices, "voxels")
         if array.dtype != np.uint8:
             raise TypeError(
                 f"voxels: {array.dtype} is not uint8 (convert the array: (indices > 0).astype(numpy.uint8))"

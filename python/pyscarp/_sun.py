@@ -261,11 +261,14 @@ def horizon(
         at = numbers(at, 2, "at", "x and y")
         distance = flag(distance, "distance")
         col, row = terrain._node(at[0], at[1], coords)
+        outside = Error(f"place {at[0]:.10g},{at[1]:.10g}: is outside the terrain or over a hole")
+        if not (0 <= col <= terrain.shape[1] - 1 and 0 <= row <= terrain.shape[0] - 1):
+            raise outside
         ground = terrain._ground(col, row, max_distance)
         from_north = (np.radians(degrees) - ground.grid_north).tolist()
         table = _core.horizon_at(terrain, col, row, from_north, *settings, *ground.cell)
         if table is None:
-            raise Error(f"place {at[0]:.10g},{at[1]:.10g}: is outside the terrain or over a hole")
+            raise outside
         elevations = np.degrees(table[:, 0])
         return (degrees, elevations, table[:, 1]) if distance else (degrees, elevations)
     require_plane(terrain)

@@ -116,7 +116,9 @@ struct Along {
 HWY_INLINE Along place(VD position, VD cells, bool wraps) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
   if (wraps) position = hn::Sub(position, hn::Mul(hn::Floor(hn::Div(position, cells)), cells));
-  const VD off = hn::Mul(hn::Set(dd, 0x1p-53 * 16), hn::Add(hn::Abs(position), cells));
+  // Positions far outside have a smaller rounding than theirs, so that infinity is outside.
+  const VD near = hn::Min(hn::Abs(position), hn::Add(cells, cells));
+  const VD off = hn::Mul(hn::Set(dd, 0x1p-53 * 16), hn::Add(near, cells));
   const MD inside = hn::And(hn::Ge(position, hn::Neg(off)), hn::Le(position, hn::Add(cells, off)));
   // Lanes outside have any cell.
   const VD at = hn::Min(hn::Max(hn::IfThenElseZero(inside, position), zero), cells);

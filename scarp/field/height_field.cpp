@@ -245,9 +245,10 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
     col -= std::floor(col / cols) * cols;
     row -= std::floor(row / rows) * rows;
   }
-  // NaN counts as outside; positions within rounding of the border count as on it.
+  // NaN and infinity count as outside; positions within rounding of the border count as on it.
   const auto inside = [](double position, int cells) {
     if (position >= 0 && position <= cells) return true;
+    if (std::isinf(position)) return false;
     const double off = rounding_of_line(position, cells);
     return position >= -off && position <= cells + off;
   };

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -83,6 +84,12 @@ void cast_made(const HeightTarget& terrain, Fan fan, FanAnswers& answers, const 
   });
 }
 
+// NaN for directions that are zero or not finite. The squares of others may exceed doubles.
+dvec3 unit_of(const dvec3& direction) {
+  const dvec3 scaled = direction / longest_of(direction);
+  return scaled / length(scaled);
+}
+
 }  // namespace
 
 FanAnswers::FanAnswers(int width, int height, bool normals) : columns(width), rows(height) {
@@ -99,12 +106,14 @@ FanHits FanAnswers::hits() {
 }
 
 void cast_from(const Terrain& terrain, const PinholeCamera& camera, FanAnswers& answers) {
-  const dvec3 side = cross(camera.forward, camera.up);
-  if (!finite(camera.forward) || !finite(side) || side == dvec3(0.0))
+  constexpr double kWidest = 1e6;
+  const dvec3 forward = unit_of(camera.forward), side = cross(forward, unit_of(camera.up));
+  if (!finite(forward) || !finite(side) || side == dvec3(0.0))
     throw Error("camera: its directions are not finite, or `forward` is zero or along `up`");
-  if (!(camera.tan_half_width > 0) || std::isinf(camera.tan_half_width))
-    throw Error(fmt::format("camera: tan_half_width is {}; it must be above 0 and finite", camera.tan_half_width));
-  const dvec3 forward = normalize(camera.forward), right = normalize(side), up = cross(right, forward);
+  if (!(camera.tan_half_width > 0 && camera.tan_half_width <= kWidest))
+    throw Error(
+        fmt::format("camera: tan_half_width is {}; it must be above 0 and at most {}", camera.tan_half_width, kWidest));
+  const dvec3 right = normalize(side), up = cross(right, forward);
   Fan fan;
   fan.origin = camera.eye;
   fan.columns = camera.columns, fan.rows = camera.rows;

@@ -58,8 +58,9 @@ struct Scanner {
 };
 
 /// Answers all rays, on all threads. Throws Error if `answers` is of another size, for an eye, a camera or a scanner
-/// that is not finite, a `forward` of zero or along `up`, a `tan_half_width` of 0 or less, an empty range, a range
-/// without an end over terrain that wraps, and if the field or its memory has changed without the terrain's knowledge.
+/// that is not finite, a `forward` of zero or along `up`, a `tan_half_width` of 0 or less or above 10^6, an empty
+/// range, a range without an end over terrain that wraps, and if the field or its memory has changed without the
+/// terrain's knowledge.
 void cast_from(const Terrain& terrain, const PinholeCamera& camera, FanAnswers& answers);
 void cast_from(const Terrain& terrain, const Scanner& scanner, FanAnswers& answers);
 /// As above, for directions of the caller: hits are laid out as the rays. Rays without a direction (zero, NaN or

@@ -80,8 +80,9 @@ void validate(const Lidar& lidar) {
   require(std::isfinite(lidar.range_noise) && lidar.range_noise >= 0, "the noise must be 0 metres or more");
   const LidarMounting& mounting = lidar.mounting;
   require(all_finite({mounting.forward, mounting.right, mounting.up}) &&
-              all_finite({mounting.yaw, mounting.pitch, mounting.roll}) && std::isfinite(lidar.north),
+              all_finite({mounting.yaw, mounting.pitch, mounting.roll}),
           "its mounting must be finite");
+  require(std::isfinite(lidar.north), "north must be finite");
   require(!lidar.path.empty(), "has no pose");
   for (std::size_t i = 0; i < lidar.path.size(); ++i) {
     const LidarPose& pose = lidar.path[i];

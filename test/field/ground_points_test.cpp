@@ -87,6 +87,9 @@ void expect_single_answers(const HeightField& field, std::mt19937& random) {
     const auto place = field.place(p.x[i], p.y[i]);
     const auto height = field.height(p.x[i], p.y[i]);
     const auto point = ground_point(field, p.x[i], p.y[i]);
+    if (std::isinf(p.x[i]) || std::isinf(p.y[i])) {
+      ASSERT_FALSE(height) << where;
+    }
     ASSERT_TRUE(same(heights[i], height.value_or(kNan))) << where << ": " << heights[i];
     ASSERT_EQ(point.has_value(), height.has_value()) << where;
     const dvec3 normal = height ? field.normal(place->cell, place->u, place->v) : dvec3(0.0);

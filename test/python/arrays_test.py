@@ -267,3 +267,13 @@ def test_masked_integers_are_holes_whatever_their_fill():
     assert np.isnan(np.diag(terrain.heights)).all() and terrain.range == (16959, 16959)
     with pytest.raises(Error, match="nodata: 70000 is not a value of int16"):
         Terrain(heights, cell=1, nodata=70000, copy=True)
+
+
+def test_hidden_elements_are_refused():
+    hidden = np.ma.array(np.ones((3, 3, 3), np.uint8), mask=True)
+    with pytest.raises(TypeError, match="voxels: a masked array hides"):
+        pyscarp.Voxels(hidden)
+    terrain = Terrain(np.zeros((3, 3), np.float32), cell=1)
+    starts = np.ma.array([0.0, 1.0], mask=[True, False])
+    with pytest.raises(TypeError, match="t_min: a masked array hides"):
+        terrain.cast([[1, 1, 5], [1, 1, 5]], [0, 0, -1], t_min=starts)

@@ -509,3 +509,11 @@ def test_border_samples_are_inside():
         for corner in corners:
             other = corners[0] if corner != corners[0] else corners[1]
             assert pyscarp.line_of_sight(terrain, corner, other) is not None
+
+
+def test_horizons_outside_are_refused_before_their_plane():
+    transform = (10, 0, 500000, 0, -10, 5000000)
+    terrain = Terrain(hills(30, 40), crs="EPSG:32633", transform=transform)
+    for at in [(0, 0), (499990, 4999900), (500100, 5000020)]:
+        with pytest.raises(Error, match="is outside the terrain or over a hole"):
+            pyscarp.horizon(terrain, 4, at=at)

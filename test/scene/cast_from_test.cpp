@@ -191,6 +191,19 @@ TEST(CastFrom, EyesBesideTheBorderMatchTheirRays) {
   EXPECT_GT(hits, 5000);
 }
 
+TEST(CastFrom, LengthsOfDirectionsOfACameraDoNotMatter) {
+  const Terrain ground = terrain();
+  PinholeCamera camera{.eye = {100, 100, 50}, .forward = {1, 0.5, -1}, .columns = 32, .rows = 24};
+  FanAnswers usual(32, 24), other(32, 24);
+  cast_from(ground, camera, usual);
+  EXPECT_GT(std::count(usual.status.begin(), usual.status.end(), HitStatus::hit), 300);
+  for (const double length : {0x1p-1000, 0x1p-600, 0x1p600, 0x1p1000}) {
+    camera.forward = dvec3{1, 0.5, -1} * length, camera.up = dvec3(0, 0, 1) * length;
+    cast_from(ground, camera, other);
+    EXPECT_TRUE(other.t == usual.t && other.status == usual.status) << length;
+  }
+}
+
 TEST(CastFrom, RejectsInvalidInput) {
   const Terrain ground = terrain(), endless = terrain({.wrap = Wrap::periodic});
   PinholeCamera camera{.eye = {100, 100, 50}, .columns = 4, .rows = 3};
@@ -202,6 +215,11 @@ TEST(CastFrom, RejectsInvalidInput) {
   PinholeCamera bad = camera;
   bad.forward = bad.up;
   EXPECT_THROW(cast_from(ground, bad, answers), Error);
+  for (const double width : {0.0, -1.0, 1e7, HUGE_VAL}) {
+    bad = camera;
+    bad.tan_half_width = width;
+    EXPECT_THROW(cast_from(ground, bad, answers), Error) << width;
+  }
   bad = camera;
   bad.eye.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(cast_from(ground, bad, answers), Error);

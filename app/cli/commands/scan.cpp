@@ -86,7 +86,7 @@ LasSettings las_settings_of(const ScannedScene& scanned, const Lidar& lidar, std
 }
 
 struct ScanCounts {
-  std::int64_t rays = 0, hits = 0, below = 0;
+  std::int64_t rays = 0, hits = 0, below = 0, exhausted = 0;
 };
 
 // Converts the returns of a piece. Throws Error for a position without longitude and latitude.
@@ -97,6 +97,7 @@ void take_returns(std::span<const LidarReturn> returns, const CoordinateFrame& f
   for (const LidarReturn& answer : returns) {
     ++counts.rays;
     if (answer.status == HitStatus::below) ++counts.below;
+    if (answer.status == HitStatus::exhausted) ++counts.exhausted;
     if (answer) {
       ++counts.hits;
       positions.push_back(answer.position);
@@ -139,6 +140,11 @@ std::string scan_finding(const ScanCounts& counts, const ScannedScene& scanned, 
         "nothing was hit: {} of {} rays start below ground, or enter it through its border, and never emerge; check "
         "the height of the scanner",
         counts.below, counts.rays);
+  }
+  if (counts.exhausted > 0) {
+    return fmt::format(
+        "nothing was hit: {} of {} rays are too long for ground that repeats, and were given up; set a shorter range",
+        counts.exhausted, counts.rays);
   }
   return fmt::format("nothing was hit: all {} rays end above the ground, or beyond the range", counts.rays);
 }
