@@ -42,6 +42,9 @@ void draw_split(double x, const std::vector<std::string>& names) {
 namespace {
 
 constexpr ImU32 kDark = IM_COL32(0, 0, 0, 160), kYellow = IM_COL32(255, 230, 60, 255);
+// Lines are this share of their length above the ground, which would hide them everywhere else: less than a pixel in a
+// picture of 1,000 pixels that shows the whole line.
+constexpr double kLift = 1e-3;
 
 ImVec2 on_screen(const dvec2& pixel, const Camera& camera, const WindowLayout& layout) {
   const double scale = layout.width / camera.size().x;
@@ -97,8 +100,7 @@ void draw_measured(const MeasuredLine& line, const Scene& scene, const Camera& c
                        static_cast<double>(line.heights[i]) * exaggeration},
                       kYellow});
   }
-  // Slightly above the ground, which would hide it everywhere else.
-  draw_on_ground(points, 1e-3 * line.flat, scene, camera, layout);
+  draw_on_ground(points, kLift * line.flat, scene, camera, layout);
   for (const dvec3& end : {line.from, line.to}) draw_mark(end, kYellow, camera, layout);
 }
 
@@ -114,7 +116,7 @@ void draw_sight(const SightAnswer& sight, const Scene& scene, const Camera& came
     points.push_back({sight.ground[i].at, visible ? kVisible : kBlocked});
   }
   if (count > 0) points.push_back({sight.ground.back().at, sight.ground.back().visible ? kVisible : kBlocked});
-  draw_on_ground(points, 1e-3 * sight.line.distance, scene, camera, layout);
+  draw_on_ground(points, kLift * sight.line.distance, scene, camera, layout);
   if (count > 0) draw_mark(sight.ground.back().at, sight.line.visible ? kVisible : kBlocked, camera, layout);
 }
 

@@ -71,12 +71,16 @@ TEST_F(MapLimits, HorizonsKeepTheLimit) {
   std::string hills = "ncols 300\nnrows 300\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
   for (int i = 0; i < 300 * 300; ++i) hills += std::to_string(300 + i * 7919 % 101) + ' ';
   scratch_.write("hills.asc", hills);
-  const std::string dem = scratch_.write("wide.vrt", R"(<VRTDataset rasterXSize="16000" rasterYSize="1500">
-<SRS>EPSG:32633</SRS><GeoTransform>400000, 10, 0, 5000000, 0, -10</GeoTransform>
+  const auto wide = [&](const char* name, int cols, int rows, int cell) {
+    return scratch_.write(name, fmt::format(R"(<VRTDataset rasterXSize="{0}" rasterYSize="{1}">
+<SRS>EPSG:32633</SRS><GeoTransform>400000, {2}, 0, 5000000, 0, -{2}</GeoTransform>
 <VRTRasterBand dataType="Int16" band="1">
 <SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
 <SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="300" ySize="300"/>
-<DstRect xOff="0" yOff="0" xSize="16000" ySize="1500"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+<DstRect xOff="0" yOff="0" xSize="{0}" ySize="{1}"/></SimpleSource></VRTRasterBand></VRTDataset>)",
+                                            cols, rows, cell));
+  };
+  const std::string dem = wide("wide.vrt", 16000, 1500, 10);
   for (const char* engine : {"exact", "sweep"}) {
     const Result result = run({"horizon", dem, "--azimuths", "1", "--engine", engine, "--memory", "256M", "--scratch",
                                path("."), "--plane-error", "100", "-o", path("horizon.tif")});
@@ -85,12 +89,7 @@ TEST_F(MapLimits, HorizonsKeepTheLimit) {
     EXPECT_LE(result.peak, std::uint64_t{256} << 20) << engine;
   }
   // A strip of the exact engine is as long as a row, and its blocks are 64 x 32 nodes.
-  const std::string line = scratch_.write("line.vrt", R"(<VRTDataset rasterXSize="60000" rasterYSize="400">
-<SRS>EPSG:32633</SRS><GeoTransform>400000, 1, 0, 5000000, 0, -1</GeoTransform>
-<VRTRasterBand dataType="Int16" band="1">
-<SimpleSource><SourceFilename relativeToVRT="1">hills.asc</SourceFilename>
-<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="300" ySize="300"/>
-<DstRect xOff="0" yOff="0" xSize="60000" ySize="400"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+  const std::string line = wide("line.vrt", 60000, 400, 1);
   expect_refused(
       {"skyview", line, "--azimuths", "4", "--memory", "256M", "--plane-error", "100", "-o", path("sky.tif")},
       "allow more memory");

@@ -31,7 +31,9 @@ void expect_engine(const Terrain& terrain, const Into& scarp_from_engine, const 
       const Hit hit = cast(terrain, {.origin = start, .direction = end - start});
       ASSERT_TRUE(hit) << col << ", " << row;
       const dvec3 back = engine_from_scarp(start + hit.t * (end - start));
-      EXPECT_LT(length(back - p), 1e-9 * length(up)) << col << ", " << row;
+      // There, the hit and back are fewer than 64 roundings of numbers below those of the ray's ends.
+      const double largest = length(start) + length(end) + length(p) + length(up);
+      EXPECT_LT(length(back - p), 64 * 0x1p-53 * largest) << col << ", " << row;
     }
   }
 }

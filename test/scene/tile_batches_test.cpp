@@ -102,6 +102,8 @@ dvec3 at_seam(Random& random, const Ground& ground) {
 }
 
 Ray ray_at_seam(Random& random, const Ground& ground) {
+  // A ray that falls a whole tile stays within rounding of a seam in y, and a little beside one in x.
+  constexpr double kBeside = 1e-9, kRounded = 1e-12, kGrazing = 1e-3;
   const dvec3 aim = at_seam(random, ground);
   dvec3 direction(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 0.2));
   switch (whole(random, 0, 5)) {
@@ -109,13 +111,13 @@ Ray ray_at_seam(Random& random, const Ground& ground) {
       direction = {0, 0, -1};
       break;  // vertical
     case 1:
-      direction.x *= 1e-9, direction.y *= 1e-12;
+      direction.x *= kBeside, direction.y *= kRounded;
       break;  // nearly so
     case 2:
       direction.x = 0;
       break;  // along a seam
     case 3:
-      direction.y = 0, direction.z *= 1e-3;
+      direction.y = 0, direction.z *= kGrazing;
       break;  // along a seam and the ground
     default:
       break;
